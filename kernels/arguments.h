@@ -83,6 +83,19 @@
     X(HITS_SETTLE, args) X(HITS_SETTLE, parts) X(HITS_SETTLE, contributions) X(HITS_SETTLE, counts) \
     X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, sums)
 
+#define SKG_ARGUMENTS_HITS_SLOPES(X) \
+    X(HITS_SLOPES, args) X(HITS_SLOPES, parts) X(HITS_SLOPES, contributions) X(HITS_SLOPES, counts) \
+    X(HITS_SLOPES, starts) X(HITS_SLOPES, hits) X(HITS_SLOPES, table) X(HITS_SLOPES, weights) X(HITS_SLOPES, slopes)
+
+#define SKG_ARGUMENTS_GRADIENT_FACES(X) \
+    X(GRADIENT_FACES, args) X(GRADIENT_FACES, corners) X(GRADIENT_FACES, projected) X(GRADIENT_FACES, parts) \
+    X(GRADIENT_FACES, blocks) X(GRADIENT_FACES, contributions) X(GRADIENT_FACES, weights) X(GRADIENT_FACES, scales) \
+    X(GRADIENT_FACES, moments) X(GRADIENT_FACES, slots) X(GRADIENT_FACES, shifts) X(GRADIENT_FACES, counts) \
+    X(GRADIENT_FACES, starts) X(GRADIENT_FACES, hits) X(GRADIENT_FACES, slopes) \
+    X(GRADIENT_FACES, face_slopes)
+
+#define SKG_ARGUMENTS_GRADIENT_MOST(X) X(GRADIENT_MOST, args) X(GRADIENT_MOST, weights) X(GRADIENT_MOST, most)
+
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
     X(COUNT_BAD_ROWS, layout) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \
     X(COUNT_BAD_ROWS, rows_bad)
@@ -114,6 +127,10 @@
     X(ATTENUATE, args) X(ATTENUATE, copies) X(ATTENUATE, used) X(ATTENUATE, coefficients) X(ATTENUATE, weights) \
     X(ATTENUATE, variances) X(ATTENUATE, lists) X(ATTENUATE, range) X(ATTENUATE, polynomials) \
     X(ATTENUATE, tables) X(ATTENUATE, negative) X(ATTENUATE, output)
+
+#define SKG_ARGUMENTS_WEIGHTS(X) \
+    X(WEIGHTS, args) X(WEIGHTS, copies) X(WEIGHTS, used) X(WEIGHTS, coefficients) X(WEIGHTS, weights_of_nodes) \
+    X(WEIGHTS, lists) X(WEIGHTS, polynomials) X(WEIGHTS, tables) X(WEIGHTS, adjoint) X(WEIGHTS, weights)
 
 #define SKG_ARGUMENTS_LOGARITHM(X) X(LOGARITHM, image) X(LOGARITHM, output)
 
@@ -151,9 +168,10 @@
     X(TILES_FILL, skg_tiles_fill) X(RASTER_SQUARES, skg_raster_squares) X(BANDS_SORT, skg_bands_sort) \
     X(RASTER_BANDS, skg_raster_bands) X(RASTER_HALF, skg_raster_half) X(SOURCE_PLANE, skg_source_plane) \
     X(HITS_LIST, skg_hits_list) X(HITS_SOURCE_PLANE, skg_hits_source_plane) X(HITS_PLACE, skg_hits_place) \
-    X(HITS_SETTLE, skg_hits_settle) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
+    X(HITS_SETTLE, skg_hits_settle) X(HITS_SLOPES, skg_hits_slopes) \
+    X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_MOST, skg_gradient_most) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \
-    X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(LOGARITHM, skg_logarithm) \
+    X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(WEIGHTS, skg_weights) X(LOGARITHM, skg_logarithm) \
     X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(DETECT, skg_detect) X(SCATTER, skg_scatter) X(SCATTERED, skg_scattered) \
     X(SHOW_COUNT, skg_show_count) X(SHOW_FILL, skg_show_fill) X(SHOW_DRAW, skg_show_draw)
 /* clang-format on */

@@ -55,16 +55,6 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
     __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const uint *starts,    \
         __global skg_listed *hits
 
-/* The columns of a row between its two crossings, which alone can be hit. */
-static int2 skg_columns_of(const skg_line *line, const skg_box *box) {
-    const skg_real left = (skg_real)box->i0, right = (skg_real)box->i1;
-    skg_real low = line->a < line->b ? line->a : line->b, high = line->a < line->b ? line->b : line->a;
-    low = low > left ? low : left; /* written so that NaN gives a bound */
-    low = low < right ? low : right;
-    high = high < right ? high : right;
-    return (int2)((int)low, high > left ? (int)ceil(high) : box->i0);
-}
-
 /* The columns of a row in which hits of a triangle may be listed: of a winner all columns of the triangle's box, of another
  * competitor only those from the first column in which a winner was hit (span[0]) to the last (span[1] - 1). */
 static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int task) {
@@ -170,6 +160,25 @@ static void skg_take_off(__global const skg_part_entry *part, __global const skg
         sums[contributions[w].plane * plane] -= (skg_sum)skg_round(length * contributions[w].weight);
 }
 
+/* The slots that lose an interval, of those that are active. */
+static void skg_drop(__global const int *table, const uint *active, uint *dropped) {
+    for (int w = 0; w < SKG_WORDS; w++) dropped[w] = 0;
+    for (int w = 0; w < SKG_WORDS; w++)
+        for (uint rest = active[w]; rest; rest &= rest - 1) {
+            const uint lowest = rest & (~rest + 1);
+            const int slot = 32 * w + 31 - (int)clz(lowest);
+            if (skg_loses(table + slot * SKG_ENTRY, active, dropped)) dropped[w] |= lowest;
+        }
+}
+
+/* Passes a hit: counts how many layers of its part the ray is in. */
+static void skg_pass_hit(int code, int *winding, uint *active) {
+    const int slot = code / 2;
+    winding[slot] += code & 1 ? 1 : -1;
+    const uint bit = 1u << (slot % 32);
+    active[slot / 32] = winding[slot] > 0 ? active[slot / 32] | bit : active[slot / 32] & ~bit;
+}
+
 /* Decides every interval of a pixel; one work-item per pixel of the window. table: [slots][SKG_ENTRY], parents before their
  * children. sums: the first copy. */
 __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry *parts,
@@ -188,22 +197,16 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
     for (int k = 0; k < count; k++) winding[hits[k].code / 2] = 0;
     for (int w = 0; w < SKG_WORDS; w++) active[w] = 0;
     for (int k = 0; k + 1 < count; k++) {
-        const int slot = hits[k].code / 2;
-        winding[slot] += hits[k].code & 1 ? 1 : -1;
-        const uint bit = 1u << (slot % 32);
-        active[slot / 32] = winding[slot] > 0 ? active[slot / 32] | bit : active[slot / 32] & ~bit;
+        skg_pass_hit(hits[k].code, winding, active);
         const skg_real length = hits[k + 1].depth - hits[k].depth;
         if (!(length > 0)) continue;
         uint dropped[SKG_WORDS];
-        for (int w = 0; w < SKG_WORDS; w++) dropped[w] = 0;
+        skg_drop(table, active, dropped);
         for (int w = 0; w < SKG_WORDS; w++)
-            for (uint rest = active[w]; rest; rest &= rest - 1) {
-                const uint lowest = rest & (~rest + 1);
-                const int s = 32 * w + 31 - (int)clz(lowest);
-                __global const int *entry = table + s * SKG_ENTRY;
-                if (!skg_loses(entry, active, dropped)) continue;
-                dropped[w] |= lowest;
-                skg_take_off(&parts[entry[0]], contributions, args.layout.plane, length * (skg_real)winding[s], place);
+            for (uint rest = dropped[w]; rest; rest &= rest - 1) {
+                const int slot = 32 * w + 31 - (int)clz(rest & (~rest + 1));
+                skg_take_off(&parts[table[slot * SKG_ENTRY]], contributions, args.layout.plane,
+                             length * (skg_real)winding[slot], place);
             }
     }
 }

@@ -131,6 +131,17 @@ typedef struct {
     SKG_INT parts, part, count, reserved;
 } skg_leaky_args;
 
+/* Of skg_gradient_faces, skg_gradient_most and skg_hits_slopes. Weights have rows of `stride` elements, and planes of `plane`.
+ * window: as in skg_hits_args. */
+typedef struct {
+    skg_raster_layout layout;
+    SKG_INT window[4];
+    SKG_INT stride, plane, planes, reserved;
+} skg_gradient_args;
+
+/* The first moment of a face that is seen as a line (kernels/gradient.cl). */
+#define SKG_EDGE_ON ((SKG_LONG)1 << 62)
+
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_OTHER 0x10000
 
@@ -293,6 +304,7 @@ _Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_doubl
                "layout of the arguments of skg_detect");
 _Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72, "layout of images");
 _Static_assert(sizeof(skg_hits_args) == 104 && sizeof(skg_leaky_args) == 88, "layout of arguments");
+_Static_assert(sizeof(skg_gradient_args) == 104, "layout of the arguments of gradients");
 _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");

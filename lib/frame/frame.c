@@ -1,4 +1,7 @@
 #include "frame/frame.h"
+#include "frame/derivative_pass.h"
+#include "frame/gradient_density.h"
+#include "frame/gradient_pass.h"
 #include "frame/parts.h"
 #include "frame/scatter.h"
 #include "plan/choose.h"
@@ -47,11 +50,12 @@ static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine 
     return options;
 }
 
-/* Pins the raster that a pass calls for, and reports its layout. */
+/* Pins the raster that a pass calls for, and reports its layout. alone: 1: the pass is drawn by itself. */
 static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, int64_t number, skg_pass *pass,
-                             skg_outcome *outcome) {
+                             int alone, skg_outcome *outcome) {
     skg_plan_report *report = &outcome->report;
-    const skg_raster_options options = raster_of(recipe, machine, number, pass);
+    skg_raster_options options = raster_of(recipe, machine, number, pass);
+    if (alone) options.passes = options.side = 1;
     SKG_TRY(skg_raster_cache_pin(&machine->rasters, &options, &pass->main));
     outcome->side = options.passes > 1 ? options.side : 0;
     report->plane_bits = pass->scale.bits;
@@ -100,7 +104,7 @@ void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine) {
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome) {
     skg_pass pass;
     skg_status status = fill_first(recipe, machine, &pass);
-    if (status == SKG_OK) status = pin_raster(recipe, machine, first_of(recipe), &pass, outcome);
+    if (status == SKG_OK) status = pin_raster(recipe, machine, first_of(recipe), &pass, 0, outcome);
     skg_pass_release(&pass);
     return status;
 }
@@ -166,20 +170,33 @@ static double exposure_of(const skg_recipe *recipe, const skg_view *view) {
     return is_ratio ? 1 : skg_recipe_exposure(recipe, view);
 }
 
+/* Uploads the lists by which planes are mixed. */
+static skg_status send_mix(skg_job *job, const skg_pass *pass) {
+    const skg_recipe *recipe = job->recipe;
+    if (!pass->mix.sums) return SKG_OK;
+    return skg_mix_lists_send(&job->machine->mix_lists, pass->mix.lists,
+                              (int64_t)recipe->mixed * recipe->model.planes,
+                              recipe->options.precision == SKG_PRECISION_DOUBLE, &job->staging);
+}
+
+/* What the intensities of a pass are multiplied by. */
+static double factor_of(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass *pass) {
+    /* Noise is that of photons in a pixel; its area is divided by later. */
+    const int areas =
+        recipe->options.quantity == SKG_QUANTITY_FLUENCE && !skg_quantity_is_absolute(&recipe->options);
+    const double rays = (double)pass->fine * pass->fine;
+    const double area = areas ? skg_camera_pixel_area(&pass->camera) * rays : 1;
+    return exposure_of(recipe, work->view) / (area * (double)skg_samples_count(&recipe->samples));
+}
+
 /* Enqueues the image of one pass from the sums. */
 static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_t number,
                                 const skg_pass *pass, int32_t place_of_pass) {
     const skg_recipe *recipe = job->recipe;
     skg_machine *machine = job->machine;
     const int lengths = work->lengths_of >= 0;
-    /* Noise is that of photons in a pixel; its area is divided by later. */
-    const int areas =
-        recipe->options.quantity == SKG_QUANTITY_FLUENCE && !skg_quantity_is_absolute(&recipe->options);
-    const double rays = (double)pass->fine * pass->fine;
-    const double area = areas ? skg_camera_pixel_area(&pass->camera) * rays : 1;
     const double share = 1 / (double)skg_samples_count(&recipe->samples);
-    const double factor =
-        lengths ? 1 : exposure_of(recipe, work->view) / (area * (double)skg_samples_count(&recipe->samples));
+    const double factor = lengths ? 1 : factor_of(recipe, work, pass);
     /* A length may be wrong by some of the scale's bound if a face lies nearly along the ray (docs/numerics.md). Below a
      * ten-thousandth of the bound it does not show that more was subtracted than there is. */
     const double least = -1e-4 * pass->scale.bound - 1e-6;
@@ -195,13 +212,39 @@ static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_
         number + 1 == skg_samples_passes(&recipe->samples)) /* the last pass's count is reported */
         SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
                                        sizeof none, 0, sizeof none, 0, NULL, NULL));
-    if (pass->mix.sums)
-        SKG_TRY(skg_mix_lists_send(&machine->mix_lists, pass->mix.lists,
-                                   (int64_t)recipe->mixed * recipe->model.planes,
-                                   recipe->options.precision == SKG_PRECISION_DOUBLE, &job->staging));
+    SKG_TRY(send_mix(job, pass));
     const skg_sums sums = sums_of(machine, recipe, pass, place_of_pass);
     return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, share, least,
                          machine->negative.memory, &noise, &place, &job->staging.log);
+}
+
+/* Adds one pass to the gradient of the job, from the sums. */
+static skg_status add_gradient(skg_job *job, const skg_frame_work *work, int64_t number,
+                               const skg_pass *pass) {
+    SKG_TRY(send_mix(job, pass));
+    const skg_sums sums = sums_of(job->machine, job->recipe, pass, 0);
+    const double factor = factor_of(job->recipe, work, pass);
+    if (job->gradient->forward) return skg_derivative_add_pass(job, work, number, pass, &sums, factor);
+    return skg_gradient_add_pass(job, work, number, pass, &sums, factor);
+}
+
+/* Adds the density of one part, from its path lengths along the rays of a pass. */
+static skg_status add_density(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part) {
+    skg_frame_work lengths = *work;
+    skg_pass pass;
+    skg_status status = SKG_OK;
+    lengths.lengths_of = part;
+    lengths.kind = SKG_LENGTHS_NET;
+    SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, &lengths, number, &job->machine->pass, &pass));
+    SKG_TRY_CLEANUP(pin_raster(job->recipe, job->machine, number, &pass, 1, job->outcome));
+    SKG_TRY_CLEANUP(enqueue_sums(job, &pass));
+    SKG_TRY_CLEANUP(skg_gradient_place_lengths(job, &pass, &lengths.place));
+    pass.fine = 1; /* every ray is shown */
+    SKG_TRY_CLEANUP(enqueue_image(job, &lengths, 0, &pass, 0));
+    status = skg_gradient_add_density(job, &pass, part);
+cleanup:
+    skg_pass_release(&pass);
+    return status;
 }
 
 /* Passes that wait to be drawn together: `count` of them, from number `first` on, in a raster of `room`. */
@@ -254,7 +297,7 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
     skg_pass pass;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &machine->pass, &pass));
-    SKG_TRY_CLEANUP(pin_raster(job->recipe, machine, number, &pass, job->outcome));
+    SKG_TRY_CLEANUP(pin_raster(job->recipe, machine, number, &pass, job->gradient != NULL, job->outcome));
     skg_raster_pin_copy(&pass.main, &job->main);
     skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, job->outcome);
     if (g->count && (g->count == g->room || g->passes->main.raster != pass.main.raster))
@@ -264,9 +307,13 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
         return SKG_OK;
     }
     SKG_TRY_CLEANUP(enqueue_sums(job, &pass));
-    status = enqueue_image(job, work, number, &pass, 0);
+    status =
+        job->gradient ? add_gradient(job, work, number, &pass) : enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
+    for (int64_t p = 0; job->gradient && job->gradient->wanted.densities && p < job->recipe->scene->count;
+         p++)
+        if (status == SKG_OK) status = add_density(job, work, number, p);
     return status;
 }
 
@@ -330,6 +377,7 @@ skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
     const int64_t first = first_of(recipe);
     const int64_t end = first < 0 ? 0 : skg_samples_passes(&recipe->samples);
     skg_frame_work layered = *work;
+    if (job->gradient) return enqueue_passes(job, work, first, end);
     SKG_TRY(skg_layers_place(job->machine->context, &job->machine->layers, layers_of(job), &work->place,
                              recipe->view.columns, recipe->view.rows, recipe->model.channels,
                              &layered.place));

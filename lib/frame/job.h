@@ -24,7 +24,9 @@ struct skg_job {
     skg_recipe *recipe; /* retained: that of the submission */
     skg_machine *machine;
     skg_scatterer *scatterer; /* of the plan; NULL: images of the primary alone */
-    skg_outcome *outcome;     /* takes what is known of a frame when it is enqueued, and remembers warnings */
+    struct skg_gradient_work
+        *gradient;        /* borrowed: frames are gradients (frame/gradient_work.h); NULL: images */
+    skg_outcome *outcome; /* takes what is known of a frame when it is enqueued, and remembers warnings */
     skg_frame_output *outputs; /* [output_count] */
     int64_t output_count;
     int64_t count;       /* frames */

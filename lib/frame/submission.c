@@ -18,6 +18,7 @@ static skg_status enqueue_output(skg_job *job, const skg_frame_output *output, i
     work->shows = output->to.kind;
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
     SKG_TRY(skg_frame_enqueue(job, work));
+    if (job->gradient) return SKG_OK;
     return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log);
 }
 

@@ -157,18 +157,30 @@ static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
     return is_same(key, &first) && skg_kernels_are_first(attenuator->context, &key->options);
 }
 
-static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
+/* weights: NULL, or with the kernel skg_weights, whose option SKG_WEIGH_PLANES it is. */
+static skg_status get_files(const skg_attenuator *attenuator, const kernel_key *key, const int64_t *weights,
+                            cl_program *program) {
+    skg_define defines[DEFINE_COUNT + 1];
     const int64_t noise = key->defines[DEFINE_NOISE].value, shades = key->defines[DEFINE_SHADES].value;
-    const char *files[7] = {"exponential.clh"};
+    const char *files[8] = {"exponential.clh"};
     int count = 1;
-    if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
     if (noise) files[count++] = "random.clh", files[count++] = "noise.clh";
     if (shades) files[count++] = "shades.clh";
     files[count++] = "planes.clh";
     if (noise) files[count++] = "quantum.clh";
     files[count++] = "attenuate.cl";
-    return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
-                           program);
+    if (!weights)
+        return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
+                               program);
+    files[count++] = "weights.cl";
+    memcpy(defines, key->defines, sizeof key->defines);
+    defines[DEFINE_COUNT] = (skg_define){"SKG_WEIGH_PLANES", *weights};
+    return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(defines), program);
+}
+
+static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
+    if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
+    return get_files(attenuator, key, NULL, program);
 }
 
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
@@ -224,6 +236,16 @@ skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_rast
     return get_program(attenuator, &key, NULL);
 }
 
+/* The work-items that the pixels of a raster need. */
+static skg_work_size work_of(const skg_sums *sums, int32_t precision) {
+    const skg_raster *raster = sums->raster;
+    const work_shape shape = shape_of(raster->context, sums->fine);
+    const int64_t pixels = skg_kernel_lanes(raster->context, precision) * shape.runs * shape.strip;
+    return (skg_work_size){2,
+                           {(raster->layout.columns + pixels - 1) / pixels, raster->layout.rows / sums->fine},
+                           {shape.group[0], shape.group[1]}};
+}
+
 /* The scalar arguments that do not depend on the caller's factor and share. */
 static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *sums, const skg_camera *camera,
                                        const skg_attenuation *attenuation, const skg_image_place *place) {
@@ -274,14 +296,50 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, negative, negative),
         SKG_ARGUMENT(ATTENUATE, output, place->memory),
     };
-    const work_shape shape = shape_of(raster->context, sums->fine);
-    const int64_t pixels =
-        skg_kernel_lanes(raster->context, key.options.precision) * shape.runs * shape.strip;
-    const skg_work_size work = {
-        2,
-        {(raster->layout.columns + pixels - 1) / pixels, raster->layout.rows / sums->fine},
-        {shape.group[0], shape.group[1]}};
+    const skg_work_size work = work_of(sums, key.options.precision);
     return SKG_LAUNCH(raster->context, kernel, "attenuate", &work, arguments, log);
+}
+
+skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t fine) {
+    const int64_t run = shape_of(raster->context, fine).runs *
+                        skg_kernel_lanes(raster->context, raster->options.kernels.precision);
+    const int64_t stride = skg_round_up(raster->layout.columns, run);
+    return (skg_weight_layout){
+        .planes = raster->layout.planes, .stride = stride, .plane = stride * raster->layout.rows};
+}
+
+skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
+                                   const skg_attenuation *attenuation, double factor, int32_t of_planes,
+                                   cl_mem adjoint, cl_mem weights, skg_stage_log *log) {
+    const skg_raster *raster = sums->raster;
+    const skg_weight_layout layout = skg_attenuate_weight_layout(raster, sums->fine);
+    const skg_image_place place = {.row_stride = layout.stride, .channel_stride = layout.plane};
+    skg_attenuation mean = *attenuation;
+    mean.noise = 0;
+    mean.range = (skg_buffer){0};
+    const kernel_key key = key_of(sums, camera, &mean, &place);
+    const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
+    skg_attenuate_double args = scalars_of(&key, sums, camera, &mean, &place);
+    skg_attenuate_float rounded;
+    const int64_t option = of_planes;
+    cl_program program = NULL;
+    args.factor = factor;
+    SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
+    SKG_TRY(get_files(attenuator, &key, &option, &program));
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT_WITH(WEIGHTS, args, is_double, args, rounded),
+        SKG_ARGUMENT(WEIGHTS, copies, raster->sums.memory),
+        SKG_ARGUMENT(WEIGHTS, used, raster->used.memory),
+        SKG_ARGUMENT(WEIGHTS, coefficients, mean.coefficients.memory),
+        SKG_ARGUMENT(WEIGHTS, weights_of_nodes, mean.weights.memory),
+        SKG_ARGUMENT(WEIGHTS, lists, sums->lists),
+        SKG_ARGUMENT(WEIGHTS, polynomials, mean.polynomials.memory),
+        SKG_ARGUMENT(WEIGHTS, tables, mean.tables.memory),
+        SKG_ARGUMENT(WEIGHTS, adjoint, adjoint),
+        SKG_ARGUMENT(WEIGHTS, weights, weights),
+    };
+    const skg_work_size work = work_of(sums, key.options.precision);
+    return SKG_LAUNCH_ONCE(raster->context, program, "skg_weights", "weights", &work, arguments, log);
 }
 
 skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *sums,

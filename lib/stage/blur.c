@@ -232,3 +232,66 @@ skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_i
     args.add = image->add;
     return run_across(blur, type, &args, lanes, image->memory, log);
 }
+
+/* Adds the image of a source pixel's weight to where its value came from. The values of a pixel were sums over rows from `row` and
+ * columns from `column` on, clamped to the image. */
+static void add_taps(const skg_blur *blur, int64_t columns, int64_t rows, int64_t row, int64_t column,
+                     double value, double *to) {
+    for (int64_t j = 0; j < blur->rows; j++) {
+        const int64_t down = row + j - blur->rows / 2;
+        double *at = to + (down < 0 ? 0 : down < rows ? down : rows - 1) * columns;
+        for (int64_t i = 0; i < blur->columns; i++) {
+            const int64_t across = column + i - blur->columns / 2;
+            at[across < 0         ? 0
+               : across < columns ? across
+                                  : columns - 1] += value * blur->across[j * blur->columns + i];
+        }
+    }
+}
+
+/* One direction of a separable blur: `count` lines, whose elements are `step` apart. */
+static void add_lines(int64_t taps, const double *weights, int64_t lines, int64_t next, int64_t count,
+                      int64_t step, const double *from, double *to) {
+    for (int64_t l = 0; l < lines; l++)
+        for (int64_t p = 0; p < count; p++) {
+            const double value = from[l * next + p * step];
+            for (int64_t k = 0; k < taps && value != 0; k++) {
+                const int64_t at = p + k - taps / 2;
+                to[l * next + (at < 0 ? 0 : at < count ? at : count - 1) * step] += value * weights[k];
+            }
+        }
+}
+
+skg_status skg_blur_transpose(const skg_blur *blur, int64_t columns, int64_t rows, const double *from,
+                              double *to) {
+    double *half = NULL;
+    if (!blur->separable) {
+        for (int64_t r = 0; r < rows; r++)
+            for (int64_t c = 0; c < columns; c++)
+                if (from[r * columns + c] != 0)
+                    add_taps(blur, columns, rows, r, c, from[r * columns + c], to);
+        return SKG_OK;
+    }
+    SKG_TRY(skg_alloc(rows * columns, sizeof *half, "blur", &half));
+    add_lines(blur->columns, blur->across, rows, columns, columns, 1, from, half);
+    add_lines(blur->rows, blur->down, columns, 1, rows, columns, half, to);
+    skg_free(&half);
+    return SKG_OK;
+}
+
+void skg_blur_apply(const skg_blur *blur, int64_t columns, int64_t rows, const double *from, double *to) {
+    const int64_t down = blur->rows, across = blur->columns;
+    for (int64_t r = 0; r < rows; r++)
+        for (int64_t c = 0; c < columns; c++)
+            for (int64_t j = 0; j < down; j++) {
+                const int64_t row = r + j - down / 2;
+                const double *line = from + (row < 0 ? 0 : row < rows ? row : rows - 1) * columns;
+                const double *weights = blur->across + (blur->separable ? 0 : j * across);
+                double sum = 0;
+                for (int64_t i = 0; i < across; i++) {
+                    const int64_t column = c + i - across / 2;
+                    sum += weights[i] * line[column < 0 ? 0 : column < columns ? column : columns - 1];
+                }
+                to[r * columns + c] += (blur->separable ? blur->down[j] : 1) * sum;
+            }
+}

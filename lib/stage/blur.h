@@ -19,6 +19,14 @@ void skg_blur_release(skg_blur **blur);
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
                         int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
 
+/* The transpose of the blur of one image, on the host in double precision: adds to `to`, [rows][columns]. A pixel on the border
+ * takes what belongs to the pixels beyond it. */
+skg_status skg_blur_transpose(const skg_blur *blur, int64_t columns, int64_t rows, const double *from,
+                              double *to);
+
+/* The blur of one image on the host in double precision: adds to `to`. */
+void skg_blur_apply(const skg_blur *blur, int64_t columns, int64_t rows, const double *from, double *to);
+
 /* From how many samples a pixel is summed. */
 int64_t skg_blur_samples(const skg_blur *blur);
 

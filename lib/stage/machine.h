@@ -7,6 +7,7 @@
 #include "stage/attenuate.h"
 #include "stage/detect.h"
 #include "stage/flat_field.h"
+#include "stage/gradient.h"
 #include "stage/hits.h"
 #include "stage/layers.h"
 #include "stage/leaky.h"
@@ -26,6 +27,7 @@ typedef struct {
     skg_mix_lists mix_lists;
     skg_leaky_memory leaky;
     skg_hits_memory hits;
+    skg_gradient_memory gradient;
     skg_buffer image; /* on its way to the host */
     skg_buffer
         negative; /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */

@@ -15,6 +15,7 @@ the library is an Error, with a subclass for each status.
 """
 from typing import Any as _Any
 
+from . import torch
 from ._device import Device, RangeWarning, SkiagraphWarning, devices
 from ._distance import distance
 from ._fit import fit
@@ -35,7 +36,7 @@ from .view import View
 
 __version__ = _text(_lib.skg_version())
 __all__ = [*_errors, "Beam", "Device", "LabelError", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scan", "Scene",
-           "SkiagraphWarning", "View", "devices", "distance", "element_number", "fit", "materials", "reconstruct", "rotate", "thorax", "translate"]
+           "SkiagraphWarning", "View", "devices", "distance", "element_number", "fit", "materials", "reconstruct", "rotate", "thorax", "torch", "translate"]
 
 
 def __getattr__(name: str) -> _Any:

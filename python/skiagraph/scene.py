@@ -10,7 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _edit, _images, _look, _pickle, _projections, _save, _scatter, _show, _source
+from . import _arrays, _command, _edit, _gradient, _images, _look, _pickle, _projections, _save, _scatter, _show, _source
 from ._device import Device
 from ._frames import Batch
 from ._interface import ArgumentError, SceneError
@@ -27,7 +27,7 @@ from .scan import Scan
 from .view import View
 
 
-class Scene:
+class Scene(_gradient.Differentiable):
     """Parts in the world, a source, a detector and a beam.
 
     scene: the path of a scene file; a dictionary with the same keys, of which any may be missing; None: nothing yet.

@@ -31,9 +31,10 @@ typedef struct {
     int32_t spot;   /* samples of the source; with strategy copies, for each worker */
     int32_t shades; /* heel, bow-tie, grid and an oblique scintillator */
     double electronic, step, tolerance;
-    int32_t picture; /* draws the 3D view instead of an image */
-    int32_t scatter; /* histories */
-    int32_t placed;  /* the positions of the ball are taken from device memory */
+    int32_t picture;  /* draws the 3D view instead of an image */
+    int32_t scatter;  /* histories */
+    int32_t gradient; /* makes the gradient of an image, too */
+    int32_t placed;   /* the positions of the ball are taken from device memory */
 } group;
 
 enum { BLUR_LINES = 1, BLUR_POINT = 2 };
@@ -77,6 +78,12 @@ static const group groups[] = {
     {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1},
     {.name = "scatter", .scatter = 32, .colours = 1, .noise = 1},
     {.name = "double_scatter", .precision = SKG_PRECISION_DOUBLE, .scatter = 32, .parallel = 1},
+    {.name = "gradient", .priority = 2, .colours = 1, .gradient = 1},
+    {.name = "double_gradient",
+     .precision = SKG_PRECISION_DOUBLE,
+     .gradient = 1,
+     .parallel = 1,
+     .supersampling = 2},
     {.name = "show", .picture = 1},
     {.name = "place", .placed = 1},
     {.name = "double_place", .precision = SKG_PRECISION_DOUBLE, .placed = 1}};
@@ -239,6 +246,36 @@ static int draw_picture(skg_context *context, const skg_scene *scene, const skg_
     return 1;
 }
 
+/* The gradient of the sum of an image: whatever moves with everything else changes nothing. */
+static int makes_gradient(skg_plan *plan, const group *g) {
+    static double adjoint[PIXELS];
+    double poses[12], source[3], detector[6], densities[2];
+    skg_adjoint given;
+    skg_gradient gradient;
+    skg_adjoint_init(&given);
+    skg_gradient_init(&gradient);
+    for (int p = 0; p < PIXELS; p++) adjoint[p] = 1;
+    given.channels = 1, given.rows = ROWS, given.columns = COLUMNS, given.data = adjoint;
+    gradient.poses = poses, gradient.source = source, gradient.detector = detector;
+    gradient.densities = densities;
+    TRY(skg_plan_gradient(plan, NULL, &given, &gradient));
+    double along[PIXELS], twists[12] = {1}, sum = 0;
+    skg_direction direction;
+    skg_direction_init(&direction);
+    direction.poses = twists;
+    TRY(skg_plan_derivative(plan, NULL, &direction, along, NULL));
+    for (int p = 0; p < PIXELS; p++) sum += along[p];
+    /* The same hits, added up in another order in single precision. The sides of a box that contain rays count in one alone. */
+    const double error = 1e-4 * (fabs(sum) + fabs(source[0]));
+    if (!g->parallel && !(fabs(sum - poses[0]) <= error)) return 0;
+    for (int k = 0; k < 3; k++) {
+        const double size = fabs(poses[k]) + fabs(poses[6 + k]) + fabs(source[k]) + fabs(detector[k]);
+        /* Single precision: each of some dozen faces is known to 1e-6 of its place in the picture. */
+        if (!(fabs(poses[k] + poses[6 + k] + source[k] + detector[k]) <= 1e-4 * size + 1e-9)) return 0;
+    }
+    return densities[0] < 0 && densities[1] < 0;
+}
+
 int main(int count, char **words) {
     static float image[2 * PIXELS];
     const group *g = find(count == 2 ? words[1] : "");
@@ -262,8 +299,9 @@ int main(int count, char **words) {
     const double most = g->quantity == SKG_QUANTITY_ATTENUATION ? 104 : 2 * 10500;
     const int good =
         lies_between(image, g->bands ? g->bands * PIXELS : PIXELS, g->noise ? -100 : -1e-3, most);
+    const int also_good = !g->gradient || makes_gradient(plan, g);
     skg_plan_release(&plan);
     skg_scene_release(&scene);
     skg_context_release(&context);
-    return good ? EXIT_SUCCESS : EXIT_FAILURE;
+    return good && also_good ? EXIT_SUCCESS : EXIT_FAILURE;
 }

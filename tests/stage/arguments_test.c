@@ -54,6 +54,8 @@ static const struct {
      "-D SKG_NOISE=1 -D SKG_PLANES=5 -D SKG_SHADES=4 -D SKG_HEEL=1 -D SKG_OBLIQUE=1 -D SKG_BOWTIE=1 -D SKG_GRID=1 " NAMES,
      0},
     {{"exponential.clh", "planes.clh", "attenuate.cl"}, NAMES, 0},
+    {{"exponential.clh", "planes.clh", "attenuate.cl", "weights.cl"}, NAMES, 0},
+    {{"pixel.clh", "hits.cl", "slopes.cl", "gradient.cl"}, "-D SKG_PRIORITY=1 " NAMES, 0},
     {{"blur.cl"}, NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1 " NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "sight.clh", "strips.clh", "scatter.cl"},

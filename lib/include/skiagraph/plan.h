@@ -6,6 +6,7 @@
 #define SKIAGRAPH_PLAN_H
 
 #include <skiagraph/frame.h>
+#include <skiagraph/gradient.h>
 #include <skiagraph/options.h>
 #include <skiagraph/report.h>
 #include <skiagraph/scatter_series.h>

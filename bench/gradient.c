@@ -1,0 +1,182 @@
+/* What a gradient costs: the thorax with a material for each organ, the image alone against image and gradient, alternately. */
+#include "common/bench.h"
+#include "common/thorax.h"
+
+#include "affinity/affinity.h"
+
+#include <stdlib.h>
+
+static const char usage[] =
+    "[--quick] [--size N] [--triangles N] [--repeats N] [--tolerance 0|1] [--device CONFIG] [--affinity] [--csv FILE]";
+
+enum { MATERIALS = 16 };
+static const char *const materials[MATERIALS] = {"Tissue, Soft (ICRU-44)",
+                                                 "Lung Tissue (ICRU-44)",
+                                                 "Bone, Cortical (ICRU-44)",
+                                                 "Liver (ICRU-46 adult)",
+                                                 "Kidney (ICRU-46 adult)",
+                                                 "Muscle, Skeletal (ICRU-44)",
+                                                 "Pancreas (ICRU-46 adult)",
+                                                 "Skin (ICRU-46 adult)",
+                                                 "Spleen (ICRU-46 adult)",
+                                                 "Breast Tissue (ICRU-44)",
+                                                 "Water, Liquid",
+                                                 "Stainless steel 304 (needle)",
+                                                 "PEEK",
+                                                 "ABS",
+                                                 "Graphite",
+                                                 "Eye Lens (ICRU-44)"};
+
+typedef struct {
+    long size, triangles, repeats, tolerance;
+    int affinity;
+    const char *device, *csv;
+} settings;
+
+static void read_settings(int count, char **words, settings *out) {
+    bench_arguments arguments = {count, words, 1};
+    const char *value = NULL;
+    *out = (settings){.size = 512, .triangles = 100000, .repeats = 30, .tolerance = 1};
+    while (arguments.next < arguments.count) {
+        if (bench_flag(&arguments, "--quick"))
+            out->repeats = 10;
+        else if (bench_flag(&arguments, "--affinity"))
+            out->affinity = 1;
+        else if (bench_option(&arguments, "--size", &value))
+            bench_numbers(value, 16, 8192, 1, &out->size);
+        else if (bench_option(&arguments, "--triangles", &value))
+            bench_numbers(value, 1000, 10000000, 1, &out->triangles);
+        else if (bench_option(&arguments, "--repeats", &value))
+            bench_numbers(value, 5, BENCH_SAMPLES, 1, &out->repeats);
+        else if (bench_option(&arguments, "--tolerance", &value))
+            bench_numbers(value, 0, 1, 1, &out->tolerance);
+        else if (!bench_option(&arguments, "--device", &out->device) &&
+                 !bench_option(&arguments, "--csv", &out->csv))
+            bench_usage(&arguments, usage);
+    }
+}
+
+/* One contender: an image, and what else of it. */
+typedef struct {
+    skg_plan *plan;
+    skg_output output;
+    skg_adjoint adjoint;
+    skg_gradient gradient;
+    int wants; /* 0: the image alone; 1, 2: its gradient; 3: its derivative along a direction */
+    skg_direction direction;
+    double *derivative;
+} contender;
+
+static void frame(void *who) {
+    contender *self = who;
+    bench_try(skg_plan_image(self->plan, &self->output), "image");
+    if (self->wants == 3)
+        bench_try(skg_plan_derivative(self->plan, NULL, &self->direction, self->derivative, NULL),
+                  "derivative");
+    else if (self->wants)
+        bench_try(skg_plan_gradient(self->plan, NULL, &self->adjoint, &self->gradient), "gradient");
+}
+
+/* Gives every part a material of its own, as far as there are any. */
+static void set_materials(skg_scene *scene, int64_t parts) {
+    for (int64_t p = 0; p < parts; p++) {
+        skg_material *material = NULL;
+        bench_try(skg_material_create_named(materials[p % MATERIALS], &material), "material");
+        bench_try(skg_scene_part_material_set(scene, p, material), "material");
+        skg_material_release(&material);
+    }
+}
+
+static skg_plan *make_plan(skg_context *context, skg_scene *scene, const settings *set) {
+    skg_plan_options options;
+    skg_view view;
+    skg_spectrum *beam = thorax_beam();
+    skg_plan *plan = NULL;
+    thorax_view(set->size, &view);
+    skg_plan_options_init(&options);
+    options.overlaps = 0;
+    options.tolerance = set->tolerance ? 1e-4 : 0;
+    bench_try(skg_plan_create(context, scene, &view, beam, &options, &plan), "plan");
+    skg_spectrum_release(&beam);
+    return plan;
+}
+
+/* Memory for the vertices of all parts. */
+static double **make_vertices(const bench_thorax *thorax) {
+    double **vertices = bench_alloc((size_t)thorax->parts, sizeof *vertices);
+    for (int64_t p = 0; p < thorax->parts; p++) {
+        int64_t count = 0, triangles = 0;
+        bench_try(skg_mesh_count(thorax->meshes[p], &count, &triangles), "mesh");
+        vertices[p] = bench_alloc((size_t)(3 * count), sizeof **vertices);
+    }
+    return vertices;
+}
+
+static void compare(const settings *set, const bench_thorax *thorax, skg_plan *plan, FILE *csv) {
+    static const char *const names[4] = {"image", "image, poses, source, detector",
+                                         "the same and all vertices", "image, along a pose"};
+    double *adjoint = bench_alloc((size_t)(set->size * set->size), sizeof *adjoint), view[9];
+    double *derivative = bench_alloc((size_t)(set->size * set->size), sizeof *derivative);
+    double *twists = bench_alloc((size_t)(6 * thorax->parts), sizeof *twists);
+    double **vertices = make_vertices(thorax);
+    contender all[4] = {0};
+    bench_times times[4] = {0};
+    const bench_frame frames[4] = {frame, frame, frame, frame};
+    void *who[4];
+    for (long p = 0; p < set->size * set->size; p++) adjoint[p] = 1e-6 * (double)(p % 7 - 3);
+    twists[0] = 1;
+    for (int k = 0; k < 4; k++) {
+        contender *c = &all[k];
+        who[k] = c;
+        c->plan = plan, c->wants = k;
+        skg_output_init(&c->output);
+        c->output.data = bench_alloc((size_t)(set->size * set->size), sizeof(float));
+        skg_adjoint_init(&c->adjoint);
+        c->adjoint.channels = 1, c->adjoint.rows = c->adjoint.columns = set->size, c->adjoint.data = adjoint;
+        skg_gradient_init(&c->gradient);
+        c->gradient.poses = bench_alloc((size_t)(6 * thorax->parts), sizeof(double));
+        c->gradient.source = view, c->gradient.detector = view + 3;
+        if (k == 2) c->gradient.vertices = vertices;
+        skg_direction_init(&c->direction);
+        c->direction.poses = twists;
+        c->derivative = derivative;
+    }
+    bench_interleave(4, frames, who, (int)(set->repeats + 4) / 5, 5, times);
+    printf("| what | minimum, ms | median, ms | images |\n|---|---:|---:|---:|\n");
+    if (csv) fprintf(csv, "what,min_ms,median_ms,images\n");
+    for (int k = 0; k < 4; k++) {
+        const double least = bench_least(&times[k]), images = least / bench_least(&times[0]);
+        printf("| %s | %.4g | %.4g | %.2f |\n", names[k], least, bench_median(&times[k]), images);
+        if (csv) fprintf(csv, "\"%s\",%.5g,%.5g,%.3f\n", names[k], least, bench_median(&times[k]), images);
+        free(all[k].output.data);
+        free(all[k].gradient.poses);
+    }
+    for (int64_t p = 0; p < thorax->parts; p++) free(vertices[p]);
+    free(vertices);
+    free(twists);
+    free(derivative);
+    free(adjoint);
+}
+
+int main(int count, char **words) {
+    settings set;
+    bench_thorax thorax;
+    read_settings(count, words, &set);
+    if (set.affinity) host_pin_threads();
+    skg_context *context = bench_context(set.device);
+    FILE *csv = set.csv ? bench_open(set.csv) : NULL;
+    thorax_make(set.triangles, THORAX_CLOSED, &thorax);
+    skg_scene *scene = thorax_scene(context, &thorax);
+    set_materials(scene, thorax.parts);
+    skg_plan *plan = make_plan(context, scene, &set);
+    printf("Thorax of %lld parts, %lld triangles; detector %ld x %ld; tolerance %s.\n\n",
+           (long long)thorax.parts, (long long)thorax.triangles, set.size, set.size,
+           set.tolerance ? "1e-4" : "0 (every energy)");
+    compare(&set, &thorax, plan, csv);
+    if (csv && fclose(csv) != 0) bench_die("%s could not be written", set.csv);
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+    thorax_free(&thorax);
+    skg_context_release(&context);
+    return 0;
+}

@@ -1,0 +1,151 @@
+#include "frame/adjoint.h"
+
+#include "plan/decide.h"
+#include "spectral/quantity.h"
+
+#include <inttypes.h>
+#include <math.h>
+
+void skg_adjoint_init_sized(void *adjoint, int32_t size) {
+    const skg_adjoint defaults = {.type = SKG_TYPE_FLOAT64};
+    skg_struct_init(adjoint, size, &defaults, sizeof defaults);
+}
+
+static skg_status check(const char *call, const skg_recipe *recipe, const skg_adjoint *a) {
+    const skg_view *view = &recipe->view;
+    if (a->channels != recipe->model.channels || a->rows != view->rows || a->columns != view->columns)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: the adjoint has %" PRId64 " channels of %" PRId64 " x %" PRId64
+                        " (rows x columns), the image %" PRId32 " of %" PRId64 " x %" PRId64,
+                        call, a->channels, a->rows, a->columns, recipe->model.channels, view->rows,
+                        view->columns);
+    if (a->type != SKG_TYPE_FLOAT32 && a->type != SKG_TYPE_FLOAT64)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: an adjoint of type %" PRId32 "; SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64", call,
+                        a->type);
+    if (!a->buffer && !a->data)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: the adjoint has no memory: its data is NULL", call);
+    return SKG_OK;
+}
+
+/* Reads the adjoint from a buffer of the caller. */
+static skg_status read_buffer(const char *call, const skg_plan *plan, const skg_adjoint *a, int64_t bytes,
+                              void *to) {
+    int64_t size = 0;
+    SKG_TRY(skg_caller_buffer_check(call, plan->context, a->buffer, &size));
+    if (a->offset < 0 || a->offset > size || bytes > size - a->offset)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: the adjoint ends at byte %" PRId64 ", its buffer at %" PRId64,
+                        call, a->offset + bytes, size);
+    SKG_CL_TRY(clEnqueueReadBuffer(plan->context->device->queue, a->buffer, CL_TRUE, (size_t)a->offset,
+                                   (size_t)bytes, to, 0, NULL, NULL));
+    return SKG_OK;
+}
+
+/* Where the first value that is not finite stands. */
+static skg_status check_finite(const char *call, const skg_adjoint *a, const double *values) {
+    for (int64_t i = 0; i < a->channels * a->rows * a->columns; i++)
+        if (!isfinite(values[i]))
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "%s: the adjoint is %g in channel %" PRId64 ", row %" PRId64 ", column %" PRId64
+                            "; it has to be finite",
+                            call, values[i], i / (a->rows * a->columns), i / a->columns % a->rows,
+                            i % a->columns);
+    return SKG_OK;
+}
+
+skg_status skg_adjoint_read(const char *call, const skg_plan *plan, const skg_adjoint *adjoint,
+                            double **values) {
+    skg_adjoint ours;
+    void *raw = NULL;
+    skg_status status = SKG_OK;
+    skg_adjoint_init(&ours);
+    SKG_TRY(skg_struct_read(adjoint, "skg_adjoint", &ours, sizeof ours));
+    SKG_TRY(check(call, plan->recipe, &ours));
+    const int64_t count = ours.channels * ours.rows * ours.columns;
+    const int is_double = ours.type == SKG_TYPE_FLOAT64;
+    const int64_t bytes = count * (int64_t)(is_double ? sizeof(double) : sizeof(float));
+    const void *from = ours.data;
+    SKG_TRY(skg_alloc(count, sizeof **values, "adjoint", values));
+    if (ours.buffer) {
+        SKG_TRY_CLEANUP(skg_alloc(bytes, 1, "adjoint", &raw));
+        SKG_TRY_CLEANUP(read_buffer(call, plan, &ours, bytes, raw));
+        from = raw;
+    }
+    for (int64_t i = 0; i < count; i++)
+        (*values)[i] = is_double ? ((const double *)from)[i] : (double)((const float *)from)[i];
+    status = check_finite(call, &ours, *values);
+cleanup:
+    skg_free(&raw);
+    if (status != SKG_OK) skg_free(values);
+    return status;
+}
+
+int skg_adjoint_needs_image(const skg_plan *plan) {
+    return skg_decide_late_logarithm(plan->recipe);
+}
+
+/* The transpose of -ln: d(-ln T) / dT = -1 / T = -exp(image). Below the smallest T that is shown the image is constant. */
+static void undo_logarithm(int64_t count, const double *image, double *values) {
+    const double highest = 126 * 0.69314718055994531 * (1 - 1e-6);
+    for (int64_t i = 0; i < count; i++) values[i] = image[i] < highest ? -values[i] * exp(image[i]) : 0;
+}
+
+/* The transpose of the factors of the stage `detect`. */
+static skg_status undo_detection(const skg_plan *plan, const skg_view *view, double *values) {
+    const skg_recipe *recipe = plan->recipe;
+    const int64_t size = view->rows * view->columns;
+    double factors[SKG_CHANNELS_MAX];
+    int32_t wanted = 0;
+    skg_detection detection;
+    skg_camera camera;
+    if (!plan->machine.detector) return SKG_OK;
+    SKG_TRY(skg_decide_detection(recipe, &detection, factors, &wanted));
+    SKG_TRY(skg_camera_make(view, NULL, 0, 0, &camera));
+    double frame = recipe->options.quantity == SKG_QUANTITY_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
+    if (skg_quantity_is_ratio(&recipe->options)) frame /= skg_recipe_exposure(recipe, view);
+    for (int64_t i = 0; i < detection.channels * size; i++) values[i] *= factors[i / size] * frame;
+    return SKG_OK;
+}
+
+/* The transposes of the blurs of all layers; noise, which may have a layer of its own, is left out. */
+static skg_status undo_blurs(const skg_plan *plan, double **values) {
+    const skg_recipe *recipe = plan->recipe;
+    const skg_layers *layers = &plan->machine.layers;
+    const int64_t columns = recipe->view.columns, rows = recipe->view.rows;
+    const int64_t channels = recipe->model.channels, count = recipe->model.layers;
+    double *spread = NULL;
+    skg_status status = SKG_OK;
+    if (layers->count == 0) return SKG_OK;
+    SKG_TRY(skg_alloc(count * channels * rows * columns, sizeof *spread, "adjoint", &spread));
+    for (int64_t l = 0; l < count && status == SKG_OK; l++)
+        for (int64_t c = 0; c < channels && status == SKG_OK; c++)
+            status = skg_blur_transpose(layers->blurs[l], columns, rows, *values + c * rows * columns,
+                                        spread + (l * channels + c) * rows * columns);
+    skg_free(values);
+    *values = spread;
+    return status;
+}
+
+skg_status skg_derivative_of_image(const skg_plan *plan, const skg_view *view, const double *image,
+                                   double **values) {
+    const skg_recipe *recipe = plan->recipe;
+    const skg_layers *layers = &plan->machine.layers;
+    const int64_t columns = view->columns, size = view->rows * columns, channels = recipe->model.channels;
+    double *blurred = NULL;
+    for (int64_t c = 0; c < channels && layers->count > 0; c++) {
+        if (!blurred) SKG_TRY(skg_alloc(channels * size, sizeof *blurred, "derivative", &blurred));
+        skg_blur_apply(layers->blurs[0], columns, view->rows, *values + c * size, blurred + c * size);
+    }
+    if (blurred) skg_free(values), *values = blurred;
+    SKG_TRY(undo_detection(plan, view, *values));
+    if (image) undo_logarithm(channels * size, image, *values);
+    return SKG_OK;
+}
+
+skg_status skg_adjoint_of_intensities(const skg_plan *plan, const skg_view *view, const double *image,
+                                      double **values) {
+    const int64_t count = plan->recipe->model.channels * view->rows * view->columns;
+    if (image) undo_logarithm(count, image, *values);
+    SKG_TRY(undo_detection(plan, view, *values));
+    return undo_blurs(plan, values);
+}

@@ -1,0 +1,28 @@
+/* From d loss / d image to d loss / d intensities: the transpose of what the detector does. Private. */
+#ifndef SKG_FRAME_ADJOINT_H
+#define SKG_FRAME_ADJOINT_H
+
+#include "frame/plan.h"
+
+#include <skiagraph/gradient.h>
+
+/* Reads the caller's adjoint, [channels][rows][columns], checked; the caller frees it. call: the name of the public function. */
+skg_status skg_adjoint_read(const char *call, const skg_plan *plan, const skg_adjoint *adjoint,
+                            double **values);
+
+/* Turns it into derivatives by the intensities that the stage `attenuate` writes, [layers][channels][rows][columns].
+ *
+ * values    replaced
+ * image     [channels][rows][columns] as shown; NULL unless skg_adjoint_needs_image
+ * view      of the frame */
+skg_status skg_adjoint_of_intensities(const skg_plan *plan, const skg_view *view, const double *image,
+                                      double **values);
+
+/* Turns derivatives of the intensities of one layer along a direction into those of the image, [channels][rows][columns]. */
+skg_status skg_derivative_of_image(const skg_plan *plan, const skg_view *view, const double *image,
+                                   double **values);
+
+/* Whether the image itself is needed: where a logarithm is taken of what is finished. */
+int skg_adjoint_needs_image(const skg_plan *plan);
+
+#endif

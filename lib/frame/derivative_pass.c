@@ -1,0 +1,157 @@
+#include "frame/derivative_pass.h"
+
+#include "core/vector.h"
+#include "frame/gradient_pass.h"
+#include "geometry/slopes.h"
+#include "spectral/quantity.h"
+
+#include <string.h>
+
+/* The velocity of a sample of the source: by differences, as in gradient_pass.c. */
+static void find_source(const skg_recipe *recipe, const skg_view *view, int64_t number,
+                        const skg_direction *direction, double velocity[3]) {
+    static const double none[3] = {0};
+    const skg_samples *samples = &recipe->samples;
+    const double *source = direction->source ? direction->source : none;
+    const int is_point = number < 0 || samples->spot.shape == SKG_SPOT_POINT;
+    double size = 0, ends[2][3], shift[2];
+    memcpy(velocity, source, 3 * sizeof *source);
+    if (is_point) return;
+    for (int k = 0; k < 3; k++) {
+        size += fabs(source[k]);
+        if (direction->detector)
+            size += fabs(direction->detector[k]) + 1000 * fabs(direction->detector[3 + k]);
+    }
+    if (!(size > 0)) return;
+    const double step = 1e-2 / size;
+    for (int side = 0; side < 2; side++) {
+        skg_view moved = *view;
+        double turned[3];
+        skg_add_scaled(view->source, side ? -step : step, source, moved.source);
+        if (direction->detector) {
+            const double *from[3] = {view->centre, view->column_step, view->row_step};
+            double *to[3] = {moved.centre, moved.column_step, moved.row_step};
+            for (int v = 0; v < 3; v++) {
+                skg_cross(direction->detector + 3, from[v], turned);
+                for (int k = 0; k < 3; k++)
+                    to[v][k] += (side ? -step : step) * (turned[k] + (v == 0 ? direction->detector[k] : 0));
+            }
+        }
+        skg_samples_at(samples, &moved, number * samples->fine * samples->fine, ends[side], shift);
+    }
+    for (int k = 0; k < 3; k++) velocity[k] = (ends[0][k] - ends[1][k]) / (2 * step);
+}
+
+/* The velocity of the direction of a parallel beam. */
+static void find_beam(const skg_view *view, const skg_camera *camera, const skg_direction *direction,
+                      skg_velocities *v) {
+    const double *d = camera->first;
+    const int infinite = view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY;
+    const double ratio = infinite ? skg_length(d) / skg_length(view->source) : -1;
+    double moves[3] = {0}, turned[3];
+    for (int k = 0; k < 3 && direction->source; k++) moves[k] = ratio * direction->source[k];
+    if (!infinite && direction->detector) {
+        skg_cross(direction->detector + 3, view->centre, turned);
+        for (int k = 0; k < 3; k++) moves[k] += direction->detector[k] + turned[k];
+    }
+    skg_add_scaled(moves, -skg_dot(moves, d) / skg_dot(d, d), d, v->beam);
+}
+
+/* The slopes of the faces of all parts. */
+static skg_status find_slopes(skg_job *job, const skg_pass *pass, const skg_velocities *of_view,
+                              double *slopes) {
+    const skg_geometry *geometry = &job->machine->geometry;
+    const skg_direction *direction = &job->gradient->direction;
+    for (int64_t p = 0, first = 0; p < pass->scene->count; p++) {
+        const int64_t mesh = geometry->mesh_of_part[p];
+        const double reference = pass->parts[p].reference;
+        skg_velocities v = *of_view;
+        skg_face_moments faces = {.camera = &pass->camera,
+                                  .mesh = job->recipe->meshes.meshes[mesh],
+                                  .pose = pass->parts[p].pose,
+                                  .source = geometry->layouts[mesh].source};
+        if (direction->poses) memcpy(v.pose, direction->poses + 6 * p, sizeof v.pose);
+        if (direction->vertices) v.vertices = direction->vertices[p];
+        SKG_TRY(skg_gradient_find_corners(job, mesh, &faces.corners));
+        skg_slopes_find(&faces, &v, pass->camera.parallel || !(reference > 0) ? 1 : reference,
+                        slopes + 3 * first);
+        first += geometry->layouts[mesh].triangles;
+    }
+    return SKG_OK;
+}
+
+/* What changes besides the lengths: those of whole rays, the falloff, and the photons of an absolute beam. */
+static skg_status add_rays(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
+                           const skg_velocities *v, double *values) {
+    const skg_recipe *recipe = job->recipe;
+    const skg_camera *camera = &pass->camera;
+    const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
+    const int falls = job->machine->images.falloff;
+    static const double none[3] = {0};
+    double *rays = NULL, all = 0, way[3];
+    if (camera->parallel) return SKG_OK;
+    skg_add_scaled(work->view->centre, -1, work->view->source, way);
+    if (falls) all += 3 * skg_slope_of_distance(camera, v, camera->origin, camera->first, v->source);
+    if (recipe->absolute && !skg_quantity_is_ratio(&recipe->options))
+        all -= 2 * skg_slope_of_distance(camera, v, work->view->source, way,
+                                         job->gradient->direction.source ? job->gradient->direction.source
+                                                                         : none);
+    SKG_TRY(skg_alloc(2 * layout.plane, sizeof *rays, "derivative", &rays));
+    const skg_status status = skg_gradient_read(pass, job->machine->gradient.weights.memory,
+                                                layout.planes * layout.plane, 2 * layout.plane, rays);
+    for (int64_t r = 0; r < camera->rows && status == SKG_OK; r++)
+        for (int64_t c = 0; c < camera->columns; c++) {
+            const double *at = rays + r * layout.stride + c;
+            double ray[3];
+            for (int k = 0; k < 3; k++)
+                ray[k] = camera->first[k] + (double)c * camera->column[k] + (double)r * camera->row[k];
+            values[r * camera->columns + c] +=
+                (at[0] - (falls ? 3 : 0) * at[layout.plane]) * skg_slope_of_ray(camera, v, ray) +
+                all * at[layout.plane];
+        }
+    skg_free(&rays);
+    return status;
+}
+
+/* One channel of the intensities: the adjoint is 1 there, so that the weights of a ray are its own slopes. */
+static skg_status add_channel(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
+                              const skg_velocities *v, int64_t channel, double *slopes, double *values) {
+    struct skg_gradient_work *gradient = job->gradient;
+    skg_machine *machine = job->machine;
+    const int64_t columns = pass->camera.columns, rows = pass->camera.rows, fine = pass->fine;
+    double *image = gradient->derivative + channel * (rows / fine) * (columns / fine);
+    SKG_TRY(skg_gradient_scatter(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
+                                 slopes, values, &gradient->saturated));
+    if (gradient->direction.source || gradient->direction.detector)
+        SKG_TRY(add_rays(job, work, pass, v, values));
+    for (int64_t r = 0; r < rows; r++)
+        for (int64_t c = 0; c < columns; c++)
+            image[r / fine * (columns / fine) + c / fine] += values[r * columns + c];
+    return SKG_OK;
+}
+
+skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
+                                   const skg_pass *pass, const skg_sums *sums, double factor) {
+    struct skg_gradient_work *gradient = job->gradient;
+    const skg_direction *direction = &gradient->direction;
+    const int64_t size = job->recipe->view.rows * job->recipe->view.columns;
+    double *slopes = NULL, *values = NULL;
+    skg_velocities v = {.vertices = NULL};
+    skg_status status = SKG_OK;
+    find_source(job->recipe, work->view, number, direction, v.source);
+    if (direction->detector) memcpy(v.detector, direction->detector, sizeof v.detector);
+    if (pass->camera.parallel) find_beam(work->view, &pass->camera, direction, &v);
+    SKG_TRY_CLEANUP(skg_alloc(3 * job->machine->geometry.triangles, sizeof *slopes, "derivative", &slopes));
+    SKG_TRY_CLEANUP(
+        skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *values, "derivative", &values));
+    SKG_TRY_CLEANUP(find_slopes(job, pass, &v, slopes));
+    for (int64_t c = 0; c < job->recipe->model.channels; c++) {
+        for (int64_t p = 0; p < job->recipe->model.channels * size; p++) gradient->adjoint[p] = p / size == c;
+        SKG_TRY_CLEANUP(skg_gradient_weigh(job, pass, sums, factor, 0));
+        SKG_TRY_CLEANUP(add_channel(job, work, pass, &v, c, slopes, values));
+    }
+cleanup:
+    skg_free(&slopes);
+    skg_free(&values);
+    return status;
+}

@@ -1,0 +1,16 @@
+/* Derivatives by the densities of parts. Private. */
+#ifndef SKG_GRADIENT_DENSITY_H
+#define SKG_GRADIENT_DENSITY_H
+
+#include "frame/gradient_work.h"
+
+/* Reads the derivatives by the mm of the planes, which machine->gradient.weights holds. */
+skg_status skg_gradient_keep_planes(skg_job *job, const skg_pass *pass);
+
+/* Where the path lengths along all rays of a pass go, for the derivative by a density. */
+skg_status skg_gradient_place_lengths(skg_job *job, const skg_pass *pass, skg_image_place *place);
+
+/* Adds the share of a part's density in a pass, from its path lengths; waits for them. */
+skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t part);
+
+#endif

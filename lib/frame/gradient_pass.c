@@ -1,0 +1,306 @@
+#include "frame/gradient_pass.h"
+
+#include "core/vector.h"
+#include "frame/gradient_density.h"
+#include "spectral/quantity.h"
+
+#include <string.h>
+
+/* Uploads d loss / d intensities in the precision of the raster. */
+static skg_status send_adjoint(skg_job *job, const struct skg_gradient_work *work) {
+    const skg_recipe *recipe = job->recipe;
+    skg_machine *machine = job->machine;
+    const int64_t count = skg_model_sums(&recipe->model) * recipe->view.rows * recipe->view.columns;
+    float *rounded = NULL;
+    if (skg_recipe_kernel_precision(recipe) == SKG_PRECISION_DOUBLE)
+        return skg_buffer_write(machine->context, &machine->gradient.adjoint,
+                                count * (int64_t)sizeof *work->adjoint, work->adjoint, "adjoint");
+    SKG_TRY(skg_staging_take(&job->staging, count, sizeof *rounded, "adjoint", &rounded));
+    for (int64_t i = 0; i < count; i++) rounded[i] = (float)work->adjoint[i];
+    return skg_buffer_write(machine->context, &machine->gradient.adjoint, count * (int64_t)sizeof *rounded,
+                            rounded, "adjoint");
+}
+
+/* --- parts */
+
+skg_status skg_gradient_find_corners(skg_job *job, int64_t mesh, const int32_t **corners) {
+    struct skg_gradient_work *gradient = job->gradient;
+    if (!gradient->corners)
+        SKG_TRY(skg_staging_take(&job->staging, job->recipe->meshes.count, sizeof *gradient->corners,
+                                 "gradient", &gradient->corners));
+    if (!gradient->corners[mesh])
+        SKG_TRY(skg_gradient_read_corners(&job->machine->geometry, mesh, &job->staging,
+                                          &gradient->corners[mesh]));
+    *corners = gradient->corners[mesh];
+    return SKG_OK;
+}
+
+/* The weights of a pass on the host, for faces that are seen as lines, and the part that they are asked for. */
+typedef struct {
+    const skg_pass *pass;
+    skg_weight_layout layout;
+    double **planes; /* [layout.planes] NULL: not read */
+    int64_t part;
+} pixel_weights;
+
+/* d loss / d t of a ray: what parts that compete take off is left out. */
+static double weigh_pixel(const void *user, int64_t column, int64_t row) {
+    const pixel_weights *w = user;
+    const skg_geometry_part *part = &w->pass->parts[w->part];
+    double sum = 0;
+    for (int32_t c = 0; c < part->contributions; c++)
+        sum += part->contribution[c].weight *
+               w->planes[part->contribution[c].plane][row * w->layout.stride + column];
+    return part->depth > 0 ? sum * w->pass->scale.scale : 0;
+}
+
+/* Reads the weights of a part if any of its faces is seen as a line. */
+static skg_status read_weights(skg_job *job, const int64_t *moments, int64_t triangles, pixel_weights *w) {
+    const skg_gradient_memory *memory = &job->machine->gradient;
+    const skg_geometry_part *part = &w->pass->parts[w->part];
+    int64_t count = 0;
+    for (int64_t t = 0; t < triangles; t++) count += moments[3 * t] == SKG_EDGE_ON;
+    for (int32_t c = 0; c < part->contributions && count > 0; c++) {
+        const int64_t plane = part->contribution[c].plane;
+        if (w->planes[plane]) continue;
+        SKG_TRY(skg_alloc(w->layout.plane, sizeof **w->planes, "gradient", &w->planes[plane]));
+        SKG_TRY(skg_gradient_read(w->pass, memory->weights.memory, plane * w->layout.plane, w->layout.plane,
+                                  w->planes[plane]));
+    }
+    return SKG_OK;
+}
+
+/* Adds the faces of a part to its twist and vertices, and to the sums of all parts. */
+static skg_status add_part(skg_job *job, const skg_pass *pass, int64_t part, const skg_gathered *gathered,
+                           int64_t first, pixel_weights *weights, skg_force_sums *all) {
+    struct skg_gradient_work *gradient = job->gradient;
+    const skg_geometry *geometry = &job->machine->geometry;
+    const int64_t mesh = geometry->mesh_of_part[part];
+    const skg_gradient *wanted = &gradient->wanted;
+    skg_force_sums sums = {0};
+    skg_face_moments faces = {.camera = &pass->camera,
+                              .mesh = job->recipe->meshes.meshes[mesh],
+                              .pose = pass->parts[part].pose,
+                              .source = geometry->layouts[mesh].source,
+                              .moments = gathered->moments + 3 * first,
+                              .unit = gathered->units[part],
+                              .weight = weigh_pixel,
+                              .weight_user = weights};
+    weights->part = part;
+    SKG_TRY(read_weights(job, faces.moments, geometry->layouts[mesh].triangles, weights));
+    SKG_TRY(skg_gradient_find_corners(job, mesh, &faces.corners));
+    SKG_TRY(skg_forces_add(&faces, &sums, wanted->vertices ? wanted->vertices[part] : NULL));
+    for (int k = 0; k < 3; k++) {
+        gradient->poses[6 * part + k] += sums.force[k];
+        gradient->poses[6 * part + 3 + k] += sums.torque[k];
+        all->force[k] += sums.force[k];
+        all->along[k] += sums.along[k];
+        all->pixel_torque[k] += sums.pixel_torque[k];
+    }
+    return SKG_OK;
+}
+
+static skg_status add_parts(skg_job *job, const skg_pass *pass, const skg_gathered *gathered,
+                            skg_force_sums *all) {
+    const skg_geometry *geometry = &job->machine->geometry;
+    pixel_weights weights = {.pass = pass, .layout = gathered->layout};
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(weights.layout.planes, sizeof *weights.planes, "gradient", &weights.planes));
+    for (int64_t p = 0, first = 0; p < pass->scene->count && status == SKG_OK; p++) {
+        if (gathered->units[p] != 0) status = add_part(job, pass, p, gathered, first, &weights, all);
+        first += geometry->layouts[geometry->mesh_of_part[p]].triangles;
+    }
+    for (int64_t k = 0; k < weights.layout.planes; k++) skg_free(&weights.planes[k]);
+    skg_free(&weights.planes);
+    return status;
+}
+
+/* --- source and detector */
+
+/* Derivatives by where the rays of a pass come from and go to: the sample of the source, and the twist of the pixels. */
+typedef struct {
+    double source[3], detector[6];
+} ends;
+
+/* With a parallel beam, what turns the beam: dd = P (d centre - d source) with the projector P across the beam d. */
+static void add_parallel(const skg_view *view, const skg_camera *camera, const skg_force_sums *all, ends *e) {
+    const double *d = camera->first;
+    const double share = skg_dot(all->along, d) / skg_dot(d, d);
+    double push[3], turn[3], ratio = 1;
+    skg_add_scaled(all->along, -share, d, push);
+    skg_cross(view->centre, push, turn);
+    const int infinite = view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY;
+    if (infinite) ratio = -skg_length(d) / skg_length(view->source);
+    for (int k = 0; k < 3; k++) {
+        e->source[k] += ratio * push[k];
+        e->detector[k] -= all->force[k] + (infinite ? 0 : push[k]);
+        e->detector[3 + k] -= all->pixel_torque[k] + (infinite ? 0 : turn[k]);
+    }
+}
+
+/* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3.
+ *
+ * values   of each ray: sum over planes of mm times derivative by mm; derivative by the logarithm of the intensity
+ * falls    power of 1 / |D| in the intensities */
+static void add_ray_lengths(const skg_camera *camera, const skg_weight_layout *layout, const double *values,
+                            double falls, ends *e) {
+    double all[3] = {0}, turn[3];
+    for (int64_t r = 0; r < camera->rows; r++) {
+        const double *of_paths = values + r * layout->stride, *of_intensities = of_paths + layout->plane;
+        for (int64_t c = 0; c < camera->columns; c++) {
+            const double value = of_paths[c] - falls * of_intensities[c];
+            double ray[3];
+            for (int k = 0; k < 3; k++)
+                ray[k] = camera->first[k] + (double)c * camera->column[k] + (double)r * camera->row[k];
+            skg_add_scaled(all, value / skg_dot(ray, ray), ray, all);
+        }
+    }
+    /* The pixel is source + ray, so that its lever is that of the source. */
+    skg_cross(camera->origin, all, turn);
+    for (int k = 0; k < 3; k++) {
+        e->source[k] -= all[k];
+        e->detector[k] += all[k];
+        e->detector[3 + k] += turn[k];
+    }
+}
+
+/* What depends on the distance of the detector's plane from a point as distance^power. way: from there to a point of the plane. */
+static void add_distance(const skg_camera *camera, const double *from, const double way[3], double power,
+                         ends *e) {
+    double normal[3], turn[3];
+    skg_cross(camera->column, camera->row, normal);
+    const double share = power / skg_dot(way, normal);
+    skg_cross(from, normal, turn);
+    for (int k = 0; k < 3; k++) {
+        e->source[k] -= share * normal[k];
+        e->detector[k] += share * normal[k];
+        e->detector[3 + k] += share * turn[k];
+    }
+}
+
+/* The view with its source moved along axis `way` 0 to 2, or its detector by entry way - 3 of a twist. */
+static void move_view(const skg_view *view, int way, double step, skg_view *moved) {
+    double axis[3] = {0};
+    *moved = *view;
+    axis[way % 3] = step;
+    for (int k = 0; k < 3; k++) {
+        if (way < 3) moved->source[k] += axis[k];
+        if (way >= 3 && way < 6) moved->centre[k] += axis[k];
+    }
+    if (way < 6) return;
+    double turned[3];
+    const double *const from[3] = {view->centre, view->column_step, view->row_step};
+    double *const to[3] = {moved->centre, moved->column_step, moved->row_step};
+    for (int v = 0; v < 3; v++) {
+        skg_cross(axis, from[v], turned);
+        skg_add_scaled(from[v], 1, turned, to[v]);
+    }
+}
+
+/* Adds the derivatives by the view's source and detector. A sample of the source moves with the source, and turns with the line to
+ * the detector's centre: by differences, since the spot is small against the distance. */
+static void add_ends(const skg_recipe *recipe, const skg_view *view, int64_t number, const ends *e,
+                     double total[9]) {
+    const skg_samples *samples = &recipe->samples;
+    const int is_point =
+        number < 0 || samples->spot.shape == SKG_SPOT_POINT || view->projection != SKG_PROJECTION_POINT;
+    const int64_t sample = number * samples->fine * samples->fine;
+    for (int way = 0; way < 9; way++) {
+        const double step = way < 6 ? 1e-2 : 1e-5;
+        double ahead[3], behind[3], shift[2];
+        skg_view moved;
+        if (way >= 3) total[way] += e->detector[way - 3];
+        if (is_point && way < 3) total[way] += e->source[way];
+        if (is_point) continue;
+        move_view(view, way, step, &moved);
+        skg_samples_at(samples, &moved, sample, ahead, shift);
+        move_view(view, way, -step, &moved);
+        skg_samples_at(samples, &moved, sample, behind, shift);
+        for (int k = 0; k < 3; k++) total[way] += e->source[k] * (ahead[k] - behind[k]) / (2 * step);
+    }
+}
+
+static skg_status add_point(skg_job *job, const skg_pass *pass, const skg_force_sums *all, ends *e,
+                            double *intensity) {
+    const skg_camera *camera = &pass->camera;
+    const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
+    const int falls = job->machine->images.falloff;
+    double *values = NULL;
+    skg_status status = SKG_OK;
+    for (int k = 0; k < 3; k++) {
+        e->source[k] -= all->force[k] - all->along[k];
+        e->detector[k] -= all->along[k];
+        e->detector[3 + k] -= all->pixel_torque[k];
+    }
+    SKG_TRY(skg_alloc(2 * layout.plane, sizeof *values, "gradient", &values));
+    SKG_TRY_CLEANUP(skg_gradient_read(pass, job->machine->gradient.weights.memory,
+                                      layout.planes * layout.plane, 2 * layout.plane, values));
+    add_ray_lengths(camera, &layout, values, falls ? 3 : 0, e);
+    for (int64_t p = 0; p < layout.plane; p++) *intensity += values[layout.plane + p];
+    if (falls) add_distance(camera, camera->origin, camera->first, 3 * *intensity, e);
+cleanup:
+    skg_free(&values);
+    return status;
+}
+
+static skg_status add_view(skg_job *job, const skg_frame_work *work, int64_t number, const skg_pass *pass,
+                           const skg_force_sums *all) {
+    const skg_recipe *recipe = job->recipe;
+    double *total = job->gradient->view, intensity = 0, way[3];
+    ends e = {0}, photons = {0};
+    if (pass->camera.parallel) {
+        add_parallel(work->view, &pass->camera, all, &e);
+        add_ends(recipe, work->view, number, &e, total);
+        return SKG_OK;
+    }
+    SKG_TRY(add_point(job, pass, all, &e, &intensity));
+    add_ends(recipe, work->view, number, &e, total);
+    if (!recipe->absolute || skg_quantity_is_ratio(&recipe->options)) return SKG_OK;
+    /* The photons of a pixel go with the inverse square of the distance. */
+    skg_add_scaled(work->view->centre, -1, work->view->source, way);
+    add_distance(&pass->camera, work->view->source, way, -2 * intensity, &photons);
+    add_ends(recipe, work->view, -1, &photons, total);
+    return SKG_OK;
+}
+
+/* --- a pass */
+
+static skg_status check_places(const skg_pass *pass) {
+    for (int64_t p = 0; pass->kernels.source_plane && p < pass->scene->count; p++)
+        if (pass->extents[p].near_source)
+            return skg_fail(SKG_ERR_UNSUPPORTED,
+                            "gradient: part %s reaches the plane of the source, where gradients are not "
+                            "computed; move the part or the source",
+                            pass->scene->parts[p].label);
+    return SKG_OK;
+}
+
+skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
+                              int32_t of_planes) {
+    skg_machine *machine = job->machine;
+    skg_gradient_memory *memory = &machine->gradient;
+    skg_attenuation attenuation = machine->images;
+    SKG_TRY(check_places(pass));
+    memcpy(attenuation.window, pass->window, sizeof attenuation.window);
+    SKG_TRY(send_adjoint(job, job->gradient));
+    SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
+    return skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, of_planes,
+                                   memory->adjoint.memory, memory->weights.memory, &job->staging.log);
+}
+
+skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
+                                 const skg_pass *pass, const skg_sums *sums, double factor) {
+    struct skg_gradient_work *gradient = job->gradient;
+    skg_machine *machine = job->machine;
+    skg_gathered gathered;
+    skg_force_sums all = {0};
+    SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 0));
+    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
+                                &gathered));
+    SKG_TRY(add_parts(job, pass, &gathered, &all));
+    if (gradient->wanted.source || gradient->wanted.detector)
+        SKG_TRY(add_view(job, work, number, pass, &all));
+    if (!gradient->wanted.densities) return SKG_OK;
+    SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
+    return skg_gradient_keep_planes(job, pass);
+}

@@ -1,0 +1,23 @@
+/* The share of one pass in a gradient. Private. */
+#ifndef SKG_GRADIENT_PASS_H
+#define SKG_GRADIENT_PASS_H
+
+#include "frame/gradient_work.h"
+
+/* Adds the share of one pass, whose sums are made, and waits for it.
+ *
+ * number   of the pass, below 0: the only one
+ * factor   of its intensities */
+skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
+                                 const skg_pass *pass, const skg_sums *sums, double factor);
+
+/* Enqueues the derivatives by the sums of a pass from those by its intensities, job->gradient->adjoint.
+ *
+ * of_planes   1: by the mm of planes instead */
+skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
+                              int32_t of_planes);
+
+/* The corners of a mesh as the device has them, [triangles][3]; read once for a job. */
+skg_status skg_gradient_find_corners(skg_job *job, int64_t mesh, const int32_t **corners);
+
+#endif

@@ -1,0 +1,39 @@
+/* Derivatives of a loss by what moves, from the moments of faces (kernels/gradient.cl). Private.
+ *
+ * The derivative by corner k of a face is a vector F_k along the face's normal, as a force would be. A part's twist gets the sum of
+ * F_k and of x_k x F_k. A ray that moves by v at x changes the loss by -F . v, and what moves a ray is affine in x, so that the
+ * corners stand for all hits of the face (docs/numerics.md, Derivatives). */
+#ifndef SKG_FORCES_H
+#define SKG_FORCES_H
+
+#include "geometry/steep.h"
+#include "mesh/mesh.h"
+
+/* The faces of a part. */
+typedef struct {
+    const skg_camera *camera;
+    const skg_mesh *mesh;
+    const double *pose;      /* 4x4 */
+    const int32_t *corners;  /* [triangles][3] in the device's numbering of vertices */
+    const int32_t *source;   /* the mesh's number of each; NULL: the same */
+    const int64_t *moments;  /* [triangles][3] */
+    double unit;             /* of a moment */
+    skg_steep_weight weight; /* of faces whose first moment is SKG_EDGE_ON; may be NULL if there are none */
+    const void *weight_user;
+} skg_face_moments;
+
+/* Sums over faces, about the world's origin. t: the path parameter of a corner. */
+typedef struct {
+    double force[3], torque[3]; /* of F, of x x F */
+    double along[3];            /* of t F; with a parallel beam of (t - 1) F */
+    double pixel_torque[3]; /* of t p x F, p the pixel that sees the corner; with a parallel beam of p x F */
+} skg_force_sums;
+
+/* Adds the faces of a part to the sums. vertices: [mesh->vertices][3] the derivatives by the positions of the mesh, which are added
+ * to; all of those at one place go to the first of them. NULL: not wanted. */
+skg_status skg_forces_add(const skg_face_moments *faces, skg_force_sums *sums, double *vertices);
+
+/* Divides the derivative of vertices at one place evenly among them. */
+skg_status skg_forces_share(const skg_mesh *mesh, double *vertices);
+
+#endif

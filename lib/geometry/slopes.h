@@ -1,0 +1,29 @@
+/* Slopes of path parameters when parts, vertices, source and detector move: the forward counterpart of forces.h. Private. */
+#ifndef SKG_SLOPES_H
+#define SKG_SLOPES_H
+
+#include "geometry/forces.h"
+
+/* Velocities. A twist is (translation, rotation) about the world's origin. */
+typedef struct {
+    double pose[6];         /* of the part */
+    const double *vertices; /* [mesh->vertices][3] in the axes of the mesh; NULL: none */
+    double source[3];       /* of the sample of the source that rays start from */
+    double detector[6];     /* of the pixels */
+    double beam[3];         /* of the direction camera->first of a parallel beam, across it */
+} skg_velocities;
+
+/* Fills the slopes at the corners of a part's faces, [triangles][3]: n . (v - ray) / (h t_k) with the velocity v of the corner and
+ * that of the ray there; with a parallel beam n . (v - ray) / (n . d). Times `factor`. */
+void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
+                     double *slopes);
+
+/* The derivative of |D| over |D|, where D goes from the source to a pixel. */
+double skg_slope_of_ray(const skg_camera *camera, const skg_velocities *velocities, const double ray[3]);
+
+/* The derivative of the logarithm of the distance of a point, which moves with `source`, from the detector's plane. way: from there to
+ * a point of the plane. */
+double skg_slope_of_distance(const skg_camera *camera, const skg_velocities *velocities, const double from[3],
+                             const double way[3], const double source[3]);
+
+#endif

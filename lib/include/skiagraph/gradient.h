@@ -1,0 +1,146 @@
+/** @file
+ * Gradients: the derivative of a number that depends on an image, such as the difference from a measured one, by the
+ * poses of parts, by source and detector, by vertices and by densities.
+ *
+ * The caller says how the number, the loss, changes with each value of the image (skg_adjoint). One pass over the
+ * triangles then gives its derivative by everything else, in the time of some images, however much moves. It is the derivative of the
+ * image as it is computed: of the path lengths of the rays to the centres of the pixels, or to all samples of pixel and
+ * source, with the energies and planes that the plan chose. Noise and the steps of the detector count as constant.
+ *
+ *     method    A ray's hit with a face moves by b_k (n . dv_k) / (n . d) when corner k of the face moves by dv_k, with the
+ *               barycentric coordinate b_k of the hit, the face's normal n and the ray's direction d. So the derivative of a path
+ *               length is a signed sum over its hits. Lengths through closed meshes are continuous across silhouettes,
+ *               which need no term of their own (docs/numerics.md)
+ *     edges     A face that contains rays, such as the side of a box in a parallel beam, is hit by none, but the mean of a pixel
+ *               changes with its place. Faces narrower than 1e-4 pixels in the image add the derivative of that mean. Where
+ *               they lose by priority, they add too much
+ *     bits      Sums over hits are integers: they depend neither on the strategy nor on the number of threads */
+#ifndef SKIAGRAPH_GRADIENT_H
+#define SKIAGRAPH_GRADIENT_H
+
+#include <skiagraph/frame.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+/** The derivative of a loss by every value of an image: [channel][row][column], dense. Prepare with skg_adjoint_init:
+ * double. */
+typedef struct {
+    /** Set by skg_adjoint_init. */
+    int32_t size;
+    /** enum skg_type: SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64 */
+    int32_t type;
+    /** Number of channels; it must be the image's. */
+    int64_t channels;
+    /** Number of rows; it must be the image's. */
+    int64_t rows;
+    /** Number of columns; it must be the image's. */
+    int64_t columns;
+    /** The caller's memory; it is read before the call returns. */
+    const void *data;
+    /** A cl_mem of the plan's context that holds it instead of data (opencl.h); NULL: data. */
+    void *buffer;
+    /** Byte of the buffer at which it begins. */
+    int64_t offset;
+} skg_adjoint;
+
+/** Prepares an adjoint of `size` bytes (export.h). */
+SKG_API void skg_adjoint_init_sized(void *adjoint, int32_t size);
+
+/** Prepares an adjoint. */
+static inline void skg_adjoint_init(skg_adjoint *adjoint) {
+    skg_adjoint_init_sized(adjoint, (int32_t)sizeof *adjoint);
+}
+
+/** What a gradient is wanted of, and where it goes: the caller's memory, which is written as a whole. Prepare with
+ * skg_gradient_init: nothing.
+ *
+ * A twist is (tx, ty, tz in mm, rx, ry, rz in radians), in world axes about the world's origin: what it moves has the pose
+ * exp(twist) pose. */
+typedef struct {
+    /** Set by skg_gradient_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** [parts][6] by the twist of each part alone, per mm and per radian; NULL: not wanted. Parts inside it do not move with
+     * it. */
+    double *poses;
+    /** [3] by the position of the source, per mm; in a parallel beam from infinity, by its direction. The pixels stay. NULL:
+     * not wanted. */
+    double *source;
+    /** [6] by the twist of the detector, per mm and per radian. The source stays. NULL: not wanted. */
+    double *detector;
+    /** [parts] by the positions of the mesh of each part, per mm in the mesh's own axes: [vertices][3], or NULL for parts of which
+     * they are not wanted. NULL: of no part. The derivative of a place is divided evenly among the vertices that stand there.
+     * Parts that share a mesh each have their own; the sum is that of the mesh. */
+    double *const *vertices;
+    /** [parts] by the density of each part over that of its material; NULL: not wanted. It costs the path lengths through every
+     * part, an image of lengths a part. */
+    double *densities;
+} skg_gradient;
+
+/** Prepares a gradient of `size` bytes (export.h). */
+SKG_API void skg_gradient_init_sized(void *gradient, int32_t size);
+
+/** Prepares a gradient. */
+static inline void skg_gradient_init(skg_gradient *gradient) {
+    skg_gradient_init_sized(gradient, (int32_t)sizeof *gradient);
+}
+
+/** Makes the gradient of a loss for one frame, and waits for it.
+ *
+ *     frame      the frame whose image the adjoint belongs to; NULL: as plan and scene stand
+ *     adjoint    d loss / d image
+ *     gradient   what is wanted, and where it goes
+ *     errors     SKG_ERR_ARGUMENT if the adjoint has another size than the image, or a value that is not finite;
+ *                SKG_ERR_UNSUPPORTED, with the reason, for half precision, scatter, leaky meshes, parts that reach the plane of
+ *                the source, positions set on the device, and ratios to a flat field that differs from pixel to pixel if
+ *                they have noise or steps; for source and detector also for the heel effect, a bow-tie filter, a grid, an
+ *                oblique scintillator, jaws, and a world with ratios or in a parallel beam
+ *     range      SKG_RANGE if a derivative by a path length is not finite
+ *     stale      SKG_STALE as skg_plan_submit */
+SKG_API skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
+                                     const skg_gradient *gradient);
+
+/** A direction: how fast parts, vertices, source and detector move. Prepare with skg_direction_init: nothing moves. Twists and axes
+ * are those of skg_gradient. */
+typedef struct {
+    /** Set by skg_direction_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** [parts][6] the twist of each part; NULL: none moves. */
+    const double *poses;
+    /** [3] of the source; NULL: it stays. */
+    const double *source;
+    /** [6] the twist of the detector; NULL: it stays. */
+    const double *detector;
+    /** [parts] of the positions of the mesh of each part: [vertices][3], or NULL for parts whose vertices stay. NULL: of no part. */
+    const double *const *vertices;
+} skg_direction;
+
+/** Prepares a direction of `size` bytes (export.h). */
+SKG_API void skg_direction_init_sized(void *direction, int32_t size);
+
+/** Prepares a direction. */
+static inline void skg_direction_init(skg_direction *direction) {
+    skg_direction_init_sized(direction, (int32_t)sizeof *direction);
+}
+
+/** Makes the derivative of a frame's image along a direction, and waits for it.
+ *
+ *     frame        NULL: as plan and scene stand
+ *     direction    what moves
+ *     derivative   result: [channels][rows][columns], in the plan's quantity for a unit of the direction
+ *     saturated    result: number of slopes of faces at their corners that were cut off at 2^24 times the mean slope, because the
+ *                  sums over hits are 64-bit integers; may be NULL
+ *     limits       faces that contain rays add nothing, unlike in skg_plan_gradient
+ *     errors       as of skg_plan_gradient; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
+SKG_API skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
+                                       double *derivative, int64_t *saturated);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,51 @@
+/* Stage `gradient`: the derivatives of a loss by the faces of all parts, from those by the sums of a raster. Private.
+ *
+ * Three integers a face are gathered by one kernel (kernels/gradient.cl), whatever strategy has drawn the faces; the same
+ * coverage gives the same hits. */
+#ifndef SKG_GRADIENT_STAGE_H
+#define SKG_GRADIENT_STAGE_H
+
+#include "stage/attenuate.h"
+#include "stage/hits.h"
+
+/* Device memory, kept from call to call. All zero: nothing is allocated. */
+typedef struct {
+    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces;
+} skg_gradient_memory;
+void skg_gradient_memory_release(skg_gradient_memory *memory);
+int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
+
+/* What the gather of a pass leaves. */
+typedef struct {
+    const int64_t *moments; /* [triangles][3] staged, in the device's order of triangles */
+    const double *units;    /* [parts] staged: what a moment of 1 is worth; 0: the part has none */
+    skg_weight_layout layout;
+} skg_gathered;
+
+/* Makes sure of memory for the derivatives of a pass by its sums, or by the mm of `planes` planes. */
+skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory);
+
+/* Gathers the moments of a pass whose sums are made, and waits for them. memory->weights: of skg_attenuate_transpose */
+skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometry,
+                               const skg_hits_memory *hits, skg_gradient_memory *memory, skg_staging *staging,
+                               skg_gathered *gathered);
+
+/* Adds up the derivatives of the rays of a pass, and waits for them.
+ *
+ * slopes      [triangles][3] of the path parameter over the square of t, at the corners, times the part's reference; in the
+ *             device's order. Those above 2^24 times their mean are cut off there, because sums are 64-bit integers
+ * values      [rows][columns] result
+ * saturated   the number of faces that were cut off is added to it */
+skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
+                                const skg_hits_memory *hits, skg_gradient_memory *memory,
+                                skg_staging *staging, double *slopes, double *values, int64_t *saturated);
+
+/* Reads reals in the precision of the pass as doubles, from number `first` on, and waits. */
+skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
+                             double *numbers);
+
+/* Reads the corners of a mesh's triangles, [triangles][3] in the device's order and numbering of vertices. */
+skg_status skg_gradient_read_corners(const skg_geometry *geometry, int64_t mesh, skg_staging *staging,
+                                     int32_t **corners);
+
+#endif

@@ -1,0 +1,138 @@
+"""Gradients: the derivative of a loss by the scene, from its derivative by an image. Private."""
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._frames import Batch
+from ._images import number_frames
+from ._interface import OK, ArgumentError, SceneError
+from ._library import check, ffi, lib, struct, text
+
+if TYPE_CHECKING:
+    from ._state import State
+
+#: What a gradient can be taken of.
+NAMES = ("poses", "source", "detector", "vertices", "density")
+
+
+class Differentiable:
+    """What scenes can be differentiated by."""
+
+    _state: State
+
+    def gradient(self, weights: ArrayLike, wrt: Sequence[str] = ("poses", "source", "detector"), quantity: str | None = None,
+                 **options: Any) -> dict[str, Any]:
+        """The derivative of a number, the loss, by the scene.
+
+        weights: the derivative of the loss by the image, [row, column], with bands [band, row, column]. wrt: of "poses",
+        "source", "detector", "vertices", "density". quantity and options: of the image, as in image().
+
+        Returns a dictionary with these keys. "poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label:
+        [n, 3]} in the axes of the mesh, "density": {label: number} by the density over the present one. A twist is (tx, ty,
+        tz in mm, rx, ry, rz in rad) in world axes about the world's origin; the image counts as if pose' = exp(twist) pose.
+        docs/derivatives.md says what is exact, what counts as constant and what is refused.
+
+        >>> import numpy as np, skiagraph as sk
+        >>> scene = sk.Scene()
+        >>> ball = scene.add("ball", sk.Mesh.sphere(40, 64), material="water")
+        >>> scene.view = sk.View(source=(0, 0, -1000), detector=(0, 0, 200), column_step=(2, 0, 0), row_step=(0, 2, 0),
+        ...                      pixels=(64, 64))
+        >>> scene.beam = sk.Beam.mono(60, 1000)
+        >>> to_the_right = np.linspace(-1, 1, 64) * np.ones((64, 1))
+        >>> scene.gradient(to_the_right, quantity="attenuation")["poses"]["ball"][0] > 0
+        True
+        """
+        for name in wrt:
+            if name not in NAMES:
+                raise ArgumentError(f"wrt has {name!r}; it is made of {', '.join(map(repr, NAMES))}")
+        given = np.ascontiguousarray(weights, dtype=np.float64)
+        if given.ndim not in (2, 3):
+            raise ArgumentError(f"weights has the shape {given.shape}; it is [row, column] or [band, row, column]")
+        with self._state.calls():
+            return _gradient(self._state, given, list(wrt), {"quantity": quantity, **options})
+
+    def derivative(self, direction: Mapping[str, Any], quantity: str | None = None, **options: Any) -> NDArray[np.float64]:
+        """The derivative of the image along a direction, [row, column], with bands [band, row, column].
+
+        direction: {"poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label: [n, 3]}}, of which any may be
+        missing: how fast each moves. quantity and options: of the image. The rest is as in gradient().
+        """
+        for name in direction:
+            if name not in NAMES[:4]:
+                raise ArgumentError(f"the direction has {name!r}; it is made of {', '.join(map(repr, NAMES[:4]))}")
+        with self._state.calls():
+            return _derivative(self._state, direction, {"quantity": quantity, **options})
+
+
+def _pointer(array: NDArray[np.float64]) -> Any:
+    return ffi.cast("double *", array.__array_interface__["data"][0])
+
+
+def _vertex_arrays(state: State) -> list[NDArray[np.float64]]:
+    return [np.zeros((len(part.mesh.vertices), 3)) for part in state.parts()]
+
+
+def _gradient(state: State, weights: NDArray[np.float64], wrt: list[str], options: dict[str, Any]) -> dict[str, Any]:
+    labels = [part.label for part in state.parts()]
+    poses, source, detector = np.zeros((len(labels), 6)), np.zeros(3), np.zeros(6)
+    densities = np.zeros(len(labels))
+    vertices = _vertex_arrays(state) if "vertices" in wrt else []
+    adjoint, wanted = struct("skg_adjoint"), struct("skg_gradient")
+    adjoint.channels = weights.shape[0] if weights.ndim == 3 else 1
+    adjoint.rows, adjoint.columns = weights.shape[-2:]
+    adjoint.data = ffi.cast("void *", weights.__array_interface__["data"][0])
+    keep = ffi.new("double *[]", [_pointer(one) for one in vertices])
+    for name, array in (("poses", poses), ("source", source), ("detector", detector), ("density", densities)):
+        if name in wrt:
+            setattr(wanted, "densities" if name == "density" else name, _pointer(array))
+    if vertices:
+        wanted.vertices = keep
+    _run(state, options, lambda plan, frame: lib.skg_plan_gradient(plan, frame, adjoint, wanted))
+    found: dict[str, Any] = {"poses": dict(zip(labels, poses)), "source": source, "detector": detector,
+                             "vertices": dict(zip(labels, vertices)),
+                             "density": {label: float(x) for label, x in zip(labels, densities)}}
+    return {name: found[name] for name in wrt}
+
+
+def _vector(value: Any, shape: tuple[int, ...], what: str) -> NDArray[np.float64]:
+    array = np.ascontiguousarray(value, dtype=np.float64)
+    if array.shape != shape:
+        raise ArgumentError(f"{what} has the shape {array.shape}; it is {shape}")
+    return array
+
+
+def _derivative(state: State, direction: Mapping[str, Any], options: dict[str, Any]) -> NDArray[np.float64]:
+    parts = state.parts()
+    given = struct("skg_direction")
+    poses, keep = np.zeros((len(parts), 6)), [ffi.new("double *[]", len(parts))]
+    for label, twist in direction.get("poses", {}).items():
+        poses[state.number(label)] = _vector(twist, (6,), f"poses[{label!r}]")
+    given.poses = _pointer(poses)
+    for name, size in (("source", 3), ("detector", 6)):
+        if direction.get(name) is not None:
+            keep.append(_vector(direction[name], (size,), name))
+            setattr(given, name, _pointer(keep[-1]))
+    for label, moves in direction.get("vertices", {}).items():
+        number = state.number(label)
+        keep.append(_vector(moves, parts[number].mesh.vertices.shape, f"vertices[{label!r}]"))
+        keep[0][number] = _pointer(keep[-1])
+    given.vertices = ffi.cast("double **", keep[0])
+    bands = options.get("bands")
+    shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
+    found = np.empty(shape)
+    _run(state, options, lambda plan, frame: lib.skg_plan_derivative(plan, frame, given, _pointer(found), ffi.NULL))
+    return found
+
+
+def _run(state: State, options: dict[str, Any], work: Callable[[Any, Any], int]) -> None:
+    """Does the work with the plan of the scene as it stands; a stale plan is made anew once."""
+    batch = Batch(1, index=number_frames(state, 1, None, options), complete=state.completer())
+    for again in (False, True):
+        keep: list[Any] = []
+        if check(work(state.plan(options, None, again), batch.frames(0, 1, keep))) == OK:
+            return
+    raise SceneError(text(lib.skg_last_error()))

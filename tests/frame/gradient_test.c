@@ -1,0 +1,216 @@
+/* Gradients against differences of images in double precision, with Richardson's step: (4 D(h/2) - D(h)) / 3. Pixels whose
+ * hits change within the step are left out: their differences at two steps disagree. */
+#include "gradients.h"
+
+#include <math.h>
+
+static const setting settings[] = {
+    {.name = "one energy"},
+    {.name = "transmission", .quantity = SKG_QUANTITY_TRANSMISSION, .colours = 1},
+    {.name = "attenuation of one energy", .quantity = SKG_QUANTITY_ATTENUATION},
+    {.name = "attenuation", .quantity = SKG_QUANTITY_ATTENUATION, .colours = 1, .nested = 1},
+    {.name = "nested", .nested = 1, .colours = 1},
+    {.name = "priority", .priority = 1, .colours = 1},
+    {.name = "parallel", .parallel = 1, .nested = 1},
+    {.name = "parallel from infinity", .parallel = 1, .infinity = 1, .colours = 1},
+    {.name = "parallel, priority", .parallel = 1, .priority = 1},
+    {.name = "world", .world = 1, .colours = 1},
+    {.name = "world, attenuation",
+     .world = 1,
+     .colours = 1,
+     .quantity = SKG_QUANTITY_ATTENUATION,
+     .parts_only = 1},
+    {.name = "falloff", .falloff = 1, .colours = 1, .quantity = SKG_QUANTITY_FLUENCE},
+    {.name = "supersampling", .supersampling = 3, .quantity = SKG_QUANTITY_ATTENUATION, .colours = 1},
+    {.name = "spot", .spot = 1, .quantity = SKG_QUANTITY_TRANSMISSION},
+    {.name = "spot, supersampling, falloff", .spot = 1, .supersampling = 2, .falloff = 1, .priority = 1},
+    {.name = "blur", .blur = 1, .colours = 1, .quantity = SKG_QUANTITY_ATTENUATION},
+    {.name = "point spread", .blur = 2, .nested = 1},
+    {.name = "bands", .bands = 2, .colours = 1, .nested = 1},
+    {.name = "tolerance", .tolerance = 1e-3, .colours = 1, .nested = 1},
+    {.name = "heel", .heel = 1, .colours = 1, .parts_only = 1},
+};
+
+/* The derivative of every pixel along a direction, by differences; NAN where hits change within the step: there the differences
+ * at two steps disagree, or those to both sides are not nearer to each other at half the step. */
+static void differentiate(skg_plan *plan, const skg_view *view, const direction *d, int64_t count,
+                          double *slope) {
+    static double ahead[2][CHANNELS_MAX * PIXELS], behind[2][CHANNELS_MAX * PIXELS];
+    static double here[CHANNELS_MAX * PIXELS];
+    const double h = 1e-3;
+    double largest = 0;
+    render(plan, view, d, 0, here);
+    for (int s = 0; s < 2; s++) {
+        render(plan, view, d, s ? h / 2 : h, ahead[s]);
+        render(plan, view, d, s ? -h / 2 : -h, behind[s]);
+    }
+    for (int64_t p = 0; p < count; p++) largest = fmax(largest, fabs(ahead[0][p] - behind[0][p]) / (2 * h));
+    for (int64_t p = 0; p < count; p++) {
+        const double whole = (ahead[0][p] - behind[0][p]) / (2 * h), half = (ahead[1][p] - behind[1][p]) / h;
+        const double bend = (ahead[0][p] - 2 * here[p] + behind[0][p]) / h;
+        const double half_bend = 2 * (ahead[1][p] - 2 * here[p] + behind[1][p]) / h;
+        /* Rounding is 1e-9 of a slope, a bend's share h^2 of it; hits that change do so by much more. */
+        const int is_smooth =
+            fabs(half - whole) <= 3e-6 * largest && fabs(bend - 2 * half_bend) <= 3e-6 * largest;
+        slope[p] = is_smooth ? (4 * half - whole) / 3 : (double)NAN;
+    }
+}
+
+/* Direction number `way`: a twist of a part, the source, the detector, or the vertices of a part. */
+static int make_direction(const setting *set, int way, direction *d) {
+    const double mm = set->infinity ? 1e-3 : 1, radian = 1e-2;
+    *d = (direction){.source = {0}};
+    if (way < 6 * PARTS)
+        d->poses[way / 6][way % 6] = way % 6 < 3 ? 1 : radian;
+    else if (way < 6 * PARTS + 3)
+        d->source[way - 6 * PARTS] = mm;
+    else if (way < 6 * PARTS + 9)
+        d->detector[way - 6 * PARTS - 3] = way < 6 * PARTS + 6 ? 1 : radian;
+    else if (way < 7 * PARTS + 9)
+        d->vertices[way - 6 * PARTS - 9] = 1;
+    else
+        d->densities[way - 7 * PARTS - 9] = 1;
+    const int64_t part = way < 6 * PARTS ? way / 6 : way < 6 * PARTS + 9 ? 0 : (way - 6 * PARTS - 9) % PARTS;
+    const int of_view = way >= 6 * PARTS && way < 6 * PARTS + 9;
+    return part < parts && !(of_view && set->parts_only);
+}
+
+/* The derivative along a direction against differences, pixel by pixel. */
+static void compare_pixels(const setting *set, skg_plan *plan, int way, const direction *d, int64_t count,
+                           const double *slope) {
+    static double derivative[CHANNELS_MAX * PIXELS];
+    double largest = 0;
+    make_derivative(plan, d, derivative);
+    for (int64_t p = 0; p < count; p++) largest = isnan(slope[p]) ? largest : fmax(largest, fabs(slope[p]));
+    for (int64_t p = 0; p < count; p++)
+        /* As for the sums; a hit may change slightly and pass the test of differences */
+        ck_assert_msg(isnan(slope[p]) || fabs(derivative[p] - slope[p]) <= 1e-5 * largest,
+                      "%s, direction %d, pixel %d: %.12g, by differences %.12g of %.3g", set->name, way,
+                      (int)p, derivative[p], slope[p], largest);
+}
+
+START_TEST(gradients_are_those_of_differences) {
+    const setting *set = &settings[_i];
+    static double slope[CHANNELS_MAX * PIXELS], adjoint[CHANNELS_MAX * PIXELS];
+    const int64_t count = (set->bands ? set->bands : 1) * PIXELS;
+    result r;
+    direction d;
+    if (!run_has_double()) return;
+    make_scene(set);
+    allocate(&r);
+    const skg_view view = make_view(set);
+    skg_plan *plan = make_plan(set, &view, SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO);
+    for (int way = 0; way < WAYS; way++) {
+        uint64_t state = 1 + (uint64_t)way;
+        double expected = 0, size = 0;
+        int64_t used = 0;
+        if (!make_direction(set, way, &d)) continue;
+        differentiate(plan, &view, &d, count, slope);
+        for (int64_t p = 0; p < count; p++) {
+            adjoint[p] = isnan(slope[p]) ? 0 : draw(&state, -0.5, 0.5);
+            if (isnan(slope[p])) continue;
+            expected += adjoint[p] * slope[p];
+            size += fabs(adjoint[p] * slope[p]);
+            used += slope[p] != 0;
+        }
+        if (way < 7 * PARTS + 9) compare_pixels(set, plan, way, &d, count, slope);
+        make_gradient(plan, set, adjoint, &r);
+        const double got = along(&r, &d);
+        /* Rounding of two images by the step: 1e-12 / 1e-3, over thousands of pixels */
+        ck_assert_msg(fabs(got - expected) <= 1e-6 * size,
+                      "%s, direction %d: %.12g, by differences %.12g of %.3g", set->name, way, got, expected,
+                      size);
+        ck_assert_int_gt(used, 5);
+    }
+    skg_plan_release(&plan);
+    release(&r);
+}
+END_TEST
+
+/* --- silhouettes and faces that contain rays */
+
+/* Path lengths are continuous across silhouettes, so that a pixel's value changes by the integral of its derivative, which is not
+ * bounded there. */
+START_TEST(values_change_by_the_integral_of_the_gradient) {
+    enum { STEPS = 4000 };
+    const setting set = {.colours = 1, .quantity = SKG_QUANTITY_ATTENUATION};
+    static double first[PIXELS], last[PIXELS], adjoint[PIXELS];
+    const double pitch = 4.1 * 1000 / 1200; /* about a pixel, where the body is */
+    double integral = 0, change = 0, size = 0;
+    result r;
+    if (!run_has_double()) return;
+    make_scene(&set);
+    allocate(&r);
+    const skg_view view = make_view(&set);
+    skg_plan *plan = make_plan(&set, &view, SKG_PRECISION_DOUBLE, SKG_STRATEGY_AUTO);
+    const direction d = {.poses = {{pitch}}};
+    fill_adjoint(PIXELS, adjoint);
+    render(plan, &view, &d, 0, first);
+    render(plan, &view, &d, 1, last);
+    for (int p = 0; p < PIXELS; p++)
+        change += adjoint[p] * (last[p] - first[p]), size += fabs(adjoint[p] * (last[p] - first[p]));
+    for (int s = 0; s < STEPS; s++) {
+        skg_gradient gradient;
+        skg_frame frame;
+        skg_part part;
+        const int64_t body = 0;
+        const skg_adjoint given = adjoint_of(adjoint);
+        skg_part_init(&part);
+        skg_frame_init(&frame);
+        skg_gradient_init(&gradient);
+        ck_skg(skg_scene_part_get(scene, 0, &part));
+        part.pose[3] += pitch * (s + 0.5) / STEPS;
+        frame.pose_count = 1, frame.pose_parts = &body, frame.poses = part.pose;
+        gradient.poses = r.poses[0];
+        ck_skg(skg_plan_gradient(plan, &frame, &given, &gradient));
+        integral += r.poses[0][0] * pitch / STEPS;
+    }
+    /* 4000 steps over slopes like the inverse root of a distance: their sum errs by the root of 1/4000 of the few that are large. */
+    ck_assert_msg(fabs(integral - change) <= 1e-3 * size, "%.10g, integral %.10g of %.3g", change, integral,
+                  size);
+    skg_plan_release(&plan);
+    release(&r);
+}
+END_TEST
+
+/* The sides of a box in a parallel beam contain rays. The mean of the pixels changes by depth times edge, exactly. */
+START_TEST(sides_of_a_box_change_the_mean) {
+    static double adjoint[PIXELS];
+    const double x = 21.3, y = 17.9, z = 33, pitch = 4;
+    double poses[6], vertices[24];
+    double *const of_parts[1] = {vertices};
+    skg_gradient gradient;
+    solid box = solid_box(x, y, z);
+    skg_view view = run_view(SIDE, pitch);
+    view.projection = SKG_PROJECTION_PARALLEL;
+    scene = run_scene(&box, NULL);
+    skg_plan *plan = run_plan(
+        scene, &view,
+        (run_choice){.precision = _i && run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                     .quantity = SKG_QUANTITY_ATTENUATION});
+    skg_gradient_init(&gradient);
+    gradient.poses = poses, gradient.vertices = of_parts;
+    /* mu is 0.1 per mm; the loss is the sum of the pixels right of the middle, that is 0.1 z y / pitch^2 for each mm */
+    for (int p = 0; p < PIXELS; p++) adjoint[p] = p % SIDE >= SIDE / 2;
+    const skg_adjoint given = adjoint_of(adjoint);
+    ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
+    const double expected = 0.1 * z * y / (pitch * pitch);
+    ck_assert_double_eq_tol(poses[0], expected, 1e-5 * expected); /* mu of the material in single precision */
+    ck_assert_double_eq_tol(poses[1], 0, 1e-5 * expected);        /* the same */
+    double right = 0;
+    for (int v = 0; v < 8; v++) right += box.positions[3 * v] > 0 ? vertices[3 * v] : 0;
+    ck_assert_double_eq_tol(right, expected, 1e-5 * expected); /* the same */
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+    solid_free(&box);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, run_open, run_close);
+    tcase_add_loop_test(tests, gradients_are_those_of_differences, 0, sizeof settings / sizeof *settings);
+    tcase_add_test(tests, values_change_by_the_integral_of_the_gradient);
+    tcase_add_loop_test(tests, sides_of_a_box_change_the_mean, 0, 2);
+}
+
+SKG_SUITE_MAIN("gradient", add_tests)

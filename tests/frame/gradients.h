@@ -1,0 +1,56 @@
+/* What tests of gradients share: a scene of a few parts, directions in which it moves, and its gradient. */
+#ifndef SKG_TESTS_GRADIENT_H
+#define SKG_TESTS_GRADIENT_H
+
+#include "suite.h"
+#include "support/random.h"
+#include "support/run.h"
+
+enum { SIDE = 24, PIXELS = SIDE * SIDE, CHANNELS_MAX = 2, PARTS = 4, WAYS = 6 * PARTS + 9 + 2 * PARTS };
+
+/* What a case sets; 0: not used. */
+typedef struct {
+    const char *name;
+    int32_t quantity, colours, parallel, infinity, nested, priority, world, falloff, supersampling, spot,
+        blur, bands, noise, heel, parts_only;
+    double tolerance;
+} setting;
+
+/* A direction in which everything moves: a twist of each part, the source, a twist of the detector, and vertices. */
+typedef struct {
+    double poses[PARTS][6], source[3], detector[6], vertices[PARTS], densities[PARTS];
+} direction;
+
+/* A gradient of everything. */
+typedef struct {
+    double poses[PARTS][6], source[3], detector[6], densities[PARTS], *vertices[PARTS];
+} result;
+
+extern skg_scene *scene;
+extern skg_mesh *meshes[PARTS];
+extern int64_t parts;
+
+/* Makes the scene of a setting, its view, and a plan. */
+void make_scene(const setting *set);
+skg_view make_view(const setting *set);
+skg_plan *make_plan(const setting *set, const skg_view *view, int32_t precision, int32_t strategy);
+
+/* Memory for a gradient of the scene; release also releases the scene. */
+void allocate(result *r);
+void release(result *r);
+
+/* The image with everything moved by a step along a direction. */
+void render(skg_plan *plan, const skg_view *view, const direction *d, double step, double *image);
+
+/* The gradient of the scene as it stands, and its derivative along a direction. */
+void make_gradient(skg_plan *plan, const setting *set, const double *adjoint, result *r);
+double along(const result *r, const direction *d);
+
+/* The derivative of the image along a direction in which no density changes. */
+void make_derivative(skg_plan *plan, const direction *d, double *derivative);
+
+/* d loss / d image: a number between -0.5 and 0.5 for every value. */
+void fill_adjoint(int64_t count, double *adjoint);
+skg_adjoint adjoint_of(const double *values);
+
+#endif

@@ -1,0 +1,140 @@
+"""Gradients of scenes."""
+import numpy as np
+import pytest
+
+import skiagraph as sk
+
+
+@pytest.fixture
+def scene():
+    """Two balls, one in the other, before 32 x 24 pixels."""
+    made = sk.Scene()
+    made.add("outer", sk.Mesh.sphere(30, 24), material="water")
+    made.add("inner", sk.Mesh.sphere(9, 16), material="Al", inside="outer", pose=sk.translate(5, -3, 2))
+    made.view = sk.View(source=(7, 11, -1000), detector=(0, 0, 200), column_step=(3, 0, 0), row_step=(0, 3, 0), pixels=(32, 24))
+    made.beam = sk.Beam.mono(60, 1000)
+    return made
+
+
+def weights(shape):
+    return np.random.default_rng(1).uniform(-0.5, 0.5, shape)
+
+
+def loss(scene, given, **options):
+    return float((scene.image(precision="double", **options) * given).sum())
+
+
+def test_poses_source_and_density_against_differences(scene):
+    given, step = weights((24, 32)), 1e-4
+    found = scene.gradient(given, wrt=sk._gradient.NAMES, quantity="attenuation", precision="double")
+    assert list(found) == list(sk._gradient.NAMES)
+    part, pose = scene["inner"], scene["inner"].pose
+    for axis in range(3):
+        moves = np.eye(3)[axis] * step
+        part.pose = sk.translate(*moves) @ pose
+        ahead = loss(scene, given, quantity="attenuation")
+        part.pose = sk.translate(*-moves) @ pose
+        slope = (ahead - loss(scene, given, quantity="attenuation")) / (2 * step)
+        part.pose = pose
+        # hits that change within the step: some of 768 pixels at edges of faces, whose slopes differ
+        assert found["poses"]["inner"][axis] == pytest.approx(slope, rel=2e-3, abs=2e-3)
+    images = [scene.lengths(label, precision="double") for label in ("outer", "inner")]
+    attenuation = scene.image("attenuation", precision="double")
+    parts = [found["density"][label] for label in ("outer", "inner")]
+    # the attenuation is linear in both densities
+    assert sum(parts) == pytest.approx(float((attenuation * given).sum()), rel=1e-9)
+    assert all(image.max() > 0 for image in images)
+
+
+def test_vertices_add_up_to_the_translation(scene):
+    found = scene.gradient(weights((24, 32)), wrt=("poses", "vertices"), precision="double")
+    for label in ("outer", "inner"):
+        assert found["vertices"][label].shape == (len(scene[label].mesh.vertices), 3)
+        np.testing.assert_allclose(found["vertices"][label].sum(axis=0), found["poses"][label][:3],
+                                   rtol=1e-9, atol=1e-9 * np.abs(found["poses"][label]).max())
+
+
+def test_forward_and_reverse_agree(scene):
+    given = weights((24, 32))
+    rng = np.random.default_rng(2)
+    shape = scene["outer"].mesh.vertices.shape
+    direction = {"poses": {"inner": rng.uniform(-1, 1, 6) * [1, 1, 1, 0.1, 0.1, 0.1]}, "source": rng.uniform(-1, 1, 3),
+                 "detector": rng.uniform(-1, 1, 6) * [1, 1, 1, 0.01, 0.01, 0.01],
+                 "vertices": {"outer": rng.uniform(-1, 1, shape)}}
+    along = scene.derivative(direction, quantity="attenuation", precision="double")
+    assert along.shape == (24, 32) and along.dtype == np.float64
+    found = scene.gradient(given, wrt=tuple(direction), quantity="attenuation", precision="double")
+    both = (found["poses"]["inner"] @ direction["poses"]["inner"] + found["source"] @ direction["source"]
+            + found["detector"] @ direction["detector"]
+            + (found["vertices"]["outer"] * direction["vertices"]["outer"]).sum())
+    # integers of 28 bits below the mean slope, over 768 pixels
+    assert both == pytest.approx(float((along * given).sum()), rel=1e-7, abs=1e-7 * np.abs(along * given).sum())
+
+
+def test_what_is_wrong_is_said(scene):
+    with pytest.raises(sk.ArgumentError, match="'density'"):
+        scene.derivative({"density": {"inner": 1}})
+    with pytest.raises(sk.ArgumentError, match="source has the shape"):
+        scene.derivative({"source": [1, 2]})
+    with pytest.raises(sk.ArgumentError, match="'colour'"):
+        scene.gradient(weights((24, 32)), wrt=("colour",))
+    with pytest.raises(sk.ArgumentError, match="24 x 32"):
+        scene.gradient(weights((32, 24)))
+    with pytest.raises(sk.ArgumentError, match="shape"):
+        scene.gradient(np.ones(3))
+    with pytest.raises(sk.ArgumentError, match="nan"):
+        scene.gradient(np.full((24, 32), np.nan))
+    with pytest.raises(sk.UnsupportedError, match="scatter"):
+        scene.gradient(weights((24, 32)), scatter=0.1)
+
+
+class Tensor:
+    """What image() asks of a tensor, for a machine without PyTorch."""
+
+    def __init__(self, array):
+        self.array = array
+
+    def detach(self):
+        return self
+
+    cpu = detach
+
+    def numpy(self):
+        return self.array
+
+
+def test_a_pose_has_the_derivative_of_its_entries(scene):
+    given, step = weights((24, 32)), 1e-4
+    by_vertices = scene.gradient(given, wrt=("vertices",), precision="double")["vertices"]["inner"]
+    found = sk.torch._affine(scene, "inner", by_vertices)
+    pose = np.array(scene["inner"].pose)
+    slopes = np.zeros((3, 4))
+    for row in range(3):
+        for column in range(4):
+            sums = []
+            for sign in (1, -1):
+                moved = pose.copy()
+                moved[row, column] += sign * step * (1 if column == 3 else 0.1)  # an arm of 9 mm
+                sk.torch._set(scene, ["inner"], [], False, [Tensor(moved)])
+                sums.append(loss(scene, given))
+            slopes[row, column] = (sums[0] - sums[1]) / (2 * step * (1 if column == 3 else 0.1))
+    # hits that change within the step, as above
+    np.testing.assert_allclose(found[:3], slopes, rtol=0, atol=5e-3 * np.abs(slopes).max())
+    assert (found[3] == 0).all()
+    with pytest.raises(sk.ArgumentError, match="poses"):
+        sk.torch._set(scene, ["inner"], [], False, [Tensor(np.eye(3))])
+
+
+def test_torch(scene):
+    torch = pytest.importorskip("torch")
+    pose = torch.tensor(np.array(scene["inner"].pose), requires_grad=True)
+    source = torch.tensor([7.0, 11.0, -1000.0], dtype=torch.float64, requires_grad=True)
+    vertices = torch.tensor(np.array(scene["outer"].mesh.vertices), requires_grad=True)
+    given = torch.tensor(weights((24, 32)))
+    made = sk.torch.image(scene, poses={"inner": pose}, vertices={"outer": vertices}, source=source,
+                          precision="double")
+    (made * given).sum().backward()
+    found = scene.gradient(given.numpy(), wrt=("poses", "source", "vertices"), precision="double")
+    np.testing.assert_allclose(pose.grad[:3, 3], found["poses"]["inner"][:3], rtol=1e-9)
+    np.testing.assert_allclose(source.grad, found["source"])
+    np.testing.assert_allclose(vertices.grad, found["vertices"]["outer"])
