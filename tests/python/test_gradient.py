@@ -138,3 +138,19 @@ def test_torch(scene):
     np.testing.assert_allclose(pose.grad[:3, 3], found["poses"]["inner"][:3], rtol=1e-9)
     np.testing.assert_allclose(source.grad, found["source"])
     np.testing.assert_allclose(vertices.grad, found["vertices"]["outer"])
+
+
+def test_torch_by_its_own_check(scene):
+    torch = pytest.importorskip("torch")
+    rows = torch.tensor(np.array(scene["inner"].pose)[:3], requires_grad=True)
+    last = torch.tensor([[0.0, 0.0, 0.0, 1.0]], dtype=torch.float64)
+    source = torch.tensor([7.0, 11.0, -1000.0], dtype=torch.float64, requires_grad=True)
+    given = torch.tensor(weights((24, 32)))
+
+    def loss(by_rows, by_source):
+        made = sk.torch.image(scene, poses={"inner": torch.cat((by_rows, last))}, source=by_source, precision="double", quantity="attenuation")
+        return (made * given).sum().reshape(1)
+
+    # central differences over 2e-5 mm: a hit that changes its face changes its slope by that much, and the sum over 768 pixels
+    # of numbers of order 1 is rounded by 1e-13, which is 1e-8 of the differences; torch's own tolerances are 1e-3 and 1e-5
+    assert torch.autograd.gradcheck(loss, (rows, source), eps=1e-5, atol=1e-5, rtol=1e-3)
