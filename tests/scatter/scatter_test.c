@@ -39,6 +39,39 @@ START_TEST(nothing_scatters_nothing) {
 }
 END_TEST
 
+/* Orders and kinds add up to the scatter, to the rounding of six floats of which each is rounded once. */
+START_TEST(components_add_up) {
+    subject s;
+    subject_open(&s);
+    subject_fill(&s);
+    subject_plan(&s);
+    pictures p = subject_pictures(&s, NULL);
+    const skg_scatter_report report = subject_report(&s);
+    double *sums = calloc((size_t)p.count, sizeof *sums), shares[6] = {0}, all = 0;
+    float *image = calloc((size_t)p.count, sizeof *image);
+    for (int32_t k = 0; k < 6; k++) {
+        skg_output output;
+        skg_output_init(&output);
+        output.data = image;
+        output.kind = SKG_OUTPUT_SCATTER_COMPONENT;
+        output.component = k;
+        ck_skg(skg_plan_image(s.plan, &output));
+        for (int64_t i = 0; i < p.count; i++) sums[i] += (double)image[i];
+        for (int64_t i = 0; i < p.count; i++) shares[k] += (double)image[i];
+        all += shares[k];
+    }
+    for (int64_t i = 0; i < p.count; i++)
+        ck_assert_double_eq_tol(sums[i], (double)p.scatter[i], 16 * (double)FLT_EPSILON * report.mean);
+    /* The report counts photons where they arrive; with the falloff on the images do so, too, but for the smoothing's grid: 1 %. */
+    ck_assert_double_eq_tol((shares[0] + shares[3]) / all, report.orders[0], 0.01);
+    ck_assert_double_eq_tol((shares[0] + shares[1] + shares[2]) / all, report.rayleigh, 0.01);
+    free(sums);
+    free(image);
+    pictures_free(&p);
+    subject_close(&s);
+}
+END_TEST
+
 /* What frames of an option are, with and without scatter. */
 static void subtract(int32_t quantity, int32_t falloff) {
     subject s;
@@ -288,6 +321,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_test(tests, nothing_scatters_nothing);
+    tcase_add_test(tests, components_add_up);
     tcase_add_test(tests, images_are_primary_plus_scatter);
     tcase_add_test(tests, without_falloff_scatter_is_over_the_shape_of_the_open_beam);
     tcase_add_test(tests, strategies_have_the_same_scatter);

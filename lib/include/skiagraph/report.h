@@ -127,9 +127,9 @@ typedef struct {
     int64_t histories;
     /** Wall time, from the cells to the smoothed image. */
     double seconds;
-    /** Share of photons with one, two, and three or more interactions. */
+    /** Share of photons with one, two, and three or more interactions; 0 for a frame of a series (scatter_series.h). */
     double orders[3];
-    /** Share of Rayleigh scattering alone; the rest had at least one Compton scattering. */
+    /** Share of Rayleigh scattering alone; the rest had at least one Compton scattering. 0 for a frame of a series. */
     double rayleigh;
     /** Cells along x, y and z. */
     int64_t cells[3];
