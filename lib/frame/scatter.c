@@ -40,10 +40,7 @@ static skg_status compute_own(skg_job *job, const skg_scatter_work *scatter, int
 /* From the series of the frame. */
 static skg_status take(skg_job *job, const skg_scatter_work *scatter, const skg_frame *frame, int component) {
     const skg_scatter_series *series = frame->scatter_series;
-    if (series->recipe->scene != scatter->recipe->scene ||
-        series->recipe->materials != scatter->recipe->materials ||
-        series->recipe->options.quantity != scatter->recipe->options.quantity ||
-        series->recipe->options.noise != scatter->recipe->options.noise)
+    if (series->owner != job->scatterer->number || series->recipe->materials != scatter->recipe->materials)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "scatter: the series was made by another plan, or for other materials");
     if (!(frame->series_place >= 0 && frame->series_place <= (double)(series->report.frames - 1)))

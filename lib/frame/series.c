@@ -50,6 +50,8 @@ static skg_status make(describing *d, int64_t count, skg_scatter_series **series
     SKG_TRY(skg_alloc(1, sizeof *made, "series", &made));
     skg_refs_init(&made->refs);
     made->number = ++numbers;
+    if (!d->plan->scatterer.number) d->plan->scatterer.number = ++numbers;
+    made->owner = d->plan->scatterer.number;
     made->recipe = skg_recipe_retain(d->plan->recipe);
     const skg_status status = skg_series_make(d->plan->context, count, describe, d, made, &is_smooth);
     if (status != SKG_OK || !is_smooth) skg_scatter_series_release(&made);

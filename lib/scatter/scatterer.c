@@ -12,13 +12,6 @@ enum { FIRST = 512 };
 /* Of the attenuation or of angles in a material, above which a scene is warned of. */
 static const double MIXTURE_ERROR = 0.05;
 
-/* A round may have so many times the histories of the last one. */
-static const double GROWTH_MAX = 16;
-
-/* The error falls with this root of the histories or faster: more slowly than noise alone, because more cosines are kept then. A
- * round that ends near what was asked for would end by luck, with too small an error stated. */
-static const double ROOT = 2.5;
-
 /* What the scatter of a frame depends on. */
 static skg_digest key_of(const skg_scatter_work *work) {
     const skg_recipe *recipe = work->recipe;
@@ -73,10 +66,7 @@ static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tra
         SKG_TRY(fit(a, &a->mean, 0, SKG_SCATTER_KINDS));
         const double error = a->mean.mean > 0 ? a->mean.sigma / a->mean.mean : 0;
         if (asked->histories || error <= asked->tolerance || end >= SKG_SCATTER_HISTORIES) break;
-        /* Powers of two, of which the lattice is best. */
-        const double more = fmin(pow(error / asked->tolerance, ROOT), GROWTH_MAX);
-        end *= 2;
-        for (double factor = 2; factor < more && end < SKG_SCATTER_HISTORIES; factor *= 2) end *= 2;
+        end = skg_trace_next(end, error, asked->tolerance);
     }
     return SKG_OK;
 }

@@ -17,6 +17,7 @@ typedef struct {
         components[SKG_SCATTER_KINDS]; /* enum skg_scatter_component; without values: nothing scatters */
     double photons, signal;            /* as of skg_shown_scatter */
     skg_digest key;                    /* of the frame they hold for */
+    int64_t number;                    /* no other one of the process has it; 0: it has made no series yet */
     int32_t known;                     /* 1: they hold for it */
     int32_t warned;                    /* 1: of materials that four coefficients mix badly */
     skg_scatter_report report;

@@ -14,9 +14,6 @@ enum { CHECKS = sizeof CHECKED / sizeof *CHECKED };
 /* A difference from these counts above so many of its standard errors, and if it is more than this share of the error. */
 static const double SURE = 2, SHARE = 0.5;
 
-/* As of one frame (scatterer.c). */
-static const double ROOT = 2.5, GROWTH_MAX = 16;
-
 /* A frame that is followed. */
 typedef struct {
     int64_t index, end; /* histories of a batch so far */
@@ -34,7 +31,7 @@ typedef struct {
     void *user;
     int64_t count, columns, rows; /* of frames; of the grid */
     int32_t noise;
-    int64_t intervals, knot_count, end;
+    int64_t intervals, end;
     knot *knots; /* [intervals + 1] */
     knot checks[CHECKS];
     int64_t *sums; /* as skg_trace_read */
@@ -211,9 +208,7 @@ static skg_status converge(maker *m, int32_t *is_smooth) {
         m->series->mean.sigma = sigma;
         *is_smooth = 1;
         if (asked->histories || error <= tolerance || m->end >= SKG_SCATTER_HISTORIES) return SKG_OK;
-        const double more = fmin(pow(error / tolerance, ROOT), GROWTH_MAX);
-        m->end *= 2;
-        for (double factor = 2; factor < more && m->end < SKG_SCATTER_HISTORIES; factor *= 2) m->end *= 2;
+        m->end = skg_trace_next(m->end, error, tolerance);
     }
 }
 

@@ -11,6 +11,7 @@ struct skg_scatter_series {
     skg_refs refs;
     skg_recipe *recipe;       /* retained */
     int64_t number;           /* no other series of the process has it */
+    int64_t owner;            /* of the plan's scatterer */
     skg_joint mean, variance; /* in photons of the spectrum; variance: with noise alone */
     double signal, power;     /* as of skg_shown_scatter */
     skg_scatter_series_report report;

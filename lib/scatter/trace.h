@@ -24,6 +24,9 @@ typedef struct {
 /* The grid on which photons are counted. */
 void skg_trace_places(const skg_scatter_work *work, int64_t *columns, int64_t *rows);
 
+/* How many histories of each batch follow `end` of them, whose error is above the tolerance. */
+int64_t skg_trace_next(int64_t end, double error, double tolerance);
+
 /* Uploads what a frame needs and clears the sums. columns, rows: places of the detector. */
 skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
                            const skg_scatter_object *object, const skg_scatter_tables *tables,

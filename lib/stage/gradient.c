@@ -37,6 +37,19 @@ typedef struct {
     int32_t forward; /* 1: derivatives of pixels */
 } gather_run;
 
+static gather_run run_of(const skg_pass *pass, const skg_geometry *geometry, const skg_hits_memory *hits,
+                         skg_gradient_memory *memory, skg_staging *staging, int32_t forward) {
+    return (gather_run){.pass = pass,
+                        .geometry = geometry,
+                        .hits = hits,
+                        .memory = memory,
+                        .staging = staging,
+                        .raster = pass->main.raster,
+                        .context = pass->main.raster->context,
+                        .is_double = geometry->precision == SKG_PRECISION_DOUBLE,
+                        .forward = forward};
+}
+
 static size_t real_size(const skg_raster *raster) {
     return raster->options.kernels.precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
 }
@@ -251,15 +264,7 @@ static skg_status run_faces(const gather_run *run) {
 skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometry,
                                const skg_hits_memory *hits, skg_gradient_memory *memory, skg_staging *staging,
                                skg_gathered *gathered) {
-    const skg_raster *raster = pass->main.raster;
-    gather_run run = {.pass = pass,
-                      .geometry = geometry,
-                      .hits = hits,
-                      .memory = memory,
-                      .staging = staging,
-                      .raster = raster,
-                      .context = raster->context,
-                      .is_double = geometry->precision == SKG_PRECISION_DOUBLE};
+    gather_run run = run_of(pass, geometry, hits, memory, staging, 0);
     double *most = NULL, *scales = NULL, *units = NULL;
     int64_t *moments = NULL;
     SKG_TRY(begin(&run));
@@ -307,16 +312,7 @@ static double find_scale(const gather_run *run, const double *most, double slope
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
                                 skg_staging *staging, double *slopes, double *values, int64_t *saturated) {
-    const skg_raster *raster = pass->main.raster;
-    gather_run run = {.pass = pass,
-                      .geometry = geometry,
-                      .hits = hits,
-                      .memory = memory,
-                      .staging = staging,
-                      .raster = raster,
-                      .context = raster->context,
-                      .is_double = geometry->precision == SKG_PRECISION_DOUBLE,
-                      .forward = 1};
+    gather_run run = run_of(pass, geometry, hits, memory, staging, 1);
     const int64_t pixels = pass->camera.rows * pass->camera.columns, count = 3 * geometry->triangles;
     double *most = NULL, *scales = NULL;
     int64_t *sums = NULL;

@@ -160,6 +160,12 @@ START_TEST(refusals) {
     frame.scatter_series = series;
     ck_skg_fails(skg_plan_submit(other.plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
                  "made by another plan");
+    skg_plan *first = s.plan; /* another plan of the same scene, with another beam */
+    s.plan = NULL, s.kev = 50;
+    subject_plan(&s);
+    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "made by another plan");
+    skg_plan_release(&s.plan);
+    s.plan = first;
     frame.series_place = FRAMES;
     ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
                  "place 64 in a series of 64");

@@ -27,7 +27,7 @@ typedef skg_status (*skg_scatter_series_function)(int64_t index, skg_frame *fram
  * photons, until the error is what skg_scatter.tolerance asks for: root mean square over detector and series, smoothing and the
  * difference of the 5 included. skg_scatter.histories: in each frame that is followed.
  *
- *     plan      retained
+ *     plan      its frames alone can use the series; it may be released before
  *     count     number of frames
  *     function  called for frames in any order, some of them several times
  *     series    result; the caller releases it. NULL: the plan has no scatter, the series has fewer than 32 frames, or its
