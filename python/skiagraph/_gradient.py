@@ -43,7 +43,7 @@ class Differentiable:
         ...                      pixels=(64, 64))
         >>> scene.beam = sk.Beam.mono(60, 1000)
         >>> to_the_right = np.linspace(-1, 1, 64) * np.ones((64, 1))
-        >>> scene.gradient(to_the_right, quantity="attenuation")["poses"]["ball"][0] > 0
+        >>> bool(scene.gradient(to_the_right, quantity="attenuation")["poses"]["ball"][0] > 0)
         True
         """
         for name in wrt:

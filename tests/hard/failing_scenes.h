@@ -13,11 +13,13 @@ typedef struct {
     int32_t strided; /* the image's rows are not dense */
     int32_t shared;  /* on OpenCL objects of the caller, into the caller's buffer */
     int32_t scans;   /* a scan into files, beside the images */
+    int32_t series;  /* the scatter of many frames, beside the images */
+    int32_t derives; /* derivatives, whose weights are the caller's buffer, beside the images */
     const char *device;
     int32_t fresh; /* nothing was kept: the device is tested, and programs are compiled and kept */
 } effects;
 
-enum { FAILING_RUNS = 10 };
+enum { FAILING_RUNS = 11 };
 extern const effects failing_runs[FAILING_RUNS];
 
 /* Writes scene.json, body.json and the files that they name into a folder. */

@@ -3,8 +3,10 @@
  * leak, no file may be half there, and the same plan has to work when asked again. */
 #include "device/device.h"
 #include "hard/failing_calls.h"
+#include "hard/failing_gradient.h"
 #include "hard/failing_scan.h"
 #include "hard/failing_scenes.h"
+#include "hard/failing_series.h"
 #include "hard/failing_shared.h"
 #include "suite.h"
 
@@ -227,9 +229,11 @@ static skg_status draw(run *r) {
     return asked == SKG_OK && r->with->shared ? draw_placed(r) : asked;
 }
 
-/* And the scan where the run has one, of which a projection takes the place of the lengths. */
+/* And what the run has beside it: a projection of a scan, scatter or derivatives take the place of the lengths. */
 static skg_status draw_all(run *r) {
     TRY(draw(r));
+    if (r->with->series) TRY(failing_series(r->plan, &r->view, r->image, r->lengths));
+    if (r->with->derives) TRY(failing_gradient(r->plan, r->scene, &r->view, r->shared.buffer, r->lengths));
     return r->with->scans ? failing_scan(folder, r->plan, r->scene, &r->view, r->lengths) : SKG_OK;
 }
 
