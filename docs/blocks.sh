@@ -3,7 +3,8 @@
 #   blocks.sh list          every block of command lines is fenced as `sh run`, or as `sh` below a comment that says why it
 #                           cannot be run; prints how many there are. Exit status 1 if there is another one.
 #   blocks.sh run FOLDER    runs the blocks fenced as `sh run`, page by page, in FOLDER, a new copy of the project beside
-#                           which ./demo has run: README.md first, the pages in the order of their names
+#                           which ./demo has run: README.md, the installation and the first scene first, then the pages in
+#                           the order of their names
 set -eu
 cd "$(dirname "$0")/.."
 project=$PWD
@@ -34,7 +35,11 @@ run)
     tar -cf - --exclude='./build*' --exclude=./demo-pictures --exclude=./.git . | tar -xf - -C "$2"
     for made in build-release demo-pictures; do ln -s "$project/$made" "$2/$made"; done
     cd "$2"
-    for page in README.md docs/*.md; do
+    set -- README.md docs/install.md docs/first-scene.md
+    for page in docs/*.md; do
+        case " $* " in *" $page "*) ;; *) set -- "$@" "$page" ;; esac
+    done
+    for page; do
         awk '/^```/ { on = ($0 == "```sh run"); next } on' "$page" >blocks.txt
         [ -s blocks.txt ] || continue
         echo "$page: $(grep -c . blocks.txt) lines"
@@ -46,7 +51,7 @@ run)
     done
     ;;
 *)
-    sed -n '2,7s/^# //p' "$0"
+    sed -n '2,8s/^# //p' "$0"
     exit 2
     ;;
 esac

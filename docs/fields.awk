@@ -1,6 +1,19 @@
-# Doxygen's input filter: gives each field of `double a, b;` the comment above the line, which Doxygen gives to a only.
+# Doxygen's input filter. Gives each field of `double a, b;` the comment above the line, which Doxygen gives to a only.
 /^ *\/\*\*/ { comment = ""; inside = 1 }
-inside { comment = comment $0 "\n"; if (/\*\//) inside = 0; print; next }
+inside {
+    # Rows of a table, `    name    what it is`, become a list: Doxygen would run them together, or show them as code.
+    if (match($0, /^ \*     [^ ]+( [^ ]+)*  +/)) {
+        name = substr($0, 8, RLENGTH - 7)
+        sub(/ +$/, "", name)
+        $0 = " * - **" name "**: " substr($0, RLENGTH + 1)
+        row = 1
+    } else if (row && match($0, /^ \*       +/)) $0 = " *   " substr($0, RLENGTH + 1)
+    else row = 0
+    comment = comment $0 "\n"
+    if (/\*\//) inside = row = 0
+    print
+    next
+}
 /^    [A-Za-z_].*,.*;$/ && !/[(){}]/ {
     n = split($0, field, /, */)
     match(field[1], /^ *(const |struct |enum )*[A-Za-z_0-9]+ /)

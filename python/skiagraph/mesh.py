@@ -153,7 +153,7 @@ class Mesh:
 
     @classmethod
     def gyroid(cls, box: Any, period: float, level: float = 0.3, cells: int = 24) -> Mesh:
-        """A sheet of a gyroid in a box: where |sin x cos y + sin y cos z + sin z cos x| is below level.
+        """A sheet of a gyroid in a box: where abs(sin x cos y + sin y cos z + sin z cos x) is below level.
 
         box: (x, y, z) in mm. period: mm. cells: of the grid along a period.
         """

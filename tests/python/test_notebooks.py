@@ -6,11 +6,14 @@ import runpy
 
 import pytest
 
+import skiagraph as sk
+
 EXAMPLES = pathlib.Path(__file__).parents[2] / "examples"
 
 
 @pytest.mark.parametrize("path", sorted(EXAMPLES.glob("*.ipynb")), ids=lambda path: path.name)
 def test_a_notebook_runs(path):
+    pytest.importorskip("matplotlib").use("agg")
     cells = [cell for cell in json.loads(path.read_text())["cells"] if cell["cell_type"] == "code"]
     names = {}
     for cell in cells:
@@ -19,7 +22,7 @@ def test_a_notebook_runs(path):
         exec(compile(tree, path.name, "exec"), names)
         if last is not None:
             shown = eval(compile(ast.Expression(last.value), path.name, "eval"), names)
-            assert "<table>" in shown._repr_html_()
+            assert not isinstance(shown, sk.Scene | sk.Report) or "<table>" in shown._repr_html_()
     assert cells
 
 
