@@ -97,12 +97,20 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                    recipe->options.precision == SKG_PRECISION_DOUBLE ? 64 : 32, &pass->scale);
 }
 
+/* Whether a part that competes, or falls with one that does, adds anything to this frame. */
+static int competitors_contribute(const skg_pass *pass) {
+    for (int64_t s = 0; s < pass->priority.count; s++)
+        if (pass->first[pass->priority.parts[s] + 1] > pass->first[pass->priority.parts[s]]) return 1;
+    return 0;
+}
+
 /* Which parts compete for intervals in this frame. The lengths of a mesh's surface do not depend on other parts. */
 static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
     pass->clip = recipe->options.clip;
     if (!recipe->priority_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
         return SKG_OK;
     SKG_TRY(skg_priority_find(recipe->scene, pass->clip, &pass->camera, pass->extents, &pass->priority));
+    if (!competitors_contribute(pass)) skg_priority_release(&pass->priority);
     for (int64_t s = 0; s < pass->priority.count; s++)
         pass->kernels.source_plane |= pass->extents[pass->priority.parts[s]].near_source;
     return SKG_OK;
