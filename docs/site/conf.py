@@ -46,6 +46,7 @@ sphinx_gallery_conf = {
     "download_all_examples": False,
     "within_subsection_order": "FileNameSortKey",
     "show_signature": False,
+    "capture_repr": (),
     "min_reported_time": 1e9,
     "abort_on_example_error": True,
     "matplotlib_animations": (True, "mp4"),

@@ -4,11 +4,16 @@ Mammography
 A compressed breast with gland, lobe, mass and four calcifications at 28 kV (tungsten and rhodium), without and with the quantum noise
 of 60 mAs. The scene file is one of the examples.
 """
+import numpy as np
+
 import skiagraph as sk
 from figure import SCENES, pixel_at, row, show
 
 scene = sk.Scene(SCENES / "mammography.json")
-pictures, _ = row(2, 4.6, 4.6)
-for axes, noise in zip(pictures, (False, True)):
-    image = scene.image("attenuation", noise=noise)
-    show(axes, image, pixel_at(scene.view), "with quantum noise" if noise else "without noise", "-ln(I/I0)", limits=(1.5, 3.2))
+clean, noisy = (scene.image("attenuation", noise=noise) for noise in (False, True))
+rows, columns = clean.shape
+part = np.s_[int(0.36 * rows):int(0.52 * rows), int(0.02 * columns):int(0.32 * columns)]
+pictures, _ = row(3, 4, 4)
+show(pictures[0], clean, pixel_at(scene.view), "the breast", "-ln(I/I0)", limits=(1.5, 3.2))
+show(pictures[1], clean[part], pixel_at(scene.view), "a part, without noise", "-ln(I/I0)", limits=(2.7, 3.2))
+show(pictures[2], noisy[part], pixel_at(scene.view), "with quantum noise", "-ln(I/I0)", limits=(2.7, 3.2))

@@ -1,7 +1,7 @@
 """
 Foam
 ====
-3,000 pores of an aluminium foam as one closed mesh: an image with phase-free contrast, and a slice of its reconstruction at 60 keV.
+1,500 pores of an aluminium foam as one closed mesh: an image at 60 keV, and a slice of the volume from 200 of them.
 """
 import skiagraph as sk
 from figure import pixel_at, row, show
