@@ -67,18 +67,18 @@ class Server:
         self.process.communicate()
 
 
-class Page:
-    """A connection, as the page has one."""
+class Socket:
+    """A WebSocket."""
 
-    def __init__(self, server, token=None, origin=None, receive_buffer=None):
+    def __init__(self, port, path, origin=None, receive_buffer=None):
         key = base64.b64encode(os.urandom(16)).decode()
         self.socket = socket.socket()
         if receive_buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
         self.socket.settimeout(60)
-        self.socket.connect(("127.0.0.1", server.port))
-        lines = [f"GET /socket?token={token or server.token} HTTP/1.1", f"Host: 127.0.0.1:{server.port}",
-                 "Upgrade: websocket", "Connection: Upgrade", f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
+        self.socket.connect(("127.0.0.1", port))
+        lines = [f"GET {path} HTTP/1.1", f"Host: 127.0.0.1:{port}", "Upgrade: websocket", "Connection: Upgrade",
+                 f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
         if origin:
             lines.append(f"Origin: {origin}")
         self.socket.sendall("\r\n".join([*lines, "", ""]).encode())
@@ -88,7 +88,6 @@ class Page:
         if self.status == 101:
             proof = base64.b64encode(hashlib.sha1((key + "258EAFA5-E914-47DA-95CA-C5AB0DC85B11").encode()).digest())
             assert proof in head
-        self.wishes, self.texts, self.acknowledges = 0, [], True
 
     def until(self, end):
         while end not in self.rest:
@@ -100,8 +99,7 @@ class Page:
         return head
 
     def exactly(self, count):
-        pieces = [self.rest]
-        have = len(self.rest)
+        pieces, have = [self.rest], len(self.rest)
         while have < count:
             chunk = self.socket.recv(1 << 20)
             if not chunk:
@@ -115,20 +113,20 @@ class Page:
     def send_raw(self, code, data, fin=True):
         mask, size = os.urandom(4), len(data)
         head = bytes([(0x80 if fin else 0) | code])
-        head += bytes([0x80 | size]) if size < 126 else (
-            bytes([0x80 | 126]) + struct.pack(">H", size) if size < 1 << 16 else bytes([0x80 | 127]) + struct.pack(">Q", size))
+        if size < 126:
+            head += bytes([0x80 | size])
+        elif size < 1 << 16:
+            head += bytes([0x80 | 126]) + struct.pack(">H", size)
+        else:
+            head += bytes([0x80 | 127]) + struct.pack(">Q", size)
         self.socket.sendall(head + mask + bytes(byte ^ mask[i & 3] for i, byte in enumerate(data)))
 
     def send(self, message):
         self.send_raw(1, json.dumps(message).encode())
 
-    def wish(self, **keys):
-        self.wishes += 1
-        self.send({"wish": self.wishes, **keys})
-        return self.wishes
-
-    def receive(self):
-        """A Frame, a dictionary, or bytes of a file. Frames are acknowledged."""
+    def receive_raw(self):
+        """Code and data of the next message, whose pieces are joined."""
+        whole, kind = b"", 0
         while True:
             first, second = self.exactly(2)
             size = second & 127
@@ -136,20 +134,41 @@ class Page:
                 size = struct.unpack(">H", self.exactly(2))[0]
             elif size == 127:
                 size = struct.unpack(">Q", self.exactly(8))[0]
-            data = self.exactly(size)
-            code = first & 15
-            if code == 1:
-                message = json.loads(data)
-                self.texts.append(message)
-                return message
-            if code == 2 and data[:4] == b"SKLF":
-                if self.acknowledges:
-                    self.send({"ack": struct.unpack_from("<I", data, 4)[0]})
-                return Frame(data)
-            if code == 2:
-                return data
+            data, code = self.exactly(size), first & 15
             if code == 8:
                 raise EOFError
+            if code > 2:
+                continue
+            kind, whole = kind or code, whole + data
+            if first & 0x80:
+                return kind, whole
+
+    def close(self):
+        self.socket.close()
+
+
+class Page(Socket):
+    """A connection, as the page has one."""
+
+    def __init__(self, server, token=None, origin=None, receive_buffer=None):
+        super().__init__(server.port, f"/socket?token={token or server.token}", origin, receive_buffer)
+        self.wishes, self.acknowledges = 0, True
+
+    def wish(self, **keys):
+        self.wishes += 1
+        self.send({"wish": self.wishes, **keys})
+        return self.wishes
+
+    def receive(self):
+        """A Frame, a dictionary, or the bytes of a file. Frames are acknowledged."""
+        code, data = self.receive_raw()
+        if code == 1:
+            return json.loads(data)
+        if data[:4] != b"SKLF":
+            return data
+        if self.acknowledges:
+            self.send({"ack": struct.unpack_from("<I", data, 4)[0]})
+        return Frame(data)
 
     def find(self, what, seconds=60):
         """The next message for which what(message) is true."""
@@ -167,6 +186,3 @@ class Page:
     def text(self, key):
         """The next message with this key."""
         return self.find(lambda m: isinstance(m, dict) and key in m)
-
-    def close(self):
-        self.socket.close()

@@ -115,6 +115,7 @@ json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const
     json_object_set_new(object, "wish", json_integer(wish->number));
     json_object_set_new(object, "ms", cli_json_number(ms));
     json_object_set_new(object, "phase", cli_json_number(wish->phase));
+    json_object_set_new(object, "state", live_wish_json(wish));
     json_object_set_new(object, "stages", stages_json(is_draft ? scene->draft : scene->plan));
     json_object_set_new(object, "scatter", is_draft ? json_null() : scatter_json(scene));
     if (live_describe_view(scene, view, seen) == CLI_DONE)

@@ -168,7 +168,7 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
         return 0;
     shot->ms = cli_now_ms() - start;
     if (shot->is_dropped) return 1;
-    if (!is_draft) scene->frame_ms = shot->ms;
+    if (!is_draft && scene->frames++ > 0) scene->frame_ms = shot->ms;
     live_header header = {
         .mark = {'S', 'K', 'L', 'F'},
         .number = (uint32_t)number,

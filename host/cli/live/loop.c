@@ -158,9 +158,11 @@ static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
     if (cli_now_ms() - loop->looked_ms > LOOK) read_again(loop);
     if (!loop->is_told) tell_scene(loop, 0);
-    if (!loop->is_wanted && live_hub_is_thirsty(loop->hub)) /* a page is there */
-        if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
-            tell_error(loop, loop->wish.number, sentence);
+    if (loop->is_wanted || !live_hub_is_thirsty(loop->hub)) return; /* no page is there */
+    if (loop->scene.frames == 1)
+        loop->is_wanted = 1; /* once more, for its time */
+    else if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
+        tell_error(loop, loop->wish.number, sentence);
 }
 
 void live_loop_run(live_loop *loop, double idle) {

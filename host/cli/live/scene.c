@@ -221,7 +221,8 @@ int live_scene_draft(const live_base *base, live_scene *scene, double ms, char *
     const int has_scatter = options.scatter != NULL;
     const double pixels = (double)(view.columns * view.rows);
     int64_t factor = 1;
-    if (scene->draft || (scene->frame_ms <= ms && !has_scatter)) return 1;
+    if (scene->is_drafted || (scene->frame_ms <= ms && !has_scatter)) return 1;
+    scene->is_drafted = 1;
     /* what a frame takes goes about with its pixels; with scatter the time of the rest is not known */
     while (scene->frame_ms / (double)(factor * factor) > ms && pixels / (double)(factor * factor) > 4096)
         factor++;

@@ -33,13 +33,16 @@ typedef struct {
     int is_posed;        /* 1: the meshes are no longer where the file has them */
     skg_plan *plan;
     skg_plan *draft;     /* for images while something is dragged; NULL: the plan serves */
+    int is_drafted;      /* 1: a draft was made, or could not be */
     int64_t factor;      /* pixels of the detector for each of the draft, along a side */
     json_t *settings;    /* of the wish with which it was made */
     skg_channel channel; /* what the images hold */
     int64_t parts, projections;
     double load_ms, plan_ms;
-    double frame_ms; /* of the last whole image */
-    float *values;   /* [rows][columns] of an image */
+    double
+        frame_ms; /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
+    int64_t frames; /* whole images so far */
+    float *values;  /* [rows][columns] of an image */
 } live_scene;
 
 /* Loads the scene, without a plan. The caller calls live_scene_free, also after a failure. */

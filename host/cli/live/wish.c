@@ -11,6 +11,7 @@
 
 enum { SETTINGS_MAX = 1000, KEY_MAX = 400 };
 static const char *const quantities[] = {[SKG_QUANTITY_ENERGY] = "energy",
+                                         [SKG_QUANTITY_FLUENCE] = "fluence",
                                          [SKG_QUANTITY_PHOTONS] = "photons",
                                          [SKG_QUANTITY_TRANSMISSION] = "transmission",
                                          [SKG_QUANTITY_ATTENUATION] = "attenuation"};
@@ -108,7 +109,7 @@ static int read_quantity(json_t *value, live_wish *wish, char *sentence) {
             wish->quantity = i;
             return 1;
         }
-    return refuse(sentence, "\"quantity\" is not energy, photons, transmission or attenuation");
+    return refuse(sentence, "\"quantity\" is not energy, fluence, photons, transmission or attenuation");
 }
 
 static int read_numbers(const char *key, json_t *value, live_wish *wish, char *sentence) {
