@@ -122,6 +122,14 @@ static void *run_sender(void *user) {
     return NULL;
 }
 
+int live_hub_is_full(live_hub *hub) {
+    int place = 0;
+    pthread_mutex_lock(&hub->lock);
+    while (place < LIVE_PAGES_MAX && hub->clients[place]) place++;
+    pthread_mutex_unlock(&hub->lock);
+    return place == LIVE_PAGES_MAX;
+}
+
 live_client *live_hub_join(live_hub *hub, void *connection) {
     live_client *client = calloc(1, sizeof *client);
     int place = 0;

@@ -20,6 +20,9 @@ void live_hub_free(live_hub *hub);
 
 /* For the server's threads. */
 
+/* Whether there are as many pages as there may be. */
+int live_hub_is_full(live_hub *hub);
+
 /* A page begins. NULL: there are LIVE_PAGES_MAX, or no memory. */
 live_client *live_hub_join(live_hub *hub, void *connection);
 

@@ -104,6 +104,7 @@ static int serve(const cli_arguments *arguments, const flags *given, live_loop *
     int exit_status = make_token(token);
     if (exit_status == CLI_DONE) exit_status = make_token(nonce);
     if (exit_status == CLI_DONE) exit_status = live_loop_begin(loop, nonce);
+    cli_stop_gently(); /* from now on a signal is the end that was meant */
     if (exit_status == CLI_DONE) exit_status = live_server_start(&options, loop->hub, &server);
     if (exit_status == CLI_DONE)
         exit_status = announce(arguments, given->address, live_server_port(server), token);

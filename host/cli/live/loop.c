@@ -167,7 +167,6 @@ static void rest(live_loop *loop) {
 
 void live_loop_run(live_loop *loop, double idle) {
     char sentence[LIVE_SENTENCE];
-    cli_stop_gently();
     while (!cli_stop_asked()) {
         live_asked asked;
         play(loop);

@@ -89,7 +89,10 @@ static int begin_request(struct mg_connection *connection) {
     if (strcmp(request->request_method, "GET") != 0)
         return answer(connection, 405, "Method Not Allowed", "This server answers GET only.\n");
     if (strcmp(request->local_uri, "/") == 0) return answer_page(server, connection);
-    if (strcmp(request->local_uri, "/socket") == 0 && mg_get_header(connection, "Upgrade")) return 0;
+    if (strcmp(request->local_uri, "/socket") == 0 && mg_get_header(connection, "Upgrade"))
+        return live_hub_is_full(server->hub) ? answer(connection, 503, "Service Unavailable",
+                                                      "As many pages as there may be are open.\n")
+                                             : 0;
     return answer(connection, 404, "Not Found", "There is one page here: /\n");
 }
 

@@ -9,7 +9,7 @@
 #include <stdio.h>
 #include <string.h>
 
-enum { SETTINGS_MAX = 1000, KEY_MAX = 400 };
+enum { SETTINGS_MAX = 1000, KEY_MAX = 400, DEPTH_MAX = 40 };
 static const char *const quantities[] = {[SKG_QUANTITY_ENERGY] = "energy",
                                          [SKG_QUANTITY_FLUENCE] = "fluence",
                                          [SKG_QUANTITY_PHOTONS] = "photons",
@@ -192,9 +192,27 @@ static int read_object(json_t *object, live_message *message, char *sentence) {
     return 1;
 }
 
+/* How deep arrays and objects are nested. The parser calls itself for each, and threads of the server have a small stack. */
+static int depth_of(const char *text, size_t length) {
+    int depth = 0, deepest = 0, is_text = 0;
+    for (size_t i = 0; i < length; i++) {
+        if (is_text && text[i] == '\\')
+            i++;
+        else if (text[i] == '"')
+            is_text = !is_text;
+        else if (!is_text && (text[i] == '[' || text[i] == '{'))
+            deepest = ++depth > deepest ? depth : deepest;
+        else if (!is_text && (text[i] == ']' || text[i] == '}'))
+            depth--;
+    }
+    return deepest;
+}
+
 int live_message_read(const char *text, size_t length, live_message *message, char sentence[LIVE_SENTENCE]) {
     json_error_t error;
     *message = (live_message){0};
+    if (depth_of(text, length) > DEPTH_MAX)
+        return refuse(sentence, "a message is nested more than %d deep", DEPTH_MAX);
     json_t *object = json_loadb(text, length, JSON_REJECT_DUPLICATES, &error);
     if (!object) return refuse(sentence, "a message is no JSON: %.150s", error.text);
     const int is_read = json_is_object(object) ? read_object(object, message, sentence)

@@ -37,8 +37,16 @@ function draw() {
   dirty = false;
 }
 
+// Where the view takes long, as WebGL in software does, it is drawn less often, so that the X-ray image stays fluent.
+let nextDraw = 0;
 function step3D() {
-  if (dirty) draw();
+  if (dirty && performance.now() >= nextDraw) {
+    const began = performance.now();
+    draw();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
+    const took = performance.now() - began, isFluent = took < 20 || fingers.size > 0 || grip;
+    nextDraw = began + took + (isFluent ? 0 : Math.min(6 * took, 1000));
+  }
   requestAnimationFrame(step3D);
 }
 
