@@ -142,9 +142,11 @@ static int pack(const float *values, live_header *header, live_shot *shot) {
     uint16_t *numbers = (uint16_t *)(void *)(shot->bytes + sizeof *header);
     const float scale = header->step > 0 ? (float)(1 / header->step) : 0;
     for (int64_t i = 0; i < count; i++) {
-        const float number = (values[i] - low) * scale + 0.5F;
-        /* what is not finite is shown as the largest */
-        numbers[i] = number >= 0 && number < 65535 ? (uint16_t)number : number < 0 ? 0 : UINT16_MAX;
+        float number = (values[i] - low) * scale + 0.5F;
+        number =
+            number <= UINT16_MAX ? number : UINT16_MAX; /* what is no number is shown as the largest, too */
+        number = number > 0 ? number : 0;
+        numbers[i] = (uint16_t)(int32_t)number;
     }
     memcpy(shot->bytes, header, sizeof *header);
     return 1;

@@ -156,7 +156,6 @@ static void answer(live_loop *loop, const live_asked *asked) {
 /* What can wait until nothing is asked for. */
 static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
-    if (cli_now_ms() - loop->looked_ms > LOOK) read_again(loop);
     if (!loop->is_told) tell_scene(loop, 0);
     if (loop->is_wanted || !live_hub_is_thirsty(loop->hub)) return; /* no page is there */
     if (loop->scene.frames == 1)
@@ -169,6 +168,7 @@ void live_loop_run(live_loop *loop, double idle) {
     char sentence[LIVE_SENTENCE];
     while (!cli_stop_asked()) {
         live_asked asked;
+        if (cli_now_ms() - loop->looked_ms > LOOK) read_again(loop);
         play(loop);
         const int is_ready = loop->is_wanted && live_hub_is_thirsty(loop->hub);
         const int has = live_hub_wait(loop->hub, is_ready ? 0 : PAUSE, &asked);

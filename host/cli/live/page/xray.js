@@ -69,7 +69,7 @@ function showFrame(frame) {
   paint();
   drawHistogram();
   drawProfile();
-  showValue();
+  if (xray.at) moveCursor(xray.at);
   showCost(frame);
 }
 
