@@ -2,7 +2,7 @@
 
 #include "common/encode.h"
 #include "common/say.h"
-#include "live/frame.h"
+#include "live/page.h"
 
 #include <math.h>
 #include <string.h>
@@ -118,7 +118,7 @@ json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const
     json_object_set_new(object, "state", live_wish_json(wish));
     json_object_set_new(object, "stages", stages_json(is_draft ? scene->draft : scene->plan));
     json_object_set_new(object, "scatter", is_draft ? json_null() : scatter_json(scene));
-    if (live_describe_view(scene, view, seen) == CLI_DONE)
+    if (live_page_view(scene, view, seen) == CLI_DONE)
         json_object_set_new(object, "view", seen);
     else
         json_decref(seen);

@@ -15,11 +15,4 @@ json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const
 /* A number that differs where the surfaces of two scenes do. */
 int64_t live_geometry_of(const live_scene *scene);
 
-/* The page as HTML with the scene of a wish in it, which is loaded once more, because its breath is posed. The caller frees it; NULL
- * with an error printed. */
-char *live_page_make(const live_base *base, const live_wish *wish, const char *nonce);
-
-/* Adds source, beam and detector as the page draws them. */
-int live_describe_view(const live_scene *scene, const skg_view *view, json_t *object);
-
 #endif

@@ -7,6 +7,7 @@
 #include "live/ask.h"
 #include "live/describe.h"
 #include "live/frame.h"
+#include "live/page.h"
 
 #include <math.h>
 #include <stdlib.h>

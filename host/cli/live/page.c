@@ -1,4 +1,4 @@
-#include "live/describe.h"
+#include "live/page.h"
 
 #include "common/say.h"
 #include "view/pages.h"
@@ -94,7 +94,7 @@ char *live_page_make(const live_base *base, const live_wish *wish, const char *n
     return html;
 }
 
-int live_describe_view(const live_scene *scene, const skg_view *view, json_t *object) {
+int live_page_view(const live_scene *scene, const skg_view *view, json_t *object) {
     cli_session session = scene->session;
     skg_look look;
     view_places places = {0};
