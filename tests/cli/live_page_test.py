@@ -96,8 +96,8 @@ def beam_and_dials(tried):
     check("reset", run("frameSum()") == first)
     run("byId('key').value = 'Source.Beem=1'; byId('key-form').requestSubmit()")
     tried.browser.until("byId('sentence').textContent.includes('Beem')")
-    run("byId('undo').click()")
     tried.still()
+    check("what was refused is taken back", run("!('Source.Beem' in state.settings)") and run("frameSum()") == first)
 
 
 def geometry(tried):

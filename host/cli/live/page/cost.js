@@ -6,7 +6,7 @@ function showCost(frame) {
   const now = performance.now();
   rates.push(now);
   while (rates.length && now - rates[0] > 2000) rates.shift();
-  const each = rates.length > 1 ? `, ${number(1000 * (rates.length - 1) / (now - rates[0]), 3)} images/s` : '';
+  const each = rates.length > 5 ? `, ${number(1000 * (rates.length - 1) / (now - rates[0]), 3)} images/s` : '';
   const reduced = frame.factor > 1 ? `, every ${frame.factor}th pixel while it moves` : '', notes = [];
   byId('ms').textContent = `${number(frame.ms, 3)} ms for ${frame.columns} x ${frame.rows}${each}${reduced}`;
   if (frame.notes & 2) notes.push('Some values are not finite; they are shown as the largest.');

@@ -35,6 +35,7 @@ function takeScene(message) {
     const {wish, ...kept} = live.state;
     state = kept;
     net.sent = wish;
+    good = JSON.stringify(state);
     fillBeam();
     fillMotion();
     fillDials();
@@ -103,7 +104,7 @@ function begin() {
   Object.assign(net, {show: showFrame});
   net.hear.role = message => { net.role = message.role; showRole(isOwner() ? '' : 'another page changes the scene; this one shows it'); change(); };
   net.hear.scene = takeScene;
-  net.hear.error = message => showSentence(message.error, true);
+  net.hear.error = message => { giveUp(message.wish); showSentence(message.error, true); };
   net.hear.refused = message => showSentence(message.refused);
   for (const [id, act] of Object.entries({undo, redo, reset})) byId(id).onclick = () => { act(); describe(); change(); };
   byId('dark').onclick = () => setDark(!document.documentElement.classList.contains('dark'));

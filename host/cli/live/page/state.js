@@ -25,8 +25,26 @@ const watch = act => { watchers.push(act); act(); };
 const changed = () => watchers.forEach(act => act());
 const isOwner = () => net.role === 'owner';
 
+// States by their wish, and the last one of which there is an image: what the server refuses is taken back.
+const asked = new Map();
+let good = null;
+function noteGood(wish) {
+  good = asked.get(wish) ?? good;
+  for (const older of asked.keys()) if (older < wish) asked.delete(older);
+}
+function giveUp(wish) {
+  const bad = asked.get(wish);
+  if (!isOwner() || !good || !bad || bad === good || bad !== JSON.stringify(state)) return;
+  state = JSON.parse(good);
+  if (trail.past.at(-1) === good) trail.past.pop();
+  ask(false);
+}
+
 function ask(dragging) {
-  sendWish(() => ({...state, drag: dragging}));
+  sendWish(() => {
+    asked.set(net.sent, JSON.stringify(state));
+    return {...state, drag: dragging};
+  });
   byId('undo').disabled = !trail.past.length;
   byId('redo').disabled = !trail.future.length;
   changed();
@@ -36,6 +54,7 @@ function ask(dragging) {
 function alter(act, dragging = false, begun = null) {
   if (!isOwner()) return;
   const old = begun || JSON.stringify(state);
+  byId('sentence').hidden = true;
   act(state);
   if (!dragging && JSON.stringify(state) !== old) {
     trail.past.push(old);

@@ -64,6 +64,7 @@ function paint() {
 
 function showFrame(frame) {
   xray.frame = frame;
+  noteGood(frame.wish);
   byId('waiting').hidden = true;
   if (xray.auto) autoWindow(frame);
   paint();
