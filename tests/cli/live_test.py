@@ -147,6 +147,10 @@ def errors(path):
         assert page.wish(projection=4) and "projection" in page.text("error")["error"]
         frame = page.frame(page.wish(settings={"Source.Position": [8, -400, 0, "mm"]}))
         assert frame.wish == page.wishes
+        # warnings of what a page makes go to the pages
+        page.wish(settings={"Source.Beam": {"kVp": 12}, "Source.Position": [8, -400, 0, "mm"]})
+        assert any("12 kV" in sentence for sentence in page.text("scene")["scene"]["warnings"])
+        assert server.end() == 0 and "12 kV" not in server.process.stderr.read()
 
 
 def malformed(path, seconds=4):

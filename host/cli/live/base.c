@@ -60,6 +60,8 @@ void live_base_free(live_base *base) {
     forget_files(base);
     free(base->text);
     base->text = NULL;
+    json_decref(base->warnings);
+    base->warnings = NULL;
 }
 
 /* The settings of the command line, which the caller frees. */

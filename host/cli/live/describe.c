@@ -64,6 +64,7 @@ json_t *live_describe_scene(const live_base *base, const live_scene *scene, cons
     const char *text = NULL;
     json_t *document = skg_setup_text_get(scene->setup, &text) == SKG_OK ? json_loads(text, 0, NULL) : NULL;
     json_object_set_new(inner, "document", document ? document : json_null());
+    json_object_set_new(inner, "warnings", json_deep_copy(base->warnings));
     json_object_set_new(inner, "path", cli_json_text(base->path));
     json_object_set_new(inner, "device", cli_json_text(base->device.name));
     json_object_set_new(inner, "state", live_wish_json(wish));

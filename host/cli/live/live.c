@@ -128,6 +128,7 @@ int cli_live(const cli_arguments *arguments) {
         exit_status =
             loop.hub ? serve(arguments, &given, &loop) : cli_error(CLI_DEVICE, "out of host memory");
     }
+    if (loop.base.context) (void)skg_context_log_set(loop.base.context, cli_log, NULL);
     live_loop_end(&loop);
     skg_context_release(&loop.base.context);
     return exit_status;

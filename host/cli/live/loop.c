@@ -14,6 +14,7 @@
 #include <string.h>
 
 /* ms: how long to wait for something asked, how often files are looked at, and what an image may take while something is dragged. */
+enum { WARNINGS_MAX = 20 };
 static const double PAUSE = 100, LOOK = 500, FLUENT = 40;
 
 static void tell_error(live_loop *loop, int64_t wish, const char *sentence) {
@@ -46,9 +47,19 @@ static int make_page(live_loop *loop) {
     return 1;
 }
 
+/* Keeps a warning or note for the pages: each wish would repeat it on the terminal. */
+static void keep_warning(int32_t level, const char *sentence, void *user) {
+    json_t *warnings = user;
+    if (level > SKG_LOG_NOTE) return;
+    for (size_t i = 0; i < json_array_size(warnings); i++)
+        if (strcmp(json_string_value(json_array_get(warnings, i)), sentence) == 0) return;
+    if (json_array_size(warnings) < WARNINGS_MAX) json_array_append_new(warnings, cli_json_text(sentence));
+}
+
 /* Makes the scene of a wish; on failure the last one stays. */
 static int change_scene(live_loop *loop, const live_wish *wish, char *sentence) {
     live_scene made;
+    json_array_clear(loop->base.warnings);
     if (!live_scene_make(&loop->base, wish, &made, sentence)) {
         live_scene_free(&made);
         return 0;
@@ -77,9 +88,12 @@ int live_loop_begin(live_loop *loop, const char *nonce) {
     char sentence[LIVE_SENTENCE];
     loop->nonce = nonce;
     live_wish_init(&loop->wish);
+    loop->base.warnings = json_array();
     cli_progress_begin("preparing the scene", 0);
-    int is_made = live_base_read(&loop->base, sentence) && change_scene(loop, &loop->wish, sentence) &&
-                  make_frame(loop, sentence);
+    int is_made = live_base_read(&loop->base, sentence);
+    /* the terminal has the warnings of the file as it is; those that follow are the pages' */
+    (void)skg_context_log_set(loop->base.context, keep_warning, loop->base.warnings);
+    is_made = is_made && change_scene(loop, &loop->wish, sentence) && make_frame(loop, sentence);
     cli_progress_end();
     if (!is_made) return cli_error(CLI_INPUT, "%s", sentence);
     if (!make_page(loop)) return CLI_DEVICE;

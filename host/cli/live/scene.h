@@ -13,6 +13,7 @@ typedef struct {
     const char *path;
     int32_t precision; /* -1: the scene's */
     char *text;        /* the scene file after the settings of the command line, as JSON */
+    json_t *warnings;  /* [sentence] of the library about the last scene that was made */
     int64_t file_count;
     char **files;    /* [file_count] that were read, the scene's own first */
     int64_t *stamps; /* [file_count] when they were changed, in ns */

@@ -43,6 +43,7 @@ function showPlan() {
   const plan = live.plan, on = plan.effects.filter(effect => effect.on);
   byId('plan').textContent = `${plan.precision}, ${plan.triangles} triangles, ${plan.nodes} of ${plan.bins} energies, ${plan.planes} planes, ` +
     `${plan.samples} rays a pixel; error of fewer energies at most ${number(plan.bound, 2)}; loaded in ${number(live.load_ms, 3)} ms, planned in ${number(live.plan_ms, 3)} ms on ${live.device}`;
+  byId('warnings').replaceChildren(...(live.warnings || []).map(sentence => make('p', sentence)));
   byId('effects').replaceChildren(...on.map(effect => {
     const row = make('tr');
     row.append(make('th', effect.name), make('td', effect.reason, 'faint'));
