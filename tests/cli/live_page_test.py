@@ -84,7 +84,7 @@ def beam_and_dials(tried):
     tried.differs("noise", "byId('noise').click()")
     tried.differs("mAs", "typed(byId('mas').querySelector('input'), 0.1)")
     tried.differs("mAs typed", "typed(byId('mas').querySelector('[type=number]'), 1e-4)")
-    check("starved", not run("byId('starved').hidden"), run("byId('photons').textContent"))
+    tried.browser.until("!byId('starved').hidden", 5)
     run("byId('noise').click()")
     tried.still()
     tried.differs("rays", "typed(byId('rays'), '2')")

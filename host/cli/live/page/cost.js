@@ -25,11 +25,20 @@ function bars(box, pairs, text) {
   }));
 }
 
+let lastShot = 0, lastView = '';
 function showShot(message) {
-  bars(byId('stages'), Object.entries(message.stages), ms => number(ms, 3) + ' ms');
+  const now = performance.now(), isCalm = now - lastShot > 200 || !state.play; // while it breathes, texts follow five times a second
+  if (isCalm) lastShot = now, bars(byId('stages'), Object.entries(message.stages), ms => number(ms, 3) + ' ms');
   byId('scattered').textContent = message.scatter ? `scatter: ${message.scatter.histories} photons in ${number(message.scatter.seconds, 3)} s, mean ${number(message.scatter.mean, 3)} +- ${number(message.scatter.sigma, 2)}` : '';
-  if (gl) takeView(message.view); else scene.view = message.view;
-  if (state.play && message.phase !== null) state.phase = message.phase, changed();
+  const view = JSON.stringify(message.view);
+  if (view !== lastView) {
+    lastView = view;
+    if (gl) takeView(message.view); else scene.view = message.view;
+  }
+  if (state.play && message.phase !== null) {
+    state.phase = message.phase;
+    if (isCalm) changed();
+  }
   if (!grip && chosen.kind && chosen.kind !== 'part') describe();
   if (!isOwner()) {
     const {wish, ...kept} = message.state;

@@ -31,6 +31,7 @@ function draw() {
   if (gl) {
     meshes.forEach((mesh, i) => { mesh.pose = new Float32Array([0, 1, 2, 3].flatMap(c => [0, 1, 2, 3].map(r => moveOf(i)[4 * r + c]))); });
     shot.time = state.phase === null ? 0 : state.phase;
+    paintDetector();
     drawScene();
   }
   drawGizmo();
@@ -70,22 +71,22 @@ function takeView(view) {
   for (const item of old) if (item) gl.deleteBuffer(item.buffer);
   if (detector) gl.deleteTexture(detector.texture);
   prepareMarks();
-  paintDetector();
+  if (greyImage) greyImage.isNew = true;
   change();
 }
 
 let greyImage = null;
 function showOnDetector(small, columns, rows) {
-  greyImage = {small, columns, rows};
-  paintDetector();
+  greyImage = {small, columns, rows, isNew: true};
+  change();
 }
 function paintDetector() {
-  if (!gl || !detector || !greyImage) return;
+  if (!detector || !greyImage || !greyImage.isNew) return;
+  greyImage.isNew = false;
   showImage(0);
   gl.bindTexture(gl.TEXTURE_2D, detector.texture);
   gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
   gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, greyImage.columns, greyImage.rows, 0, gl.RED, gl.UNSIGNED_BYTE, greyImage.small);
-  change();
 }
 
 function choose(kind, part = -1) {

@@ -9,15 +9,17 @@ function shownOf(frame, n) {
   return frame.flat > 0 ? -Math.log(Math.max(value, 1e-30 * frame.flat) / frame.flat) : value;
 }
 
+// 256 bins of the numbers, of a sample of 64k or more pixels.
 function countNumbers(frame) {
-  const bins = new Uint32Array(256);
-  for (const n of frame.numbers) bins[n >> 8]++;
+  const bins = new Uint32Array(256), {numbers} = frame, stride = Math.max(1, Math.floor(numbers.length / 65536));
+  for (let i = 0; i < numbers.length; i += stride) bins[numbers[i] >> 8]++;
   return bins;
 }
+const total = bins => bins.reduce((sum, count) => sum + count, 0);
 
 // The numbers below and above which a share of 0.5 % lies.
 function autoWindow(frame) {
-  const bins = countNumbers(frame), cut = 0.005 * frame.numbers.length;
+  const bins = countNumbers(frame), cut = 0.005 * total(bins);
   let first = 0, last = 255;
   for (let sum = bins[0]; sum < cut && first < 255; sum += bins[++first]);
   for (let sum = bins[255]; sum < cut && last > 0; sum += bins[--last]);
@@ -27,7 +29,12 @@ function autoWindow(frame) {
 
 // Greys of all numbers.
 function greys(frame) {
-  const table = new Uint8Array(65536), scale = 255 / (xray.high - xray.low);
+  const table = new Uint8ClampedArray(65536), scale = 255 / (xray.high - xray.low);
+  if (!(frame.flat > 0)) { // without a logarithm, which is most of the time
+    const [from, by] = [(frame.low - xray.low) * scale, frame.step * scale];
+    for (let n = 0; n < 65536; n++) table[n] = xray.inverted ? 255 - (from + by * n) : from + by * n;
+    return table;
+  }
   for (let n = 0; n < 65536; n++) {
     const grey = clamp((shownOf(frame, n) - xray.low) * scale, 0, 255);
     table[n] = xray.inverted ? 255 - grey : grey;
@@ -68,10 +75,16 @@ function showFrame(frame) {
   byId('waiting').hidden = true;
   if (xray.auto) autoWindow(frame);
   paint();
-  drawHistogram();
+  drawHistogramSoon();
   drawProfile();
   if (xray.at) moveCursor(xray.at);
   showCost(frame);
+}
+
+// Five times a second at most while images follow each other; the last one has it in any case.
+let histogramTimer = 0;
+function drawHistogramSoon() {
+  if (!histogramTimer) histogramTimer = setTimeout(() => { histogramTimer = 0; drawHistogram(); }, 200);
 }
 
 function drawHistogram() {
@@ -90,7 +103,7 @@ function drawHistogram() {
   for (const end of [xray.low, xray.high]) draw.fillRect(at(end) - 1, 0, 2, height);
   byId('low').value = number(xray.low), byId('high').value = number(xray.high);
   const photons = live && live.beam.photons, starved = photons > 0 ? bins.reduce((sum, count, i) =>
-    sum + (photons * Math.exp(-shownOf(frame, (i << 8) + 128)) < 10 ? count : 0), 0) / frame.numbers.length : 0;
+    sum + (photons * Math.exp(-shownOf(frame, (i << 8) + 128)) < 10 ? count : 0), 0) / total(bins) : 0;
   byId('starved').hidden = starved < 0.001;
   byId('starved').textContent = `${number(100 * starved, 2)} % of the pixels get fewer than 10 photons.`;
 }
