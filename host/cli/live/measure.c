@@ -10,7 +10,7 @@
 #include <string.h>
 #include <time.h>
 
-/* The dials: what each switch would be instead. Those that change nothing are left out. */
+/* The dials: what each switch would be instead. */
 static const struct {
     const char *name, *key, *value;
     int only_present; /* 1: only where the scene has the key */

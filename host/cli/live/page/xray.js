@@ -52,11 +52,17 @@ function paintFrame(frame) {
   return {picture, small};
 }
 
+// The image fills its half of the page, whatever it has in pixels.
+function fitFilm(frame) {
+  film.width = frame.columns, film.height = frame.rows;
+  byId('sheet').style.setProperty('--aspect', frame.columns / frame.rows);
+}
+
 function paint() {
   const frame = xray.frame;
   if (!frame) return;
   const {picture, small} = paintFrame(frame);
-  if (film.width !== frame.columns || film.height !== frame.rows) film.width = frame.columns, film.height = frame.rows;
+  if (film.width !== frame.columns || film.height !== frame.rows) fitFilm(frame);
   pen.putImageData(picture, 0, 0);
   if (xray.before) {
     const other = xray.before, sheet = new OffscreenCanvas(other.columns, other.rows), width = Math.round(xray.split * film.width);
