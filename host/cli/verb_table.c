@@ -7,6 +7,7 @@ const cli_verb cli_verbs[] = {
     {&cli_manual_lbuffer, cli_lbuffer},
     {&cli_manual_plan, cli_plan},
     {&cli_manual_view, cli_view},
+    {&cli_manual_live, cli_live},
     {&cli_manual_cost, cli_cost},
     {&cli_manual_mesh, cli_mesh},
     {&cli_manual_distance, cli_distance},

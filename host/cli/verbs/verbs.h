@@ -20,6 +20,7 @@ int cli_fit(const cli_arguments *arguments);
 int cli_scan(const cli_arguments *arguments);
 int cli_reconstruct(const cli_arguments *arguments);
 int cli_view(const cli_arguments *arguments);
+int cli_live(const cli_arguments *arguments);
 
 /* `devices --test`: tests every device with all kernels and prints a table, or with json an object. config: the value of --device, or NULL; a driver that it names is tested,
  * too. Returns an exit status. */

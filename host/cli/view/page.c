@@ -132,7 +132,7 @@ static int parts_json(const view_page *page, blob *to, json_t **made) {
 
 /* The corners of the detector, one after the other, those of the beam on its plane and in the jaws, and where the beam to each
  * of these starts. */
-static int view_json(const view_page *page, json_t *object) {
+int view_page_view(const view_page *page, json_t *object) {
     static const char *const names[] = {"point", "parallel", "parallel"};
     const skg_view *view = &page->session->view;
     const skg_collimation *limits = page->look->collimation;
@@ -214,7 +214,7 @@ static int scene_json(const view_page *page, blob *to, json_t *object) {
     int exit_status = parts_json(page, to, &parts);
     json_object_set_new(object, "parts", parts);
     if (exit_status == CLI_DONE) exit_status = image_json(page, to, &image);
-    if (exit_status == CLI_DONE) exit_status = view_json(page, view);
+    if (exit_status == CLI_DONE) exit_status = view_page_view(page, view);
     json_object_set_new(object, "image", image ? image : json_null());
     json_object_set_new(object, "name", cli_json_text(name ? name + 1 : page->session->path));
     json_object_set_new(object, "view", view);
@@ -254,17 +254,23 @@ static int write_page(const char *scene, const char *bytes, const char *path) {
     return cli_file_commit(&file);
 }
 
-int view_page_write(const view_page *page, const char *path) {
+int view_page_texts(const view_page *page, char **scene, char **bytes) {
     blob data = {0};
     json_t *object = json_object();
     int exit_status = scene_json(page, &data, object);
-    char *scene = exit_status == CLI_DONE ? cli_json_for_page(object) : NULL;
-    char *bytes = exit_status == CLI_DONE ? cli_base64("", data.bytes, data.count) : NULL;
-    if (exit_status == CLI_DONE && (!scene || !bytes)) exit_status = fail_memory();
-    if (exit_status == CLI_DONE) exit_status = write_page(scene, bytes, path);
+    *scene = exit_status == CLI_DONE ? cli_json_for_page(object) : NULL;
+    *bytes = exit_status == CLI_DONE ? cli_base64("", data.bytes, data.count) : NULL;
+    if (exit_status == CLI_DONE && (!*scene || !*bytes)) exit_status = fail_memory();
     json_decref(object);
+    free(data.bytes);
+    return exit_status;
+}
+
+int view_page_write(const view_page *page, const char *path) {
+    char *scene, *bytes;
+    int exit_status = view_page_texts(page, &scene, &bytes);
+    if (exit_status == CLI_DONE) exit_status = write_page(scene, bytes, path);
     free(scene);
     free(bytes);
-    free(data.bytes);
     return exit_status;
 }

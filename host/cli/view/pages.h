@@ -6,6 +6,8 @@
 #include "view/picture.h"
 #include "view/surfaces.h"
 
+#include <jansson.h>
+
 /* What the page shows. */
 typedef struct {
     const cli_session *session;
@@ -17,6 +19,16 @@ typedef struct {
     const uint8_t *image;
     int64_t image_columns, image_rows, image_frames;
 } view_page;
+
+/* The scene of a page as JSON that can stand in a script, and the bytes of its surfaces in base 64. The caller frees both, also
+ * after a failure. */
+int view_page_texts(const view_page *page, char **scene, char **bytes);
+
+/* Adds what that scene has under "view": source, beam and detector of page->session->view. */
+int view_page_view(const view_page *page, json_t *object);
+
+/* The triangles of a page with so many moments. */
+int64_t view_most_triangles(int64_t frames);
 
 /* Writes the page. */
 int view_page_write(const view_page *page, const char *path);

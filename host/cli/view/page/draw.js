@@ -3,14 +3,19 @@
 'use strict';
 const canvas = document.getElementById('canvas');
 const gl = canvas.getContext('webgl2', {antialias: true, alpha: false});
+const IDENTITY = new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]); // of a part that stands where its file has it
 const LINE = 1.6, THICK = 2.6, SOURCE = 15, POINT = 6; // CSS pixels
 
 const shaders = {
   mesh: [`#version 300 es
-uniform mat4 m; uniform vec3 low, extent; uniform float between;
+uniform mat4 m, pose; uniform vec3 low, extent; uniform float between;
 layout(location=0) in vec3 a; layout(location=1) in vec3 b; layout(location=2) in vec3 na; layout(location=3) in vec3 nb;
 out vec3 n, world;
-void main() { world = low + extent * mix(a, b, between); n = mix(na, nb, between); gl_Position = m * vec4(world, 1.0); }`,
+void main() {
+  world = (pose * vec4(low + extent * mix(a, b, between), 1.0)).xyz;
+  n = mat3(pose) * mix(na, nb, between);
+  gl_Position = m * vec4(world, 1.0);
+}`,
   `#version 300 es
 precision highp float;
 uniform vec4 colour, eye; uniform vec3 light, glow; uniform float shine; in vec3 n, world; out vec4 shown;
@@ -24,9 +29,9 @@ void main() {
   shown = vec4(mix(c, glow, 0.35 * float(glow != vec3(0.0))), alpha);
 }`],
   pick: [`#version 300 es
-uniform mat4 m; uniform vec3 low, extent; uniform float between;
+uniform mat4 m, pose; uniform vec3 low, extent; uniform float between;
 layout(location=0) in vec3 a; layout(location=1) in vec3 b;
-void main() { gl_Position = m * vec4(low + extent * mix(a, b, between), 1.0); }`,
+void main() { gl_Position = m * (pose * vec4(low + extent * mix(a, b, between), 1.0)); }`,
   `#version 300 es
 precision highp float;
 uniform vec4 colour; out vec4 shown;
@@ -113,7 +118,7 @@ function prepareParts() {
     const mesh = makeMesh(part);
     mesh.frames = mesh.frames.map(f => ({points: buffer(f.points), normals: buffer(f.normals)}));
     mesh.corners = buffer(mesh.numbers, gl.ELEMENT_ARRAY_BUFFER);
-    mesh.colour = part.colour.map(x => x / 255), mesh.visible = true, mesh.array = gl.createVertexArray();
+    mesh.colour = part.colour.map(x => x / 255), mesh.visible = true, mesh.pose = IDENTITY, mesh.array = gl.createVertexArray();
     mesh.volume = part.step.reduce((product, s) => product * (s || 1e-9), 1);
     return mesh;
   });
@@ -181,6 +186,7 @@ function drawMesh(i, program) {
     gl.uniform1f(at.shine, mesh.colour[3] < 1 ? 0 : 0.16);
   }
   gl.uniformMatrix4fv(at.m, false, shot.m);
+  gl.uniformMatrix4fv(at.pose, false, mesh.pose);
   gl.uniform3fv(at.low, part.low);
   gl.uniform3fv(at.extent, part.step.map(s => 65535 * s));
   gl.uniform1f(at.between, between);

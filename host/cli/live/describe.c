@@ -1,0 +1,152 @@
+#include "live/describe.h"
+
+#include "common/encode.h"
+#include "common/say.h"
+#include "live/page.h"
+
+#include <math.h>
+#include <string.h>
+
+static json_t *effects_json(const skg_plan *plan) {
+    json_t *effects = json_array();
+    int64_t count = 0;
+    if (skg_plan_effect_count(plan, &count) != SKG_OK) return effects;
+    for (int64_t i = 0; i < count; i++) {
+        skg_effect effect;
+        skg_effect_init(&effect);
+        if (skg_plan_effect_get(plan, i, &effect) != SKG_OK) continue;
+        json_t *object = json_object();
+        json_object_set_new(object, "name", cli_json_text(effect.name));
+        json_object_set_new(object, "on", json_boolean(effect.on));
+        json_object_set_new(object, "reason", cli_json_text(effect.reason));
+        json_object_set_new(object, "cost", cli_json_number(effect.cost));
+        json_array_append_new(effects, object);
+    }
+    return effects;
+}
+
+static json_t *plan_json(const live_scene *scene) {
+    static const char *const precisions[] = {"single", "double", "half"};
+    skg_plan_report report;
+    json_t *object = json_object();
+    skg_plan_report_init(&report);
+    if (skg_plan_report_get(scene->plan, &report) != SKG_OK) return object;
+    json_object_set_new(object, "precision", json_string(precisions[report.precision]));
+    json_object_set_new(object, "triangles", json_integer(report.triangles));
+    json_object_set_new(object, "planes", json_integer(report.planes));
+    json_object_set_new(object, "nodes", json_integer(report.nodes));
+    json_object_set_new(object, "bins", json_integer(report.bins));
+    json_object_set_new(object, "samples", json_integer(report.samples));
+    json_object_set_new(object, "bound", cli_json_number(report.bound));
+    json_object_set_new(object, "device_mib", cli_json_number((double)report.device_bytes / (1 << 20)));
+    json_object_set_new(object, "effects", effects_json(scene->plan));
+    return object;
+}
+
+/* What the beam leaves in air before the detector, by pixel; null where the beam has no such number. */
+static json_t *beam_json(const live_scene *scene) {
+    json_t *object = json_object();
+    skg_quality quality;
+    skg_spectrum *resolved = NULL;
+    skg_quality_init(&quality);
+    if (skg_spectrum_create_resolved(scene->session.spectrum, &scene->session.view, &resolved) == SKG_OK &&
+        skg_spectrum_quality_get(resolved, &quality) == SKG_OK) {
+        json_object_set_new(object, "mean_kev", cli_json_number(quality.mean_kev));
+        json_object_set_new(object, "photons", cli_json_number(quality.photons));
+    }
+    skg_spectrum_release(&resolved);
+    return object;
+}
+
+json_t *live_describe_scene(const live_base *base, const live_scene *scene, const live_wish *wish,
+                            int64_t geometry) {
+    json_t *object = json_object(), *inner = json_object();
+    const char *text = NULL;
+    json_t *document = skg_setup_text_get(scene->setup, &text) == SKG_OK ? json_loads(text, 0, NULL) : NULL;
+    json_object_set_new(inner, "document", document ? document : json_null());
+    json_object_set_new(inner, "warnings", json_deep_copy(base->warnings));
+    json_object_set_new(inner, "path", cli_json_text(base->path));
+    json_object_set_new(inner, "device", cli_json_text(base->device.name));
+    json_object_set_new(inner, "state", live_wish_json(wish));
+    json_object_set_new(inner, "geometry", json_integer(geometry));
+    json_object_set_new(inner, "parts", json_integer(scene->parts));
+    json_object_set_new(inner, "projections", json_integer(scene->projections));
+    json_object_set_new(inner, "period", scene->motion ? cli_json_number(scene->period) : json_null());
+    json_object_set_new(inner, "load_ms", cli_json_number(scene->load_ms));
+    json_object_set_new(inner, "plan_ms", cli_json_number(scene->plan_ms));
+    json_object_set_new(inner, "channel", cli_json_text(scene->channel.name));
+    json_object_set_new(inner, "unit", cli_json_text(scene->channel.unit));
+    json_object_set_new(inner, "plan", plan_json(scene));
+    json_object_set_new(inner, "beam", beam_json(scene));
+    json_object_set_new(object, "scene", inner);
+    return object;
+}
+
+static json_t *stages_json(const skg_plan *plan) {
+    json_t *stages = json_object();
+    int64_t count = 0;
+    if (skg_plan_stage_count(plan, &count) != SKG_OK) return stages;
+    for (int64_t i = 0; i < count; i++) {
+        skg_stage stage;
+        skg_stage_init(&stage);
+        if (skg_plan_stage_get(plan, i, &stage) == SKG_OK)
+            json_object_set_new(stages, stage.name, cli_json_number(stage.ns * 1e-6));
+    }
+    return stages;
+}
+
+static json_t *scatter_json(const live_scene *scene) {
+    skg_scatter_report report;
+    skg_scatter_report_init(&report);
+    if (!scene->session.options.scatter || skg_plan_scatter_report_get(scene->plan, &report) != SKG_OK)
+        return json_null();
+    json_t *object = json_object();
+    json_object_set_new(object, "mean", cli_json_number(report.mean));
+    json_object_set_new(object, "sigma", cli_json_number(report.sigma));
+    json_object_set_new(object, "histories", json_integer(report.histories));
+    json_object_set_new(object, "seconds", cli_json_number(report.seconds));
+    return object;
+}
+
+json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const skg_view *view,
+                           int64_t number, double ms) {
+    json_t *object = json_object(), *seen = json_object();
+    const int is_draft = wish->dragging && scene->draft;
+    json_object_set_new(object, "shot", json_integer(number));
+    json_object_set_new(object, "wish", json_integer(wish->number));
+    json_object_set_new(object, "ms", cli_json_number(ms));
+    json_object_set_new(object, "phase", cli_json_number(wish->phase));
+    json_object_set_new(object, "state", live_wish_json(wish));
+    json_object_set_new(object, "stages", stages_json(is_draft ? scene->draft : scene->plan));
+    json_object_set_new(object, "scatter", is_draft ? json_null() : scatter_json(scene));
+    if (live_page_view(scene, view, seen) == CLI_DONE)
+        json_object_set_new(object, "view", seen);
+    else
+        json_decref(seen);
+    return object;
+}
+
+/* Adds bytes to a sum by which scenes are told apart (FNV-1a). */
+static uint64_t mix(uint64_t sum, const void *bytes, size_t size) {
+    const unsigned char *byte = bytes;
+    for (size_t i = 0; i < size; i++) sum = (sum ^ byte[i]) * 1099511628211u;
+    return sum;
+}
+
+int64_t live_geometry_of(const live_scene *scene) {
+    uint64_t sum = 14695981039346656037u;
+    for (int64_t i = 0; i < scene->parts; i++) {
+        skg_part part;
+        skg_mesh_health health;
+        skg_part_init(&part);
+        skg_mesh_health_init(&health);
+        if (skg_scene_part_get(scene->session.scene, i, &part) != SKG_OK ||
+            skg_mesh_health_get(part.mesh, &health) != SKG_OK)
+            continue;
+        sum = mix(sum, part.label, strlen(part.label));
+        sum = mix(sum, part.pose, sizeof part.pose);
+        sum = mix(sum, health.bounds, sizeof health.bounds);
+        sum = mix(sum, &health.triangles, sizeof health.triangles);
+    }
+    return (int64_t)(sum >> 12); /* which a number of JavaScript holds exactly */
+}

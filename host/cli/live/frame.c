@@ -1,0 +1,193 @@
+#include "live/frame.h"
+
+#include "common/progress.h"
+#include "core/vector.h"
+
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include <time.h>
+
+/* Images that take longer are asked about while they are made, because a newer wish may have come. */
+static const double LONG_MS = 60;
+
+static int fail(char *sentence) {
+    snprintf(sentence, LIVE_SENTENCE, "%s", skg_last_error());
+    return 0;
+}
+
+int live_frame_pose(live_scene *scene, const live_wish *wish, char *sentence) {
+    if (isnan(wish->phase)) return 1;
+    if (!scene->motion) {
+        snprintf(sentence, LIVE_SENTENCE, "the scene does not breathe: it has no key Breathing");
+        return 0;
+    }
+    scene->is_posed = 1;
+    return skg_motion_pose_at_phase(scene->motion, wish->phase) == SKG_OK ? 1 : fail(sentence);
+}
+
+/* The poses of a frame, which the caller frees. */
+typedef struct {
+    int64_t *parts;
+    double *poses;
+    int64_t count;
+} pose_list;
+
+/* The pose of a part before the page moves it: of a scan in which parts move, that of the projection. */
+static skg_status pose_of(const live_scene *scene, const live_wish *wish, int64_t part, double *pose) {
+    skg_scan_record record;
+    skg_part its;
+    skg_part_init(&its);
+    skg_scan_record_init(&record);
+    skg_status status = skg_scene_part_get(scene->session.scene, part, &its);
+    memcpy(pose, its.pose, 16 * sizeof *pose);
+    if (status != SKG_OK || wish->projection < 0) return status;
+    status = skg_setup_record_get(scene->setup, &record);
+    for (int64_t i = 0; status == SKG_OK && i < record.moving_count; i++)
+        if (record.moving_parts[i] == part)
+            memcpy(pose, record.moving_poses + (wish->projection * record.moving_count + i) * 16,
+                   16 * sizeof *pose);
+    return status;
+}
+
+static int list_poses(const live_scene *scene, const live_wish *wish, pose_list *list, char *sentence) {
+    const char *key;
+    json_t *moved;
+    list->parts = calloc((size_t)scene->parts + 1, sizeof *list->parts);
+    list->poses = calloc(16 * ((size_t)scene->parts + 1), sizeof *list->poses);
+    if (!list->parts || !list->poses) {
+        snprintf(sentence, LIVE_SENTENCE, "out of host memory");
+        return 0;
+    }
+    json_object_foreach(wish->poses, key, moved) {
+        const int64_t part = strtoll(key, NULL, 10);
+        double by[16], pose[16];
+        if (part >= scene->parts) {
+            snprintf(sentence, LIVE_SENTENCE, "the scene has no part %s", key);
+            return 0;
+        }
+        for (size_t i = 0; i < 16; i++) by[i] = json_number_value(json_array_get(moved, i));
+        if (list->count > scene->parts || pose_of(scene, wish, part, pose) != SKG_OK) return fail(sentence);
+        skg_pose_multiply(by, pose, list->poses + 16 * list->count);
+        list->parts[list->count++] = part;
+    }
+    return 1;
+}
+
+/* Waits for the image, and cancels what the device was not given yet when a newer wish comes. */
+static skg_status wait_for(skg_job **job, live_hub *hub, double expected_ms, int *dropped) {
+    static const struct timespec pause = {.tv_nsec = 2000000};
+    int32_t is_done = expected_ms < LONG_MS || !hub;
+    while (!is_done && skg_job_test(*job, &is_done) == SKG_OK && !is_done) {
+        if (live_hub_has_news(hub)) {
+            *dropped = 1;
+            (void)skg_job_cancel(*job);
+            break;
+        }
+        nanosleep(&pause, NULL);
+    }
+    return skg_job_wait(job);
+}
+
+int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *plan, const skg_view *view,
+                      live_hub *hub, const skg_output *outputs, int64_t output_count, int *dropped,
+                      int *is_outside, char *sentence) {
+    pose_list list = {0};
+    skg_frame frame;
+    skg_job *job = NULL;
+    skg_frame_init(&frame);
+    *dropped = *is_outside = 0;
+    int is_listed = list_poses(scene, wish, &list, sentence);
+    skg_status status = SKG_OK;
+    if (is_listed && scene->motion && !isnan(wish->phase)) status = skg_motion_fill(scene->motion, &frame);
+    frame.view = view;
+    frame.pose_count = list.count;
+    frame.pose_parts = list.parts;
+    frame.poses = list.poses;
+    if (is_listed && status == SKG_OK)
+        status = skg_plan_outputs_submit(plan, 1, &frame, output_count, outputs, &job);
+    if (job) status = wait_for(&job, hub, scene->frame_ms, dropped);
+    if (status == SKG_ERR_CANCELLED && *dropped) status = SKG_OK;
+    *is_outside = status == SKG_RANGE;
+    if (is_listed && status != SKG_OK && status != SKG_RANGE) is_listed = fail(sentence);
+    free(list.parts);
+    free(list.poses);
+    return is_listed;
+}
+
+/* The least and the largest finite value; both 0 if there is none. Returns whether all are finite. */
+static int find_range(const float *values, int64_t count, float *low, float *high) {
+    int64_t finite = 0;
+    *low = INFINITY, *high = -INFINITY;
+    for (int64_t i = 0; i < count; i++) {
+        if (!isfinite(values[i])) continue;
+        finite++;
+        *low = values[i] < *low ? values[i] : *low;
+        *high = values[i] > *high ? values[i] : *high;
+    }
+    if (finite == 0) *low = *high = 0;
+    return finite == count;
+}
+
+static int pack(const float *values, live_header *header, live_shot *shot) {
+    const int64_t count = (int64_t)header->columns * header->rows;
+    float low, high;
+    if (!find_range(values, count, &low, &high)) header->notes |= LIVE_NOTE_INFINITE;
+    header->low = (double)low;
+    header->step = ((double)high - (double)low) / UINT16_MAX;
+    shot->size = sizeof *header + (size_t)count * sizeof(uint16_t);
+    shot->bytes = malloc(shot->size);
+    if (!shot->bytes) return 0;
+    uint16_t *numbers = (uint16_t *)(void *)(shot->bytes + sizeof *header);
+    const float scale = header->step > 0 ? (float)(1 / header->step) : 0;
+    for (int64_t i = 0; i < count; i++) {
+        float number = (values[i] - low) * scale + 0.5F;
+        number =
+            number <= UINT16_MAX ? number : UINT16_MAX; /* what is no number is shown as the largest, too */
+        number = number > 0 ? number : 0;
+        numbers[i] = (uint16_t)(int32_t)number;
+    }
+    memcpy(shot->bytes, header, sizeof *header);
+    return 1;
+}
+
+int live_frame_make(const live_base *base, live_scene *scene, const live_wish *wish, live_hub *hub,
+                    int64_t number, live_shot *shot, char *sentence) {
+    const double start = cli_now_ms();
+    const int is_draft = wish->dragging && scene->draft;
+    skg_view view;
+    skg_output output;
+    int is_outside = 0;
+    *shot = (live_shot){0};
+    skg_output_init(&output);
+    output.data = scene->values;
+    if (!live_scene_view(base, scene, wish, &view, sentence) || !live_frame_pose(scene, wish, sentence))
+        return 0;
+    if (is_draft) live_view_coarsen(&view, scene->factor);
+    if (!live_frame_render(scene, wish, is_draft ? scene->draft : scene->plan, &view, hub, &output, 1,
+                           &shot->is_dropped, &is_outside, sentence))
+        return 0;
+    shot->ms = cli_now_ms() - start;
+    if (shot->is_dropped) return 1;
+    if (!is_draft && scene->frames++ > 0) scene->frame_ms = shot->ms;
+    live_header header = {
+        .mark = {'S', 'K', 'L', 'F'},
+        .number = (uint32_t)number,
+        .wish = (uint32_t)wish->number,
+        .columns = (uint16_t)view.columns,
+        .rows = (uint16_t)view.rows,
+        .flat_field = scene->channel.flat_field,
+        .ms = (float)shot->ms,
+        .factor = (uint16_t)(is_draft ? scene->factor : 1),
+        .quantity = (uint8_t)scene->session.options.quantity,
+        .notes = (uint8_t)((is_draft ? LIVE_NOTE_DRAFT : 0) | (is_outside ? LIVE_NOTE_RANGE : 0))};
+    if (is_draft) { /* a larger pixel has its own flat field */
+        skg_channel channel;
+        skg_channel_init(&channel);
+        if (skg_plan_channel_get(scene->draft, 0, &channel) == SKG_OK) header.flat_field = channel.flat_field;
+    }
+    if (pack(scene->values, &header, shot)) return 1;
+    snprintf(sentence, LIVE_SENTENCE, "out of host memory for the frame");
+    return 0;
+}

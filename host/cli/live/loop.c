@@ -1,0 +1,210 @@
+#include "live/loop.h"
+
+#include "common/encode.h"
+#include "common/interrupt.h"
+#include "common/progress.h"
+#include "common/say.h"
+#include "live/ask.h"
+#include "live/describe.h"
+#include "live/frame.h"
+#include "live/page.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* ms: how long to wait for something asked, how often files are looked at, and what an image may take while something is dragged. */
+enum { WARNINGS_MAX = 20 };
+static const double PAUSE = 100, LOOK = 500, FLUENT = 40;
+
+static void tell_error(live_loop *loop, int64_t wish, const char *sentence) {
+    json_t *object = json_object();
+    json_object_set_new(object, "error", cli_json_text(sentence));
+    json_object_set_new(object, "wish", json_integer(wish));
+    live_hub_tell_json(loop->hub, object);
+}
+
+/* Tells pages of the scene, those that are there only if it is another one. */
+static void tell_scene(live_loop *loop, int is_new) {
+    json_t *object = live_describe_scene(&loop->base, &loop->scene, &loop->wish, loop->geometry);
+    char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(object);
+    if (!text) return;
+    live_hub_greeting_set(loop->hub, text);
+    if (is_new) live_hub_tell(loop->hub, text);
+    free(text);
+    loop->is_told = 1;
+}
+
+/* A page for these surfaces, if they are others. Returns 0 if it cannot be made. */
+static int make_page(live_loop *loop) {
+    const int64_t geometry = live_geometry_of(&loop->scene);
+    if (geometry == loop->geometry) return 1;
+    char *html = live_page_make(&loop->base, &loop->wish, loop->nonce);
+    if (!html) return 0;
+    live_hub_page_set(loop->hub, html);
+    loop->geometry = geometry;
+    return 1;
+}
+
+/* Keeps a warning or note for the pages: each wish would repeat it on the terminal. */
+static void keep_warning(int32_t level, const char *sentence, void *user) {
+    json_t *warnings = user;
+    if (level > SKG_LOG_NOTE) return;
+    for (size_t i = 0; i < json_array_size(warnings); i++)
+        if (strcmp(json_string_value(json_array_get(warnings, i)), sentence) == 0) return;
+    if (json_array_size(warnings) < WARNINGS_MAX) json_array_append_new(warnings, cli_json_text(sentence));
+}
+
+/* Makes the scene of a wish; on failure the last one stays. */
+static int change_scene(live_loop *loop, const live_wish *wish, char *sentence) {
+    live_scene made;
+    json_array_clear(loop->base.warnings);
+    if (!live_scene_make(&loop->base, wish, &made, sentence)) {
+        live_scene_free(&made);
+        return 0;
+    }
+    live_scene_free(&loop->scene);
+    loop->scene = made;
+    return 1;
+}
+
+static int make_frame(live_loop *loop, char *sentence) {
+    live_shot shot;
+    skg_view view;
+    const int64_t number = loop->number + 1;
+    loop->is_wanted = 0;
+    if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, loop->hub, number, &shot, sentence))
+        return 0;
+    if (shot.is_dropped || !shot.bytes) return 1;
+    loop->number = number;
+    live_hub_show(loop->hub, number, shot.bytes, shot.size);
+    if (live_scene_view(&loop->base, &loop->scene, &loop->wish, &view, sentence))
+        live_hub_tell_json(loop->hub, live_describe_shot(&loop->scene, &loop->wish, &view, number, shot.ms));
+    return 1;
+}
+
+int live_loop_begin(live_loop *loop, const char *nonce) {
+    char sentence[LIVE_SENTENCE];
+    loop->nonce = nonce;
+    live_wish_init(&loop->wish);
+    loop->base.warnings = json_array();
+    cli_progress_begin("preparing the scene", 0);
+    int is_made = live_base_read(&loop->base, sentence);
+    /* the terminal has the warnings of the file as it is; those that follow are the pages' */
+    (void)skg_context_log_set(loop->base.context, keep_warning, loop->base.warnings);
+    is_made = is_made && change_scene(loop, &loop->wish, sentence) && make_frame(loop, sentence);
+    cli_progress_end();
+    if (!is_made) return cli_error(CLI_INPUT, "%s", sentence);
+    if (!make_page(loop)) return CLI_DEVICE;
+    tell_scene(loop, 0);
+    return CLI_DONE;
+}
+
+/* Takes over a wish. */
+static void take_wish(live_loop *loop, live_wish *wish) {
+    char sentence[LIVE_SENTENCE];
+    const int is_new = !live_scene_fits(&loop->scene, wish);
+    skg_view view;
+    const int is_made = is_new ? change_scene(loop, wish, sentence)
+                               : live_scene_view(&loop->base, &loop->scene, wish, &view, sentence);
+    if (!is_made) {
+        tell_error(loop, wish->number, sentence);
+        live_wish_free(wish);
+        return;
+    }
+    live_wish_free(&loop->wish);
+    loop->wish = *wish;
+    loop->is_wanted = 1;
+    loop->is_told = 0;
+    if (is_new && make_page(loop)) tell_scene(loop, 1);
+}
+
+/* A file has changed: the same wish on top of what it is now. */
+static void read_again(live_loop *loop) {
+    char sentence[LIVE_SENTENCE];
+    loop->looked_ms = cli_now_ms();
+    if (!live_base_is_stale(&loop->base)) return;
+    if (!live_base_read(&loop->base, sentence) || !change_scene(loop, &loop->wish, sentence)) {
+        tell_error(loop, loop->wish.number, sentence);
+        return;
+    }
+    loop->is_wanted = 1;
+    if (make_page(loop)) tell_scene(loop, 1);
+}
+
+/* The next moment of a breath that goes on by itself. */
+static void play(live_loop *loop) {
+    const double now = cli_now_ms();
+    if (!loop->wish.plays || !loop->scene.motion || isnan(loop->wish.phase)) {
+        loop->played_ms = 0;
+        return;
+    }
+    if (!live_hub_is_thirsty(loop->hub)) return;
+    if (loop->played_ms > 0)
+        loop->wish.phase = fmod(loop->wish.phase + (now - loop->played_ms) / 1000 / loop->scene.period, 1);
+    loop->played_ms = now;
+    loop->is_wanted = 1;
+}
+
+static void answer(live_loop *loop, const live_asked *asked) {
+    char sentence[LIVE_SENTENCE];
+    for (int i = 0; i < asked->take_count; i++) {
+        unsigned char *bytes;
+        size_t size;
+        if (live_take(&loop->base, &loop->wish, asked->takes[i], &bytes, &size, sentence))
+            live_hub_give(loop->hub, bytes, size);
+        else
+            tell_error(loop, loop->wish.number, sentence);
+        free(bytes);
+    }
+    if (asked->has_probe && !live_hub_has_news(loop->hub)) {
+        json_t *lengths = live_probe(&loop->base, &loop->scene, &loop->wish, asked->probe, sentence);
+        if (lengths)
+            live_hub_tell_json(loop->hub, lengths);
+        else
+            tell_error(loop, loop->wish.number, sentence);
+    }
+    if (asked->has_measure) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
+}
+
+/* What can wait until nothing is asked for. */
+static void rest(live_loop *loop) {
+    char sentence[LIVE_SENTENCE];
+    if (!loop->is_told) tell_scene(loop, 0);
+    if (loop->is_wanted || !live_hub_is_thirsty(loop->hub)) return; /* no page is there */
+    if (loop->scene.frames == 1)
+        loop->is_wanted = 1; /* once more, for its time */
+    else if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
+        tell_error(loop, loop->wish.number, sentence);
+}
+
+void live_loop_run(live_loop *loop, double idle) {
+    char sentence[LIVE_SENTENCE];
+    while (!cli_stop_asked()) {
+        live_asked asked;
+        if (cli_now_ms() - loop->looked_ms > LOOK) read_again(loop);
+        play(loop);
+        const int is_ready = loop->is_wanted && live_hub_is_thirsty(loop->hub);
+        const int has = live_hub_wait(loop->hub, is_ready ? 0 : PAUSE, &asked);
+        if (asked.has_wish) take_wish(loop, &asked.wish);
+        if (loop->is_wanted && live_hub_is_thirsty(loop->hub) && !make_frame(loop, sentence))
+            tell_error(loop, loop->wish.number, sentence);
+        if (has)
+            answer(loop, &asked);
+        else if (!is_ready)
+            rest(loop);
+        if (idle > 0 && live_hub_idle(loop->hub) > idle) {
+            cli_note("live: nothing was asked for during %g s; this is the end (--idle)", idle);
+            break;
+        }
+    }
+}
+
+void live_loop_end(live_loop *loop) {
+    live_scene_free(&loop->scene);
+    if (loop->wish.settings) live_wish_free(&loop->wish);
+    live_base_free(&loop->base);
+    live_hub_free(loop->hub);
+    loop->hub = NULL;
+}

@@ -1,0 +1,118 @@
+// The page begins: what the server says is handed out, and keys.
+'use strict';
+let firstGeometry = null, sentenceTimer = 0;
+
+function showRole(text) {
+  byId('role').textContent = text;
+  document.documentElement.classList.toggle('reader', !isOwner());
+}
+
+function showSentence(text, stays = false) {
+  const box = byId('sentence');
+  box.textContent = text;
+  box.hidden = !text;
+  clearTimeout(sentenceTimer);
+  if (!stays) sentenceTimer = setTimeout(() => { box.hidden = true; }, 8000);
+}
+
+function setDark(on) {
+  document.documentElement.classList.toggle('dark', on);
+  const ground = getComputedStyle(document.documentElement).getPropertyValue('--ground').trim();
+  shot.ground = [1, 3, 5].map(i => parseInt(ground.slice(i, i + 2), 16) / 255);
+  byId('dark').setAttribute('aria-pressed', on);
+  drawHistogram();
+  drawProfile();
+  change();
+}
+
+// The scene as the server has it. Other surfaces need another page.
+function takeScene(message) {
+  const is_first = live === null;
+  live = message.scene;
+  if (firstGeometry !== null && live.geometry !== firstGeometry) { keepHistory(); location.reload(); return; }
+  firstGeometry = live.geometry;
+  if (is_first) {
+    const {wish, ...kept} = live.state;
+    state = kept;
+    net.sent = wish;
+    good = JSON.stringify(state);
+    fillBeam();
+    fillMotion();
+    fillDials();
+    ask3D();
+  }
+  showSentence('');
+  showPlan();
+  changed();
+}
+const ask3D = () => { describe(); change(); byId('undo').disabled = !trail.past.length; byId('redo').disabled = !trail.future.length; };
+
+const keys = {
+  '0': () => lookAs('start'), Home: () => lookAs('start'), '1': () => lookAs('front'), '2': () => lookAs('side'), '3': () => lookAs('top'),
+  '4': () => lookAs('source'), f: () => lookAs('parts'), d: () => byId('dark').click(), i: () => byId('invert').click(),
+  a: () => byId('auto').click(), b: () => byId('keep').click(), l: () => byId('profiles').click(), Escape: () => choose(''),
+  s: () => choose('source'), t: () => choose('detector'), '/': () => byId('find').focus(),
+  ' ': () => { if (!byId('breath').hidden) byId('play').click(); },
+  '+': () => { zoom(0.9, 0, 0); }, '=': () => { zoom(0.9, 0, 0); }, '-': () => { zoom(1 / 0.9, 0, 0); },
+};
+const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
+
+// With Alt, arrow and page keys move what is chosen: along x, z and y, by 1 mm, with Shift by 10 mm.
+const pushes = {ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 0, 1], ArrowDown: [0, 0, -1], PageUp: [0, 1, 0], PageDown: [0, -1, 0]};
+
+function pressed(event) {
+  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, isField = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName);
+  if ((event.ctrlKey || event.metaKey) && key === 'z' && !isField) {
+    if (event.shiftKey) redo(); else undo();
+  } else if (event.altKey && pushes[key] && chosen.kind) {
+    moveChosen(shift(pushes[key].map(x => x * (event.shiftKey ? 10 : 1))));
+  } else if (isField || event.ctrlKey || event.metaKey || event.altKey || (event.target.tagName === 'BUTTON' && key === ' ')) {
+    return;
+  } else if (arrows[key]) {
+    const [x, y] = arrows[key];
+    if (event.shiftKey) pan(x * 0.04, y * 0.04); else orbit(x * 0.09, y * 0.09);
+    standing = '';
+  } else if (keys[key]) keys[key]();
+  else return;
+  event.preventDefault();
+  change();
+}
+
+function begin3D() {
+  Object.keys(shaders).forEach(compile);
+  prepareMarks();
+  prepareParts();
+  listenToStage();
+  listenToGizmo();
+  lookAs('start');
+  resize();
+  requestAnimationFrame(step3D);
+}
+
+function begin() {
+  const dark = window.matchMedia('(prefers-color-scheme: dark)');
+  document.title = scene.name + ' - Skiagraph live';
+  byId('name').textContent = scene.name;
+  if (gl) begin3D();
+  else byId('no-gl').hidden = false;
+  fillParts();
+  listenToFilm();
+  listenToProfile();
+  listenToCost();
+  listenToTakes();
+  findHistory();
+  Object.assign(net, {show: showFrame});
+  net.hear.role = message => { net.role = message.role; showRole(isOwner() ? '' : 'another page changes the scene; this one shows it'); change(); };
+  net.hear.scene = takeScene;
+  net.hear.error = message => { giveUp(message.wish); showSentence(message.error, true); };
+  net.hear.refused = message => showSentence(message.refused);
+  for (const [id, act] of Object.entries({undo, redo, reset})) byId(id).onclick = () => { act(); describe(); change(); };
+  byId('dark').onclick = () => setDark(!document.documentElement.classList.contains('dark'));
+  document.addEventListener('keydown', pressed);
+  document.querySelectorAll('details').forEach(box => { box.ontoggle = drawHistogram; });
+  setDark(dark.matches);
+  dark.addEventListener('change', () => setDark(dark.matches));
+  describe();
+  connect();
+}
+begin();

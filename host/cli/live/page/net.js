@@ -1,0 +1,62 @@
+// The socket: what the server says goes to `hear`, frames to `show`, and wishes go the other way.
+'use strict';
+const net = {socket: null, role: '', sent: 0, shown: 0, hear: {}, show: null, file: null, waits: false, tries: 0};
+const HEADER = 48; // bytes before the pixels of a frame, live_header of host/cli/live/frame.h
+
+function readFrame(buffer) {
+  const view = new DataView(buffer);
+  return {
+    number: view.getUint32(4, true), wish: view.getUint32(8, true),
+    columns: view.getUint16(12, true), rows: view.getUint16(14, true),
+    low: view.getFloat64(16, true), step: view.getFloat64(24, true), flat: view.getFloat64(32, true),
+    ms: view.getFloat32(40, true), factor: view.getUint16(44, true),
+    quantity: view.getUint8(46), notes: view.getUint8(47),
+    numbers: new Uint16Array(buffer, HEADER),
+  };
+}
+
+// A file: "SKLB", the length of its name, the name, its bytes.
+function readFile(buffer) {
+  const length = new DataView(buffer).getUint32(4, true), name = new TextDecoder().decode(new Uint8Array(buffer, 8, length));
+  return {name, bytes: new Uint8Array(buffer, 8 + length)};
+}
+
+function receive(data) {
+  if (typeof data === 'string') {
+    const message = JSON.parse(data);
+    for (const [key, act] of Object.entries(net.hear)) if (key in message) act(message);
+    return;
+  }
+  if (new DataView(data).getUint32(0) !== 0x534b4c46) return net.file(readFile(data));
+  const frame = readFrame(data);
+  net.shown = frame.wish;
+  net.show(frame);
+  say({ack: frame.number});
+}
+
+function say(message) {
+  if (net.socket && net.socket.readyState === WebSocket.OPEN) net.socket.send(JSON.stringify(message));
+}
+
+// At most one wish for each picture of the browser: the newest. make: called when it is sent.
+function sendWish(make) {
+  net.make = make;
+  if (net.waits) return;
+  net.waits = true;
+  requestAnimationFrame(() => {
+    net.waits = false;
+    say({wish: ++net.sent, ...net.make()});
+  });
+}
+
+function connect() {
+  const scheme = location.protocol === 'https:' ? 'wss' : 'ws', folder = location.pathname.replace(/[^/]*$/, '');
+  net.socket = new WebSocket(`${scheme}://${location.host}${folder}socket${location.search}`);
+  net.socket.binaryType = 'arraybuffer';
+  net.socket.onopen = () => { net.tries = 0; };
+  net.socket.onmessage = event => receive(event.data);
+  net.socket.onclose = () => {
+    showRole(net.tries < 20 ? 'not connected' : 'the server has ended; this is its last image');
+    if (net.tries++ < 20) setTimeout(connect, 500 * Math.min(net.tries, 6));
+  };
+}

@@ -1,0 +1,169 @@
+// The 3D view: the eye, what is chosen, and where parts, source and detector stand now.
+'use strict';
+let dirty = true, standing = 'start';
+const change = () => { dirty = true; };
+const chosen = {kind: '', part: -1}; // kind: '', 'part', 'source' or 'detector'
+const times = (a, b) => Array.from({length: 16}, (_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * (i >> 2) + k] * b[4 * k + (i & 3)], 0));
+const same = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
+const shift = t => [1, 0, 0, t[0], 0, 1, 0, t[1], 0, 0, 1, t[2], 0, 0, 0, 1];
+const carry = (m, p) => [0, 1, 2].map(r => m[4 * r] * p[0] + m[4 * r + 1] * p[1] + m[4 * r + 2] * p[2] + m[4 * r + 3]);
+const moveOf = i => state.poses[i] || same;
+
+// A turn by an angle about an axis through the origin, by Rodrigues' formula; row by row.
+function turn(axis, angle) {
+  const c = Math.cos(angle), s = Math.sin(angle), [x, y, z] = axis, d = 1 - c;
+  return [c + x * x * d, x * y * d - z * s, x * z * d + y * s, 0, y * x * d + z * s, c + y * y * d, y * z * d - x * s, 0,
+    z * x * d - y * s, z * y * d + x * s, c + z * z * d, 0, 0, 0, 0, 1];
+}
+const turnAbout = (centre, axis, angle) => times(shift(centre), times(turn(axis, angle), shift(centre.map(x => -x))));
+
+function resize() {
+  const ratio = Math.min(window.devicePixelRatio || 1, 2);
+  const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
+  if (canvas.width !== width || canvas.height !== height) {
+    canvas.width = width, canvas.height = height;
+    if (standing) lookAs(standing);
+  }
+  change();
+}
+
+function draw() {
+  if (gl) {
+    meshes.forEach((mesh, i) => { mesh.pose = new Float32Array([0, 1, 2, 3].flatMap(c => [0, 1, 2, 3].map(r => moveOf(i)[4 * r + c]))); });
+    shot.time = state.phase === null ? 0 : state.phase;
+    paintDetector();
+    drawScene();
+  }
+  drawGizmo();
+  dirty = false;
+}
+
+// Where the view takes long, as WebGL in software does, it is drawn less often, so that the X-ray image stays fluent.
+let nextDraw = 0;
+function step3D() {
+  if (dirty && performance.now() >= nextDraw) {
+    const began = performance.now();
+    draw();
+    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
+    const took = performance.now() - began, isFluent = took < 20 || fingers.size > 0 || grip;
+    nextDraw = began + took + (isFluent ? 0 : Math.min(6 * took, 1000));
+  }
+  requestAnimationFrame(step3D);
+}
+
+// Where the eye stands: across the beam at first, a little from the source and from above.
+function lookAs(name) {
+  const v = scene.view, up = v.up, aspect = canvas.width / canvas.height;
+  const beam = unit(add(v.centre, -1, v.source)), sides = {front: [0, -1, 0], side: [1, 0, 0], top: [0, 0, 1]};
+  if (sides[name]) look(sides[name], [0, 0, 1]);
+  else if (name === 'source') look(beam.map(x => -x), up);
+  else if (name === 'start') look(add(add(unit(cross(beam, up)), -0.55, beam), 0.42, unit(up)), up);
+  if (name === 'parts') fit(scene.parts.flatMap((part, i) => chosen.part < 0 || chosen.part === i ? boxPoints(part.low, meshes[i].high) : []), aspect);
+  else fit(whole.points, aspect);
+  standing = name;
+  change();
+}
+
+// Source, beam and detector as the server has them for the last image.
+function takeView(view) {
+  const old = [...lines, ...points, detector];
+  scene.view = view;
+  for (const item of old) if (item) gl.deleteBuffer(item.buffer);
+  if (detector) gl.deleteTexture(detector.texture);
+  prepareMarks();
+  if (greyImage) greyImage.isNew = true;
+  change();
+}
+
+let greyImage = null;
+function showOnDetector(small, columns, rows) {
+  greyImage = {small, columns, rows, isNew: true};
+  change();
+}
+function paintDetector() {
+  if (!detector || !greyImage || !greyImage.isNew) return;
+  greyImage.isNew = false;
+  showImage(0);
+  gl.bindTexture(gl.TEXTURE_2D, detector.texture);
+  gl.pixelStorei(gl.UNPACK_ALIGNMENT, 1);
+  gl.texImage2D(gl.TEXTURE_2D, 0, gl.R8, greyImage.columns, greyImage.rows, 0, gl.RED, gl.UNSIGNED_BYTE, greyImage.small);
+}
+
+function choose(kind, part = -1) {
+  Object.assign(chosen, {kind, part});
+  shot.chosen = part;
+  showRows();
+  describe();
+  change();
+}
+
+// The middle of what is chosen, in the world; null: nothing is.
+function middleOf() {
+  if (chosen.kind === 'source') return scene.view.projection === 'parallel' && !valueOf('Source.Position') ? null : scene.view.source;
+  if (chosen.kind === 'detector') return scene.view.centre;
+  if (chosen.kind !== 'part') return null;
+  const part = scene.parts[chosen.part], mesh = meshes[chosen.part];
+  return carry(moveOf(chosen.part), part.low.map((x, k) => (x + mesh.high[k]) / 2));
+}
+
+const fingers = new Map();
+let moved = 0;
+function dragged(event) {
+  const old = fingers.get(event.pointerId), height = canvas.clientHeight;
+  if (!old) return point(event);
+  const dx = event.clientX - old.x, dy = event.clientY - old.y;
+  moved += Math.hypot(dx, dy);
+  if (fingers.size > 1) {
+    const other = [...fingers.entries()].find(([id]) => id !== event.pointerId)[1];
+    const before = Math.hypot(old.x - other.x, old.y - other.y), after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
+    if (after > 0) zoom(before / after, 0, 0);
+  } else if (event.shiftKey || event.buttons & 6) pan(dx / height, dy / height);
+  else orbit(dx / height * Math.PI, dy / height * Math.PI);
+  Object.assign(old, {x: event.clientX, y: event.clientY});
+  standing = '';
+  change();
+}
+
+let lastPoint = 0;
+function point(event) {
+  if (!gl || event.timeStamp - lastPoint < 60) return;
+  lastPoint = event.timeStamp;
+  const i = partAt(event.offsetX, event.offsetY);
+  if (i === shot.under) return;
+  shot.under = i;
+  canvas.title = i >= 0 ? scene.parts[i].label : '';
+  change();
+}
+
+// What stands at a place of the view: the source and the detector's middle before the parts.
+function pick(x, y) {
+  const near = p => { const at = place(shot.m, p, canvas.clientWidth, canvas.clientHeight); return at && Math.hypot(at[0] - x, at[1] - y) < 14; };
+  if (near(scene.view.source)) return choose('source');
+  if (near(scene.view.centre)) return choose('detector');
+  const part = partAt(x, y);
+  choose(part >= 0 ? 'part' : '', part);
+}
+
+function listenToStage() {
+  canvas.onpointerdown = event => {
+    canvas.setPointerCapture(event.pointerId);
+    fingers.set(event.pointerId, {x: event.clientX, y: event.clientY});
+    if (fingers.size === 1) moved = 0;
+  };
+  canvas.onpointermove = dragged;
+  canvas.onpointerup = canvas.onpointercancel = event => {
+    fingers.delete(event.pointerId);
+    if (event.type === 'pointerup' && moved < 4 && event.button === 0 && gl) pick(event.offsetX, event.offsetY);
+  };
+  canvas.oncontextmenu = event => event.preventDefault();
+  canvas.ondblclick = () => lookAs('parts');
+  canvas.addEventListener('wheel', event => {
+    const height = canvas.clientHeight, lines = event.deltaMode === 1 ? 16 : 1;
+    event.preventDefault();
+    zoom(Math.exp(clamp(event.deltaY * lines, -240, 240) * 0.0015), (event.offsetX - canvas.clientWidth / 2) / height, (height / 2 - event.offsetY) / height);
+    standing = '';
+    change();
+  }, {passive: false});
+  document.querySelectorAll('[data-look]').forEach(button => { button.onclick = () => lookAs(button.dataset.look); });
+  new ResizeObserver(resize).observe(canvas);
+}

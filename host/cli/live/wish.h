@@ -1,0 +1,46 @@
+/* What a page asks for: one JSON object a message. */
+#ifndef CLI_LIVE_WISH_H
+#define CLI_LIVE_WISH_H
+
+#include <jansson.h>
+#include <stddef.h>
+#include <stdint.h>
+
+enum { LIVE_SENTENCE = 1024 };
+
+/* How the scene shall be. */
+typedef struct {
+    int64_t number;
+    json_t *settings; /* {"KEY": VALUE}, as --set, on top of the scene file */
+    json_t *poses; /* {"PART": [16]}: what moves this part in the world, on top of its pose, row by row, mm */
+    double phase;  /* of the breath; NaN: as in the file */
+    int64_t projection;  /* of the scan; -1: the scene's own view */
+    int32_t quantity;    /* enum skg_quantity */
+    int dragging, plays; /* plays: the phase goes on by itself */
+} live_wish;
+
+enum { LIVE_WISH, LIVE_ACK, LIVE_PROBE, LIVE_TAKE, LIVE_MEASURE };
+
+/* A message. */
+typedef struct {
+    int kind;
+    live_wish wish;  /* LIVE_WISH */
+    int64_t ack;     /* LIVE_ACK: number of a frame */
+    double probe[2]; /* LIVE_PROBE: column and row */
+    char take[8];    /* LIVE_TAKE: "png", "tif" or "mha" */
+} live_message;
+
+/* Reads a message. Returns 1; or 0 with a sentence that says what is wrong. The caller frees the wish of a LIVE_WISH. */
+int live_message_read(const char *text, size_t length, live_message *message, char sentence[LIVE_SENTENCE]);
+
+/* A scene as its file has it. */
+void live_wish_init(live_wish *wish);
+void live_wish_free(live_wish *wish);
+
+/* The same wish once more, which the caller frees. */
+live_wish live_wish_copy(const live_wish *wish);
+
+/* The wish as a page sends it. */
+json_t *live_wish_json(const live_wish *wish);
+
+#endif

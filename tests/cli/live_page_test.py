@@ -1,0 +1,276 @@
+"""The page of `skiagraph live` in a browser: every control changes what it is for.
+
+usage: live_page_test.py COMMAND [FOLDER for pictures of the page]
+"""
+import json
+import os
+import sys
+import tempfile
+
+import chromium
+from chromium import Browser
+from live_client import Page, Server
+from live_test import SCENE, has_server
+
+command = sys.argv[1]
+pictures = sys.argv[2] if len(sys.argv) > 2 else None
+
+# Sums by which pictures are told apart: of the frame's numbers, of the X-ray as it is shown, and of the 3D view.
+HELPERS = """
+const sumOf = numbers => { let s = 7; for (const x of numbers) s = (Math.imul(s, 31) + x) | 0; return s; };
+const frameSum = () => sumOf(xray.frame.numbers) + ' ' + xray.frame.low + ' ' + xray.frame.step + ' ' + xray.frame.columns;
+const filmSum = () => sumOf(pen.getImageData(0, 0, film.width, film.height).data);
+const viewSum = () => { draw(); const p = new Uint8Array(4 * canvas.width * canvas.height);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, p); return sumOf(p); };
+const settled = () => xray.frame && !net.waits && xray.frame.wish === net.sent;
+const typed = (box, value) => { box.value = value; box.dispatchEvent(new Event('input')); box.dispatchEvent(new Event('change')); };
+const saved = []; save = (name, bytes) => saved.push([name, typeof bytes === 'string' ? bytes : bytes.length]);
+0
+"""
+failures = []
+
+
+def scene_of_matter():
+    """The scene, of materials that depend on the energy."""
+    scene = json.loads(json.dumps(SCENE))
+    for sample, matter in zip(scene["Samples"], ("Water", "Aluminium"), strict=True):
+        sample["Material"] = matter
+    return scene
+
+
+def check(name, is_right, what=""):
+    if not is_right:
+        failures.append(f"{name} {what}")
+
+
+class Tried:
+    """What a control does to a page."""
+
+    def __init__(self, browser):
+        self.browser = browser
+        browser.until("typeof net !== 'undefined' && xray.frame !== null && live !== null && net.role === 'owner'")
+        browser.run(HELPERS)
+        self.still()
+
+    def still(self):
+        self.browser.until("settled()")
+
+    def differs(self, name, action, of="frameSum"):
+        """The action changes this sum."""
+        before = self.browser.run(f"{of}()")
+        action() if callable(action) else self.browser.run(action)
+        self.still()
+        if of == "frameSum":
+            try:
+                self.browser.until(f"frameSum() !== {json.dumps(before)}", 5)
+            except TimeoutError:
+                pass
+        check(name, self.browser.run(f"{of}()") != before, f"leaves {of} as it is; {self.browser.run('byId(`sentence`).textContent')}")
+
+
+def beam_and_dials(tried):
+    run = tried.browser.run
+    first = run("frameSum()")
+    tried.differs("energy", "typed(byId('energy'), 90)")
+    tried.differs("undo", "byId('undo').click()")
+    check("undone", run("frameSum()") == first)
+    tried.differs("redo", "byId('redo').click()")
+    tried.differs("tube", "byId('make-tube').click()")
+    check("tube shown", run("!byId('tube').hidden && byId('mono').hidden"))
+    tried.differs("kV slider", "typed(byId('kv').querySelector('input'), 120)")
+    tried.differs("kV typed", "typed(byId('kv').querySelector('[type=number]'), 60)")
+    tried.differs("filter", "[...byId('filters').querySelectorAll('button')].pop().click()")
+    tried.differs("thickness", "typed(byId('filters').querySelector('[type=number]'), 9)")
+    tried.differs("noise", "byId('noise').click()")
+    tried.differs("mAs", "typed(byId('mas').querySelector('input'), 0.1)")
+    tried.differs("mAs typed", "typed(byId('mas').querySelector('[type=number]'), 1e-4)")
+    tried.browser.until("!byId('starved').hidden", 5)
+    run("byId('noise').click()")
+    tried.still()
+    tried.differs("rays", "typed(byId('rays'), '2')")
+    tried.differs("tolerance", "typed(byId('tolerance'), '0.1')")
+    tried.differs("precision", "typed(byId('precision'), 'half')")
+    tried.differs("any key", "byId('key').value = 'Samples.bone.Material=[\"mu\", 3]'; byId('key-form').requestSubmit()")
+    check("key listed", run("byId('keys').textContent.includes('Samples.bone.Material')"))
+    tried.differs("as in the file", "byId('reset').click()")
+    check("reset", run("frameSum()") == first)
+    run("byId('key').value = 'Source.Beem=1'; byId('key-form').requestSubmit()")
+    tried.browser.until("byId('sentence').textContent.includes('Beem')")
+    tried.still()
+    check("what was refused is taken back", run("!('Source.Beem' in state.settings)") and run("frameSum()") == first)
+
+
+def geometry(tried):
+    run, browser = tried.browser.run, tried.browser
+    run("byId('find').value = 'bon'; byId('find').oninput()")
+    check("find", run("rows[0].hidden && !rows[1].hidden"))
+    run("byId('find').value = ''; byId('find').oninput(); rows[1].querySelector('button').click()")
+    check("chosen", run("chosen.part === 1 && byId('about').textContent.includes('bone')"))
+    box = json.loads(run("(() => { draw(); const r = canvas.getBoundingClientRect(), m = onScreen(middleOf()), t = onScreen(add(middleOf(),"
+                         " REACH * 0.7 * mmPerPixel(middleOf()), AXES[2])); return JSON.stringify([r.left + t[0], r.top + t[1], m, t]); })()"))
+    tried.differs("arrow", lambda: browser.drag(box[0], box[1], 0, -40))
+    check("moved up", run("state.poses[1] && state.poses[1][11] > 5 && Math.abs(state.poses[1][3]) < 1e-9"), run("JSON.stringify(state.poses)"))
+    tried.differs("undo of an arrow", "byId('undo').click()")
+    ring = json.loads(run("(() => { draw(); const r = canvas.getBoundingClientRect(), p = byId('gizmo').querySelector('[data-ring=\"2\"]')"
+                          ".getAttribute('d').slice(1).split('L')[6].split(',').map(Number); return JSON.stringify([r.left + p[0], r.top + p[1]]); })()"))
+    tried.differs("ring", lambda: browser.drag(ring[0], ring[1], 30, 14))
+    check("turned", run("Math.abs(state.poses[1][1]) > 0.02"), run("JSON.stringify(state.poses)"))
+    tried.differs("back to its place", "[...byId('about').querySelectorAll('button')].pop().click()")
+    tried.differs("x typed", "typed(byId('about').querySelector('.grid input'), 12)")
+    check("x", run("Math.abs(middleOf()[0] - 12) < 1e-3"))
+    tried.differs("turn typed", "typed(byId('about').querySelectorAll('.grid input')[5], 30)")
+    tried.differs("key Alt", lambda: browser.key("ArrowRight", 1))
+    check("1 mm", run("Math.abs(middleOf()[0] - 13) < 1e-3"))
+    for kind in ("source", "detector"):
+        run(f"byId('choose-{kind}').click()")
+        tried.differs(kind, "typed(byId('about').querySelector('.grid input'), 30)")
+        check(kind + " moved", run("Math.abs(middleOf()[0] - 30) < 1e-3"), run("JSON.stringify(middleOf())"))
+    tried.differs("detector turned", "typed(byId('about').querySelectorAll('.grid input')[4], 10)")
+    tried.differs("projection", "typed(byId('projection'), 1)")
+    tried.differs("3D follows", "byId('reset').click()", "viewSum")
+
+
+def view(tried):
+    browser, run = tried.browser, tried.browser.run
+    centre = json.loads(run("(() => { const r = canvas.getBoundingClientRect(); return JSON.stringify([r.left + r.width / 2, r.top + r.height - 40]); })()"))
+    run("choose('')")
+    tried.differs("turn", lambda: browser.drag(centre[0], centre[1], 60, 10), "viewSum")
+    for key in ("1", "2", "3", "4", "0", "f", "+", "-", "ArrowLeft", "ArrowUp"):
+        if key not in ("4", "f"):  # the first side is that of the source, and all parts may be all that there is
+            run("canvas.focus(); lookAs('start')" if key not in "0" else "canvas.focus(); lookAs('top')")
+            tried.differs("key " + key, lambda k=key: browser.key(k), "viewSum")
+    run("lookAs('start')")
+    tried.differs("wheel", "canvas.dispatchEvent(new WheelEvent('wheel', {deltaY: -120, cancelable: true}))", "viewSum")
+    tried.differs("hide", "rows[1].firstChild.click()", "viewSum")
+    tried.differs("all", "byId('all').click()", "viewSum")
+    run("choose('part', 1)")
+    tried.differs("opacity", "(() => { const s = byId('about').querySelector('[type=range]'); s.value = 0.2; s.oninput(); })()", "viewSum")
+    tried.differs("dark", "byId('dark').click()", "viewSum")
+
+
+def film(tried):
+    browser, run = tried.browser, tried.browser.run
+    frames = run("xray.frame.number")
+    tried.differs("invert", "byId('invert').click()", "filmSum")
+    tried.differs("white", "typed(byId('high'), 1)", "filmSum")
+    tried.differs("auto", "byId('auto').click()", "filmSum")
+    tried.differs("histogram", "byId('histogram').scrollIntoView(); (() => { const r = byId('histogram').getBoundingClientRect(); window.h = [r.left, r.top, r.width]; })()"
+                  "; setWindow(xray.low, xray.low + 0.3 * (xray.high - xray.low))", "filmSum")
+    run("byId('auto').click(); byId('profiles').click()")
+    place = json.loads(run("(() => { const r = film.getBoundingClientRect(); return JSON.stringify([r.left, r.top, r.width, r.height]); })()"))
+    browser.drag(place[0] + 0.1 * place[2], place[1] + 0.5 * place[3], 0.8 * place[2], 0)
+    length = run("Number(byId('measured').textContent.match(/over ([0-9.]+) mm/)[1])")
+    check("profile", abs(length - 0.8 * 320) < 3, str(length))  # of a detector of 320 mm; a pixel of the page is 1 mm or less
+    run("byId('profiles').click()")
+    check("no frame for the window", run("xray.frame.number") == frames)
+    browser.mouse("mouseMoved", place[0] + 0.5 * place[2], place[1] + 0.5 * place[3])
+    browser.until("byId('value').textContent.includes('bone: 60 mm')", 10)
+    check("value", run("byId('value').textContent.includes('column 40, row 30')"), run("byId('value').textContent"))
+    run("byId('keep').click()")
+    tried.differs("before/after", "typed(byId('energy'), 30); 0", "frameSum")
+    tried.differs("slider", "typed(byId('split'), 0.1)", "filmSum")
+    run("byId('keep').click(); byId('reset').click()")
+    tried.still()
+
+
+def cost_and_takes(tried):
+    browser, run = tried.browser, tried.browser.run
+    check("stages", run("byId('stages').textContent.includes('raster')"))
+    check("ms", run("/^[0-9.]+ ms for 80 x 60/.test(byId('ms').textContent)"), run("byId('ms').textContent"))
+    run("byId('measure').click()")
+    browser.until("!byId('measure').disabled", 60)
+    check("measured", run("byId('results').rows.length > 3 && /ms/.test(byId('results').textContent)"))
+    tried.differs("switch", "[...byId('results').querySelectorAll('button')].find(b => b.textContent.includes('2 x 2')).click()")
+    run("choose('part', 1); moveChosen(shift([16, 0, 0]))")
+    tried.still()
+    shown = run("frameSum()")
+    for take in ("json", "py", "command", "png", "tif", "mha"):
+        run(f"document.querySelector('[data-take={take}]').click()")
+    browser.until("saved.length >= 5", 30)
+    names = sorted(name for name, _ in run("saved"))
+    check("files", names == ["image.mha", "image.png", "image.py", "image.tif", "scene.json"], str(names))
+    texts = dict(run("saved"))
+    check("script", "settings={" in texts["image.py"] and 'scene["bone"].pose' in texts["image.py"])
+    compile(texts["image.py"], "image.py", "exec")
+    check("command", run("byId('command').textContent.includes('--set') && byId('command').textContent.includes('Matrix')"))
+    return shown, texts["scene.json"]
+
+
+def reads_only(server, url):
+    """A second page, beside a first one that is not this browser's."""
+    first = Page(server)
+    first.frame()
+    with Browser(url) as browser:
+        browser.until("typeof net !== 'undefined' && net.role === 'reader' && xray.frame !== null && live !== null")
+        before, state = browser.run("xray.frame.number"), browser.run("JSON.stringify(state)")
+        browser.run("set('Source.Position', [8, -400, 0, 'mm'])")
+        check("reader", browser.run("JSON.stringify(state)") == state)
+        wish = first.wish(settings={"Source.Position": [30, -400, 0, "mm"]})
+        browser.until(f"xray.frame.wish === {wish}")
+        check("reader sees", browser.run("xray.frame.number") > before)
+    first.close()
+
+
+def sizes(browser, name):
+    for width, height in ((1280, 800), (390, 844)):
+        browser.size(width, height)
+        browser.run("new Promise(done => setTimeout(done, 400))")
+        check("no scrolling sideways", browser.run("document.documentElement.scrollWidth <= innerWidth"), str(width))
+        if pictures:
+            browser.picture(os.path.join(pictures, f"{name}-{width}.png"))
+
+
+def work(folder, path):
+    with Server(command, path) as server:
+        with Browser(server.url) as browser:
+            tried = Tried(browser)
+            for part in (beam_and_dials, geometry, film, view):
+                part(tried)
+            shown, scene = cost_and_takes(tried)
+            sizes(browser, "live")
+            check("no exception", not browser.events, json.dumps(browser.events)[:800])
+        reads_only(server, server.url)
+    other = os.path.join(folder, "taken.json")
+    with open(other, "w", encoding="utf-8") as file:
+        file.write(scene)
+    with Server(command, other) as server, Browser(server.url) as browser:
+        tried = Tried(browser)
+        check("the scene file that was taken shows the same", browser.run("frameSum()") == shown)
+
+
+def breathes(folder):
+    """A thorax goes on breathing, and what is dragged while it does."""
+    os.system(f"{command} thorax -o {folder} --simple --triangles 10000 --quiet")
+    with Server(command, os.path.join(folder, "thorax.json"), "--set", "Detector.NumberOfPixels=[80,80]") as server, Browser(server.url) as browser:
+        tried = Tried(browser)
+        tried.differs("phase", "typed(byId('phase'), 0.5)")
+        tried.differs("3D breathes", "typed(byId('phase'), 0.2)", "viewSum")
+        browser.run("byId('play').click()")
+        browser.until("state.play && xray.frame.number > 20", 30)
+        browser.run("byId('play').click()")
+        browser.until("!state.play")
+        check("stopped", browser.run("new Promise(done => setTimeout(() => { const n = xray.frame.number; setTimeout(() => done(xray.frame.number - n), 300); }, 500))") == 0)
+        check("no exception", not browser.events, json.dumps(browser.events)[:800])
+
+
+def main():
+    if not chromium.program():
+        print("no chromium; CHROMIUM names another browser of that kind")
+        return 77
+    with tempfile.TemporaryDirectory() as folder:
+        path = os.path.join(folder, "scene.json")
+        with open(path, "w", encoding="ascii") as file:
+            json.dump(scene_of_matter(), file)
+        if not has_server(path):
+            print("this build has no CivetWeb")
+            return 77
+        work(folder, path)
+        breathes(folder)
+    for failure in failures:
+        print("failed:", failure)
+    print(f"{len(failures)} failures")
+    return 1 if failures else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

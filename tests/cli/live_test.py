@@ -1,0 +1,326 @@
+"""The server of `skiagraph live`, by a plain client.
+
+usage: live_test.py COMMAND [TEST...]
+"""
+import faulthandler
+import json
+import os
+import random
+import struct
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+
+from live_client import Frame, Page, Server
+
+SCENE = {
+    "Source": {"Position": [0, -40, 0, "cm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+    "Detector": {"Position": [0, 10, 0, "cm"], "UpVector": [0, 0, -1], "RightVector": [1, 0, 0], "NumberOfPixels": [80, 60],
+                 "Size": [32, 24, "cm"]},
+    "Samples": [{"Label": "tissue", "Cube": [80, "mm"], "Material": ["mu", 0.2], "Type": "outer"},
+                {"Label": "bone", "Cylinder": [32, 60, 12, "mm"], "Material": ["mu", 0.5]}],
+    "Scan": {"NumberOfProjections": 4, "FinalAngle": 360}}
+command = sys.argv[1]
+EPS = 2.0**-24  # half a step of a float of 1
+
+
+def image(path, *words):
+    """The pixels that the verb image computes."""
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "a.mha")
+        subprocess.run([command, "image", path, *words, "-o", file, "--quiet"], check=True)
+        with open(file, "rb") as stream:
+            data = stream.read()
+    head, _, pixels = data.partition(b"ElementDataFile = LOCAL\n")
+    kind, size = ("f", 4) if b"MET_FLOAT" in head else ("d", 8)
+    return struct.unpack(f"<{len(pixels) // size}{kind}", pixels)
+
+
+def check_same(frame, pixels):
+    """A frame is an image within half of a step of its 16 bits, and what rounding to float adds to that."""
+    largest = max(map(abs, pixels))
+    for n, pixel in zip(frame.numbers, pixels, strict=True):
+        off = abs(frame.low + frame.step * n - pixel)
+        assert off <= 0.51 * frame.step + 4 * EPS * largest, (off, frame.step)
+
+
+def differ(a, b):
+    return (a.low, a.step, a.numbers) != (b.low, b.step, b.numbers)
+
+
+def token_and_origin(path):
+    with Server(command, path) as server:
+        for wrong in ("/", "/?token=", "/?token=" + "0" * 32, "/?token=" + server.token[:-1], "/socket", "/scene.json"):
+            status, text = server.get(wrong)
+            assert status == 403 and server.token not in text and "tissue" not in text, wrong
+        status, text = server.get("/?token=" + server.token)
+        assert status == 200 and "tissue" in text and "Content-Security-Policy: default-src 'none'" in text
+        assert "http://" not in text.partition("\r\n\r\n")[2].replace("http://www.w3.org/2000/svg", "")
+        for missing in ("/page.js", "/../etc/passwd", "/%2e%2e/etc/passwd", "/scene.json", "/socket"):
+            assert server.get(f"{missing}?token={server.token}")[0] == 404, missing
+        assert server.get("/?token=" + server.token, ["Origin: http://elsewhere.example"])[0] == 403
+        assert server.get("/?token=" + server.token, method="POST")[0] == 405
+        assert Page(server, token="0" * 32).status == 403
+        assert Page(server, origin="http://elsewhere.example").status == 403
+        assert Page(server, origin=f"http://127.0.0.1:{server.port}").status == 101
+        assert server.end() == 0
+
+
+def wishes(path):
+    """Each kind of wish makes another image, and it is that of the verb image."""
+    with Server(command, path) as server:
+        page = Page(server)
+        first = page.frame()
+        assert (first.columns, first.rows) == (80, 60)
+        check_same(first, image(path, "--quantity", "attenuation"))
+        for key, value in (("Source.Position", [8, -400, 4, "mm"]), ("Detector.Position", [16, 100, 8, "mm"]),
+                           ("Detector.UpVector", [0.5, 0, -1]), ("Detector.RightVector", [1, 0, 0.5]), ("Source.Beam", {"kVp": 90, "Filter": [["Al", 2, "mm"]]}),
+                           ("Samples.bone.Material", ["mu", 0.9]), ("Samples.bone.Transform", [["Translation", 8, 0, 0, "mm"]]),
+                           ("Detector.Oversampling", 2), ("Noise", True), ("Tolerance", 0.01), ("Precision", "double"),
+                           ("Detector.NumberOfPixels", [40, 60])):
+            settings = {"Source.Beam": {"kVp": 80}, key: value} if key == "Tolerance" else {key: value}
+            if key == "Tolerance":
+                first = page.frame(page.wish(settings={"Source.Beam": {"kVp": 80}}))
+            if key in ("Detector.UpVector", "Detector.RightVector"): # perpendicular, which .mha files need
+                settings = {"Detector.UpVector": [0.5, 0, -1], "Detector.RightVector": [1, 0, 0.5]}
+            frame = page.frame(page.wish(settings=settings))
+            # a cylinder of two colours along the beam: a tolerance moves what passes by little, but it moves it
+            assert key in ("Precision", "Tolerance") or differ(frame, first), key
+            check_same(frame, image(path, "--quantity", "attenuation",
+                                    *(word for k, v in settings.items() for word in ("--set", f"{k}={json.dumps(v)}"))))
+        moved = [1, 0, 0, 16, 0, 1, 0, 0, 0, 0, 1, -8, 0, 0, 0, 1]
+        frame = page.frame(page.wish(poses={"1": moved}))
+        check_same(frame, image(path, "--quantity", "attenuation", "--set",
+                                'Samples.bone.Transform=[["Translation", 16, 0, -8, "mm"]]'))
+        back = page.frame(page.wish())
+        assert not differ(back, page.frame(page.wish())) and differ(back, frame)
+        energy = page.frame(page.wish(quantity="energy"))
+        check_same(energy, image(path))
+        assert energy.flat == 60000  # 1000 photons of 60 keV
+        turned = page.frame(page.wish(projection=1))
+        assert differ(turned, back)
+        check_same(turned, image(path, "--quantity", "attenuation", "--set", "Scan.StartAngle=90"))
+
+
+def answers(path):
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        page.send({"probe": [40, 30]})
+        parts = dict(page.text("probed")["parts"])
+        # a cube of 80 mm with a cylinder of 60 mm in it, 1.5 mm off the axis of the beam: in mm
+        assert abs(parts["bone"] - 60) < 0.01 and abs(parts["tissue"] - 20) < 0.01, parts
+        page.send({"probe": [400, 30]})
+        assert "no such pixel" in page.text("error")["error"]
+        page.wish(settings={"Source.Position": [8, -400, 0, "mm"]})
+        page.send({"take": "mha"})
+        file = page.find(lambda m: isinstance(m, bytes))
+        assert file[:4] == b"SKLB" and file[8:17] == b"image.mha"
+        pixels = file.partition(b"ElementDataFile = LOCAL\n")[2]
+        assert struct.unpack(f"<{len(pixels) // 4}f", pixels) == image(path, "--set", 'Source.Position=[8, -400, 0, "mm"]')
+        page.send({"take": "png"})
+        assert page.find(lambda m: isinstance(m, bytes))[17:25] == b"\x89PNG\r\n\x1a\n"
+        page.send({"measure": True})
+        names = []
+        while (message := page.text("measured"))["measured"]:
+            names.append(message["measured"])
+            assert message["ms"] is None or message["ms"] > 0
+        assert "as it is" in names and "2 x 2 rays a pixel" in names
+
+
+def errors(path):
+    """What fails keeps the last image, and the sentence says what it is."""
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        for settings, word in (({"Source.Beem": 1}, "Beem"), ({"Samples.bone.Material": "unobtainium"}, "unobtainium"),
+                               ({"Samples.7.Density": 1}, "--set"), ({"Detector.NumberOfPixels": [0, 1]}, "0 columns"),
+                               ({"Source.Position": [0, "x"]}, "Position")):
+            wish = page.wish(settings=settings)
+            error = page.text("error")
+            assert error["wish"] == wish and word in error["error"], error
+        wish = page.wish(poses={"9": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]})
+        assert "no part 9" in page.text("error")["error"]
+        assert page.wish(phase=0.5) and "breathe" in page.text("error")["error"]
+        assert page.wish(projection=4) and "projection" in page.text("error")["error"]
+        frame = page.frame(page.wish(settings={"Source.Position": [8, -400, 0, "mm"]}))
+        assert frame.wish == page.wishes
+        # warnings of what a page makes go to the pages
+        page.wish(settings={"Source.Beam": {"kVp": 12}, "Source.Position": [8, -400, 0, "mm"]})
+        assert any("12 kV" in sentence for sentence in page.text("scene")["scene"]["warnings"])
+        assert server.end() == 0 and "12 kV" not in server.process.stderr.read()
+
+
+def malformed(path, seconds=4):
+    """Messages at random: each gets a sentence, and the server goes on."""
+    random.seed(1)
+    good = [{"wish": 1, "settings": {"Tolerance": 0.1}, "poses": {}, "drag": True}, {"ack": 1}, {"probe": [1, 2]}, {"take": "png"}]
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        for bad in ("", "x", "[]", "{}", '{"wish": -1}', '{"wish": 1, "wish": 2}', '{"wish": 1, "poses": {"1": [1]}}', '{"take": "exe"}',
+                    '{"wish": 1, "phase": 2}', '{"wish": 1, "phase": "a"}', '{"wish": 1, "settings": {"a=b": 1}}', '{"probe": [1]}',
+                    '{"wish": 1, "what": 1}', '{"wish": 1, "quantity": "x"}', '{"ack": "1"}', '{"wish": 1, "drag": 1}', '[' * 5000,
+                    '{"wish": 1, "projection": 0.5}', '{"wish": 1, "poses": {"1": [1,0,0,0,0,1,0,0,0,0,1,0,0,0,0,2]}}'):
+            page.send_raw(1, bad.encode())
+            assert page.text("refused")["refused"], bad
+        page.send_raw(2, b"\x00\x01")
+        assert page.text("refused")
+        end = time.monotonic() + seconds
+        while time.monotonic() < end:
+            page = Page(server)
+            for _ in range(60):
+                data = bytearray(json.dumps(random.choice(good)).encode())
+                for _ in range(random.randrange(6)):
+                    at = random.randrange(len(data))
+                    data[at:at + random.randrange(3)] = random.choice([b"", b'"', b"{", b"]", b"-", b"9e999", b"\xff", b"\x00", b"null"])
+                try:
+                    page.send_raw(random.choice([1, 1, 1, 1, 2, 0, 5, 9]), bytes(data), random.random() > 0.05)
+                except OSError:
+                    break
+            page.close()
+        assert server.process.poll() is None
+        assert Page(server).frame().columns
+        assert server.end() == 0
+
+
+def second_page(path):
+    with Server(command, path) as server:
+        first, second = Page(server), Page(server)
+        assert first.text("role")["role"] == "owner" and second.text("role")["role"] == "reader"
+        second.frame()
+        second.wish(settings={"Source.Position": [8, -400, 0, "mm"]})
+        assert "another page" in second.text("refused")["refused"]
+        first.frame()
+        wish = first.wish(settings={"Source.Position": [8, -400, 4, "mm"]})
+        assert first.frame(wish).wish == second.frame(wish).wish == wish
+        first.close()
+        assert second.text("role")["role"] == "owner"
+        second.wishes = wish
+        assert second.frame(second.wish()).wish == wish + 1
+
+
+def lost_pages(path):
+    """Pages that are killed, that come 100 times, and one that takes no frames."""
+    with Server(command, path, "--set", "Detector.NumberOfPixels=[400,300]") as server:
+        for i in range(100):
+            page = Page(server)
+            if i % 3 == 0:
+                page.frame()
+            if i % 3 == 1:
+                page.wish(settings={"Tolerance": 0.1})
+            page.close()
+        end = time.monotonic() + 30
+        page = Page(server)
+        while page.text("role")["role"] != "owner" and time.monotonic() < end:
+            pass
+        page.frame()
+        slow = Page(server, receive_buffer=4096)
+        before, count, last = server.memory(), 0, 0
+        end = time.monotonic() + 4
+        while time.monotonic() < end:
+            page.wish(settings={"Source.Position": [random.random(), -400, 0, "mm"]}, drag=True)
+            last = page.frame(page.wishes).number
+            count += 1
+        assert count > 10
+        # 4 s of frames of 240 kB, none of which the slow page has taken: two are on their way to it, and some are in the server
+        assert server.memory() - before < 32, (before, server.memory())
+        slow.acknowledges = False
+        seen = [slow.frame().number, slow.frame().number]
+        slow.send({"ack": seen[-1]})
+        newest = slow.frame().number
+        assert newest >= last and newest - seen[-1] > 5, (seen, newest, last)  # those between were dropped
+        threads = len(os.listdir(f"/proc/{server.process.pid}/task"))
+        assert threads < 60, threads
+
+
+def ends(path):
+    with Server(command, path, "--idle", "1.5") as server:
+        page = Page(server)
+        page.frame()
+        assert server.process.wait(20) == 0 and "--idle" in server.process.stderr.read()
+    with Server(command, path) as server:
+        pages = [Page(server) for _ in range(8)]
+        pages[0].frame()
+        assert Page(server).status == 503  # the ninth
+        assert server.end() == 0
+    with Server(command, path) as server:
+        server.process.send_signal(1)  # its terminal is closed
+        assert server.process.wait(20) == 0
+
+
+def prints_json(path):
+    process = subprocess.Popen([command, "live", path, "--no-open", "--json", "--quiet"], stdout=subprocess.PIPE, text=True)
+    decoder, text = json.JSONDecoder(), ""
+    while True:
+        text += process.stdout.readline()
+        try:
+            found = decoder.decode(text)
+            break
+        except ValueError:
+            assert len(text) < 2000
+    assert found["url"] == f"http://127.0.0.1:{found['port']}/?token={found['token']}" and len(found["token"]) == 32
+    process.send_signal(15)
+    assert process.wait(20) == 0
+
+
+def changed_file(path):
+    with Server(command, path) as server:
+        page = Page(server)
+        first = page.frame()
+        with open(path, encoding="ascii") as file:
+            text = file.read()
+        with open(path, "w", encoding="ascii") as file:
+            file.write(text.replace("0.5", "oops"))
+        assert page.text("error")["error"]
+        with open(path, "w", encoding="ascii") as file:
+            file.write(text.replace("0.5", "0.9"))
+        page.text("scene")
+        assert differ(page.find(lambda m: isinstance(m, Frame)), first)
+        page.send({"probe": [40, 30]})
+        assert page.text("probed")
+
+
+def fails(path):
+    """Command lines that are refused."""
+    for words, status, word in ((["-"], 2, "standard input"), ([path, "--bind", "a b"], 2, "--bind"), ([path, "--port", "70000"], 2, "--port"),
+                                ([path, "--set", "Nonsense=1"], 3, "Nonsense"), ([path + "x"], 3, "cannot be read")):
+        run = subprocess.run([command, "live", *words, "--no-open"], capture_output=True, text=True, timeout=60)
+        assert run.returncode == status and word in run.stderr, (words, run)
+    with Server(command, path) as server:
+        run = subprocess.run([command, "live", path, "--no-open", "--port", str(server.port)], capture_output=True, text=True, timeout=60)
+        assert run.returncode == 4 and "cannot listen" in run.stderr, run
+
+
+TESTS = [token_and_origin, wishes, answers, errors, malformed, second_page, lost_pages, ends, prints_json, changed_file, fails]
+
+
+def has_server(path):
+    run = subprocess.run([command, "live", path, "--no-open", "--idle", "0.1"], capture_output=True, text=True, timeout=60)
+    return "libcivetweb-dev" not in run.stderr
+
+
+def main():
+    chosen = [test for test in TESTS if not sys.argv[2:] or test.__name__ in sys.argv[2:]]
+    for test in chosen:
+        with tempfile.TemporaryDirectory() as folder:
+            path = os.path.join(folder, "scene.json")
+            with open(path, "w", encoding="ascii") as file:
+                json.dump(SCENE, file)
+            if test is chosen[0] and not has_server(path):
+                print("this build has no CivetWeb")
+                return 77
+            began = time.monotonic()
+            watchdog = threading.Timer(60, lambda: (faulthandler.dump_traceback(), os._exit(3)))
+            watchdog.daemon = True
+            watchdog.start()
+            test(path)
+            watchdog.cancel()
+            print(f"{test.__name__}: {time.monotonic() - began:.1f} s", flush=True)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
