@@ -196,13 +196,20 @@ static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattic
 
 /* Photons that leave the source: the place in the field, the energy, the point of the focal spot. */
 static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __global const float4 *beam,
-                     __global const float4 *spots, uint batch, skg_intv fresh, skg_photons *p) {
+                     __global const float *profiles, __global const float4 *spots, uint batch, skg_intv fresh,
+                     skg_photons *p) {
     const skg_scatter_args *args = s->args;
     const skg_fv u = skg_lattice(s, lattice, batch, p->history, 0),
                  v = skg_lattice(s, lattice, batch, p->history, 1);
     const skg_fv energy = skg_lattice(s, lattice, batch, p->history, 2),
                  spot = skg_lattice(s, lattice, batch, p->history, 12);
     float at[SKG_WIDE], kev[SKG_WIDE], weight[SKG_WIDE], x[SKG_WIDE], y[SKG_WIDE], z[SKG_WIDE];
+#if SKG_HEEL
+    int bins[SKG_WIDE];
+#endif
+#if SKG_BOWTIE
+    float per_mm[SKG_WIDE];
+#endif
     SKG_STORE_V(realv, energy, at);
     SKG_STORE_V(realv, spot * (skg_fv)((float)args->spots), x);
     for (int l = 0; l < SKG_WIDE; l++) {
@@ -216,6 +223,12 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
         }
         kev[l] = beam[low].x;
         weight[l] = beam[low].z;
+#if SKG_HEEL
+        bins[l] = low;
+#endif
+#if SKG_BOWTIE
+        per_mm[l] = beam[low].w;
+#endif
         const float4 point = spots[min((int)x[l], args->spots - 1)];
         x[l] = point.x, y[l] = point.y, z[l] = point.z;
     }
@@ -235,7 +248,13 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     const skg_place3 way = skg_times(to, one_over);
     /* Photons per sr: the field's area as the source sees it, over that at its middle. */
     const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
-    const skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
+    skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
+#if SKG_HEEL
+    share *= skg_heel_share(args, profiles, bins, way);
+#endif
+#if SKG_BOWTIE
+    share *= skg_filter_share(args, profiles, per_mm, way);
+#endif
 #endif
     p->at.x = fresh ? begin.x : p->at.x, p->at.y = fresh ? begin.y : p->at.y,
     p->at.z = fresh ? begin.z : p->at.z;
@@ -310,7 +329,8 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
 /* cells     [cells] coefficients of their mixtures
  * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy; momenta: [momenta][2] S and F^2
  * angles    [rows][SKG_SCATTER_ANGLES + 1] cosines between which scattering is equally likely
- * beam      [bins] energy, share of the bins up to this one, weight
+ * beam      [bins] energy, share of the bins up to this one, weight, 1/mm of a bow-tie filter
+ * profiles  with SKG_HEEL or SKG_BOWTIE: their tables (profile.clh); else NULL
  * spots     [spots] points of the source, or the direction of a parallel beam
  * lattice   [SKG_SCATTER_DIMENSIONS] generating vector; then for each batch its shift
  * sums      [batches][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
@@ -318,7 +338,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
 __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
                           __global const float4 *energies, __global const float4 *momenta,
                           __global const float *angles, __global const float4 *beam,
-                          __global const float4 *spots, __constant const uint *lattice, __global uint *sums) {
+                          __global const float *profiles, __global const float4 *spots, __constant const uint *lattice, __global uint *sums) {
     const uint batch = (uint)get_global_id(1);
     uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
     const uint end = min(next + (uint)args.each, (uint)args.end);
@@ -338,7 +358,7 @@ __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
         }
         p.history = SKG_AS_UINT_V(SKG_LOAD_V(intv, (int *)numbers));
         if (skg_any(SKG_LOAD_V(intv, fresh)))
-            skg_emit(&s, lattice, beam, spots, batch, SKG_LOAD_V(intv, fresh), &p);
+            skg_emit(&s, lattice, beam, profiles, spots, batch, SKG_LOAD_V(intv, fresh), &p);
         if (!skg_any(p.alive)) break;
         skg_flight(&s, lattice, angles, batch, &p);
     }

@@ -3,7 +3,6 @@
 #include "material/scattering.h"
 #include "plan/effect.h"
 #include "plan/options.h"
-#include "spectral/quantity.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -41,11 +40,7 @@ static skg_status check_numbers(const skg_scatter *s) {
 
 /* The option that scatter does not go with; NULL: none. */
 static const char *find_conflict(const skg_plan_options *o) {
-    return o->world    ? "World: the surroundings scatter nothing here; leave them out"
-           : o->heel   ? "the heel effect; leave it out"
-           : o->bowtie ? "a bow-tie filter; leave it out"
-           : o->grid && skg_quantity_is_ratio(o)
-               ? "an anti-scatter grid and ratios to the flat field; take energy, fluence or photons"
+    return o->world        ? "World: the surroundings scatter nothing here; leave them out"
            : o->oblique    ? "an oblique response; take the straight one"
            : o->bands > 1  ? "several bands; take one"
            : o->depth_blur ? "a blur by depths; take one blur"

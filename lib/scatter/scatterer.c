@@ -109,7 +109,7 @@ static skg_status trace(skg_context *context, const skg_scatter_work *work, cons
                         skg_scatterer *s, arrived *a) {
     skg_scatter_tables tables;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_scatter_tables_make(work->recipe, object, &tables));
+    SKG_TRY_CLEANUP(skg_scatter_tables_make(work, object, &tables));
     SKG_TRY_CLEANUP(skg_trace_begin(context, work, object, &tables, a->columns, a->rows, &s->tracing));
     SKG_TRY_CLEANUP(follow(context, work->recipe->options.scatter, &s->tracing, a));
     if (work->recipe->options.noise)

@@ -68,7 +68,7 @@ static void add_sums(const maker *m, knot *k) {
 static skg_status trace(maker *m, const skg_scatter_work *work, const skg_scatter_object *object, knot *k) {
     skg_scatter_tables tables;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_scatter_tables_make(work->recipe, object, &tables));
+    SKG_TRY_CLEANUP(skg_scatter_tables_make(work, object, &tables));
     SKG_TRY_CLEANUP(skg_trace_begin(m->context, work, object, &tables, m->columns, m->rows, &m->tracing));
     m->tracing.args.end = (SKG_INT)k->end;
     SKG_TRY_CLEANUP(skg_trace_until(m->context, &m->tracing, m->end));

@@ -1,6 +1,7 @@
 #include "scatter/shown.h"
 
 #include "core/vector.h"
+#include "scatter/open_beam.h"
 #include "spectral/quantity.h"
 
 #include <math.h>
@@ -39,11 +40,13 @@ static units units_of(const skg_scatter_work *work) {
     return u;
 }
 
-/* An image of cosines. squares: 1: of their variance; root: 1: of its root; flat: 1: over the open beam's falloff; factor: of all
+/* An image of cosines. squares: 1: of their variance; root: 1: of its root; flat: 1: over the open beam's falloff; open: and over its share that this
+ * has, or NULL; factor: of all
  * values; least: of the image, which cosines may swing below. */
 typedef struct {
     const skg_cosines *cosines;
     int squares, root, flat;
+    const skg_open_beam *open;
     double factor, least;
 } picture;
 
@@ -62,6 +65,7 @@ static skg_status send(skg_context *context, const skg_view *view, const picture
         const double kept = fmax(values[i], p->least);
         double value = (p->root ? sqrt(kept) : kept) * p->factor;
         if (p->flat) value /= falloff_at(view, i / view->columns, i % view->columns);
+        if (p->open) value /= skg_open_beam_at(p->open, view, i / view->columns, i % view->columns);
         floats[i] = (float)value;
         *mean += value / (double)size;
         *square += value * value / (double)size;
@@ -73,6 +77,12 @@ cleanup:
     return status;
 }
 
+/* What ratios are over in each pixel. */
+static skg_status find_open(const skg_scatter_work *work, skg_open_beam *open) {
+    *open = (skg_open_beam){0};
+    return skg_quantity_is_ratio(&work->recipe->options) ? skg_open_beam_make(work, open) : SKG_OK;
+}
+
 skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter *shown,
                                   skg_scatter_images *images) {
     const skg_scatter_work *work = shown->work;
@@ -81,25 +91,37 @@ skg_status skg_shown_scatter_send(skg_context *context, const skg_shown_scatter 
     const int staged_flat = absolute ? !work->recipe->options.falloff : u.flat;
     const double unit = shown->photons * shown->signal;
     double mean = 0, square = 0;
-    const picture staged = {shown->mean, 0, 0, staged_flat, unit * u.staged, 0};
+    skg_open_beam open;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(find_open(work, &open));
+    const picture staged = {shown->mean, 0, 0, staged_flat, absolute ? NULL : &open, unit * u.staged, 0};
     const picture variance = {
-        shown->variance, 0, 0, staged_flat, shown->photons * shown->power * u.staged, 0};
-    const picture image = {shown->mean, 0, 0, u.flat, unit * u.shown, 0};
-    const picture sigma = {shown->mean, 1, 1, u.flat, unit * u.shown, 0};
-    SKG_TRY(send(context, work->view, &staged, &images->mean, &mean, &square));
-    if (shown->variance) SKG_TRY(send(context, work->view, &variance, &images->variance, &mean, &square));
-    SKG_TRY(send(context, work->view, &image, &images->shown, &images->average, &square));
-    SKG_TRY(send(context, work->view, &sigma, &images->sigma, &mean, &square));
+        shown->variance, 0, 0, staged_flat, NULL, shown->photons * shown->power * u.staged, 0};
+    const picture image = {shown->mean, 0, 0, u.flat, &open, unit * u.shown, 0};
+    const picture sigma = {shown->mean, 1, 1, u.flat, &open, unit * u.shown, 0};
+    SKG_TRY_CLEANUP(send(context, work->view, &staged, &images->mean, &mean, &square));
+    if (shown->variance)
+        SKG_TRY_CLEANUP(send(context, work->view, &variance, &images->variance, &mean, &square));
+    SKG_TRY_CLEANUP(send(context, work->view, &image, &images->shown, &images->average, &square));
+    SKG_TRY_CLEANUP(send(context, work->view, &sigma, &images->sigma, &mean, &square));
     images->error = sqrt(square);
-    return SKG_OK;
+cleanup:
+    skg_open_beam_free(&open);
+    return status;
 }
 
 skg_status skg_shown_component_send(skg_context *context, const skg_shown_scatter *shown,
                                     skg_scatter_images *images) {
     const units u = units_of(shown->work);
-    const picture image = {shown->mean, 0, 0, u.flat, shown->photons * shown->signal * u.shown, -HUGE_VAL};
     double mean = 0, square = 0;
-    return send(context, shown->work->view, &image, &images->component, &mean, &square);
+    skg_open_beam open;
+    skg_status status = find_open(shown->work, &open);
+    const picture image = {shown->mean, 0, 0, u.flat, &open, shown->photons * shown->signal * u.shown,
+                           -HUGE_VAL};
+    if (status == SKG_OK)
+        status = send(context, shown->work->view, &image, &images->component, &mean, &square);
+    skg_open_beam_free(&open);
+    return status;
 }
 
 void skg_scatter_images_release(skg_scatter_images *images) {

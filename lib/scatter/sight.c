@@ -86,14 +86,25 @@ static skg_status fill_field(const skg_scatter_work *work, const skg_cells *cell
     return SKG_OK;
 }
 
+skg_status skg_sight_strips(const skg_scatter_work *work, double across[3]) {
+    const skg_grid *grid = work->recipe->options.grid;
+    const skg_view *view = &work->recipe->view;
+    const double *rows = view->column_step;
+    skg_shades shades = {0};
+    skg_camera camera;
+    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
+    SKG_TRY(skg_shade_direction(view, skg_length(grid->direction) > 0 ? grid->direction : rows, "grid",
+                                "a direction across the strips", shades.strips_toward));
+    if (!skg_grid_across(&shades, &camera, across))
+        return skg_fail(SKG_ERR_SCENE, "scatter: the grid's direction points along the detector's normal");
+    return SKG_OK;
+}
+
 static skg_status fill_grid(const skg_scatter_work *work, skg_scatter_args *args) {
     const skg_grid *grid = work->recipe->options.grid;
-    skg_camera camera;
     double across[3];
     if (!grid) return SKG_OK;
-    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
-    if (!skg_grid_across(&work->recipe->model.shades, &camera, across))
-        return skg_fail(SKG_ERR_SCENE, "scatter: the grid's direction points along the detector's normal");
+    SKG_TRY(skg_sight_strips(work, across));
     set(across, args->strips);
     args->focus = grid->focus_mm > 0 ? (float)(1 / grid->focus_mm) : 0;
     args->strips_u = (float)(skg_dot(across, work->view->column_step) * (double)work->view->columns);

@@ -55,6 +55,22 @@ static void fill_energies(const skg_scatter_physics *p, skg_scatter_tables *t) {
     }
 }
 
+/* Of bins that have photons. */
+static skg_status fill_profiles(const skg_spectrum *spectrum, skg_scatter_tables *t) {
+    const skg_beam_profile *p = &t->profile;
+    const int64_t rows = p->heel ? SKG_HEEL_ROWS : 0, fan = p->bowtie ? p->filter->count : 0;
+    t->profile_count = rows * t->bins + 2 * fan;
+    if (t->profile_count == 0) return SKG_OK;
+    SKG_TRY(skg_alloc(t->profile_count, sizeof *t->profiles, "scatter", &t->profiles));
+    float *to = t->profiles;
+    for (int64_t r = 0; r < rows; r++)
+        for (int64_t b = 0; b < p->bins; b++)
+            if (spectrum->photons[b] > 0) *to++ = (float)p->shares[r * p->bins + b];
+    for (int64_t k = 0; k < fan; k++)
+        to[k] = (float)p->tangents[k], to[fan + k] = (float)p->filter->path_mm[k];
+    return SKG_OK;
+}
+
 /* Photons are drawn with the probability of photons times (signal + a share of the mean signal). */
 static skg_status fill_beam(const skg_recipe *recipe, skg_scatter_tables *t) {
     const skg_spectrum *spectrum = recipe->spectrum;
@@ -81,13 +97,16 @@ static skg_status fill_beam(const skg_recipe *recipe, skg_scatter_tables *t) {
             float *row = t->beam[t->bins++];
             row[0] = (float)spectrum->energy_kev[i];
             row[1] = (float)share;
-            row[2] = (float)(spectrum->photons[i] / t->photons / (drawn / sum));
+            row[2] = (float)(spectrum->photons[i] / t->photons / (drawn / sum) / t->profile.mean);
+            row[3] = t->profile.bowtie ? (float)t->profile.attenuation[i] : 0;
         }
+    t->photons *= t->profile.mean; /* weights are about 1, as the roulette has it */
     return t->bins > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
-skg_status skg_scatter_tables_make(const skg_recipe *recipe, const skg_scatter_object *object,
+skg_status skg_scatter_tables_make(const skg_scatter_work *work, const skg_scatter_object *object,
                                    skg_scatter_tables *t) {
+    const skg_recipe *recipe = work->recipe;
     const skg_scatter_physics *p = &object->physics;
     *t = (skg_scatter_tables){0};
     SKG_TRY(skg_alloc(p->energies * SKG_SCATTER_COLUMNS, sizeof *t->energies, "scatter", &t->energies));
@@ -95,7 +114,9 @@ skg_status skg_scatter_tables_make(const skg_recipe *recipe, const skg_scatter_o
     SKG_TRY(skg_alloc(SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1), sizeof *t->angles, "scatter", &t->angles));
     fill_energies(p, t);
     SKG_TRY(fill_signals(recipe, p, t));
+    SKG_TRY(skg_beam_profile_make(work, &t->profile));
     SKG_TRY(fill_beam(recipe, t));
+    SKG_TRY(fill_profiles(recipe->spectrum, t));
     return skg_angles_make(p, object->cells.mean, t->angles);
 }
 
@@ -104,4 +125,6 @@ void skg_scatter_tables_free(skg_scatter_tables *t) {
     skg_free(&t->momenta);
     skg_free(&t->angles);
     skg_free(&t->beam);
+    skg_free(&t->profiles);
+    skg_beam_profile_free(&t->profile);
 }

@@ -90,6 +90,10 @@ static skg_status send_tables(skg_context *context, const skg_scatter_object *ob
     SKG_TRY(skg_buffer_write(context, &t->angles,
                              SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1) * (int64_t)sizeof *tables->angles,
                              tables->angles, "angles"));
+    if (tables->profiles)
+        SKG_TRY(skg_buffer_write(context, &t->profiles,
+                                 tables->profile_count * (int64_t)sizeof *tables->profiles, tables->profiles,
+                                 "beam"));
     return skg_buffer_write(context, &t->beam, tables->bins * four, tables->beam, "beam");
 }
 
@@ -106,6 +110,22 @@ static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *
     args->angle_rows = (float)((double)(SKG_ANGLE_ROWS - 1) / (double)(p->energies - 1));
     args->least_kev = (float)(p->low_kev * 1.0001);
     args->scale = (float)(1 / UNIT);
+}
+
+static void fill_profile(const skg_beam_profile *p, skg_tracing *t) {
+    skg_scatter_args *args = &t->args;
+    t->heel = p->heel, t->bowtie = p->bowtie;
+    for (int k = 0; k < 3; k++) {
+        args->anode[k] = (float)p->anode[k];
+        args->central[k] = (float)p->central[k];
+        args->fan[k] = (float)p->fan[k];
+    }
+    if (p->heel) {
+        args->heel_low = (float)p->low;
+        args->heel_per = p->high > p->low ? (float)((SKG_HEEL_ROWS - 1) / (p->high - p->low)) : 0;
+        args->heel_rows = SKG_HEEL_ROWS;
+    }
+    if (p->bowtie) args->fan_rows = (SKG_INT)p->filter->count;
 }
 
 static skg_status clear(skg_context *context, skg_tracing *t) {
@@ -130,6 +150,7 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     t->parallel = work->view->projection != SKG_PROJECTION_POINT;
     SKG_TRY(skg_sight_fill(work, &object->cells, &t->args));
     fill_tables(&object->physics, tables, &t->args);
+    fill_profile(&tables->profile, t);
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
     SKG_TRY(send_lattice(context, seed, &t->lattice));
@@ -137,11 +158,14 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 }
 
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
-    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh", "scatter.clh",
-                                        "sight.clh",       "strips.clh", "scatter.cl"};
+    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh",   "scatter.clh",
+                                        "sight.clh",       "strips.clh", "profile.clh", "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
-    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid}};
+    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0},
+                                  {"SKG_GRID", t->grid},
+                                  {"SKG_HEEL", t->heel},
+                                  {"SKG_BOWTIE", t->bowtie}};
     return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
                            SKG_DEFINES(defines), program);
 }
@@ -162,6 +186,7 @@ static skg_status launch(skg_context *context, cl_program program, skg_tracing *
         SKG_ARGUMENT(SCATTER, momenta, t->momenta.memory),
         SKG_ARGUMENT(SCATTER, angles, t->angles.memory),
         SKG_ARGUMENT(SCATTER, beam, t->beam.memory),
+        SKG_ARGUMENT(SCATTER, profiles, t->profiles.memory),
         SKG_ARGUMENT(SCATTER, spots, t->spots.memory),
         SKG_ARGUMENT(SCATTER, lattice, t->lattice.memory),
         SKG_ARGUMENT(SCATTER, sums, t->sums.memory),
@@ -193,12 +218,12 @@ skg_status skg_trace_read(skg_context *context, const skg_tracing *t, int64_t *s
 }
 
 void skg_trace_release(skg_tracing *t) {
-    skg_buffer *const buffers[] = {&t->cells, &t->energies, &t->momenta, &t->angles,
-                                   &t->beam,  &t->spots,    &t->lattice, &t->sums};
+    skg_buffer *const buffers[] = {&t->cells,    &t->energies, &t->momenta, &t->angles, &t->beam,
+                                   &t->profiles, &t->spots,    &t->lattice, &t->sums};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
 int64_t skg_trace_bytes(const skg_tracing *t) {
     return t->cells.bytes + t->energies.bytes + t->momenta.bytes + t->angles.bytes + t->beam.bytes +
-           t->spots.bytes + t->lattice.bytes + t->sums.bytes;
+           t->profiles.bytes + t->spots.bytes + t->lattice.bytes + t->sums.bytes;
 }

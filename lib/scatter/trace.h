@@ -14,9 +14,9 @@ enum { SKG_SCATTER_BATCHES = 32 };
 
 /* All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer cells, energies, momenta, angles, beam, spots, lattice, sums;
+    skg_buffer cells, energies, momenta, angles, beam, profiles, spots, lattice, sums;
     skg_scatter_args args; /* `end`: so many histories of each batch were followed */
-    int32_t noise, parallel, grid;
+    int32_t noise, parallel, grid, heel, bowtie;
     int32_t reserved;
     int64_t sums_count;
 } skg_tracing;
