@@ -245,6 +245,7 @@ typedef struct {
     float central[3], fan[3];           /* SKG_BOWTIE: to the detector's middle; where the angles of the fan grow */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
     SKG_INT heel_rows, fan_rows;        /* of the table of the heel effect and of the filter's; 0: none */
+    SKG_INT bands, edges, cosines;      /* channels of the image; numbers before the table of layers; its cosines */
     SKG_INT first, end, each;           /* histories of a batch; of a work-item */
     SKG_INT seed[2];                    /* low word first */
 } skg_scatter_args;
@@ -311,6 +312,6 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 58 * 4 + 17 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
+_Static_assert(sizeof(skg_scatter_args) == 58 * 4 + 20 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
 #endif
 #endif

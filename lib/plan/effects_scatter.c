@@ -40,12 +40,7 @@ static skg_status check_numbers(const skg_scatter *s) {
 
 /* The option that scatter does not go with; NULL: none. */
 static const char *find_conflict(const skg_plan_options *o) {
-    return o->world        ? "World: the surroundings scatter nothing here; leave them out"
-           : o->oblique    ? "an oblique response; take the straight one"
-           : o->bands > 1  ? "several bands; take one"
-           : o->depth_blur ? "a blur by depths; take one blur"
-           : o->dqe        ? "a DQE; take a Swank factor"
-                           : NULL;
+    return o->world ? "World: the surroundings scatter nothing here; leave them out" : NULL;
 }
 
 static skg_status copy_scatter(skg_recipe *recipe) {

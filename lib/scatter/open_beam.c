@@ -12,20 +12,48 @@
 /* Places along a side of the detector, at most. */
 enum { SIDE = 129 };
 
+/* Of the table of an oblique scintillator, even from the least cosine of the detector to 1. */
+enum { COSINES = 33 };
+
 /* What is known of each bin of the spectrum. */
 typedef struct {
     double recorded;          /* photons times what one adds */
     double strip, interspace; /* of the grid, 1/mm */
+    double layer[COSINES];    /* the cosine times what is recorded over what is of straight photons */
 } bin;
 
 typedef struct {
     const skg_scatter_work *work;
+    int32_t channel;
     skg_beam_profile profile;
     skg_camera camera;
     double across[3], normal[3]; /* of the strips; of the detector */
     double sum;                  /* of what is recorded */
+    double least;                /* cosine to the normal */
     bin *bins;
 } beam;
+
+static int is_in_band(const skg_plan_options *options, int32_t channel, double kev) {
+    return options->bands == 0 || (kev >= options->band_kev[channel] && kev < options->band_kev[channel + 1]);
+}
+
+static skg_status fill_layer(const beam *b, double kev, bin *own) {
+    double straight = 0, oblique = 0;
+    SKG_TRY(skg_signal_get(&b->work->recipe->options, kev, &straight));
+    for (int k = 0; k < COSINES; k++) {
+        const double cosine = b->least + (1 - b->least) * k / (COSINES - 1);
+        SKG_TRY(skg_signal_oblique_get(&b->work->recipe->options, kev, 1 / cosine, &oblique));
+        own->layer[k] = straight > 0 ? cosine * oblique / straight : 0;
+    }
+    return SKG_OK;
+}
+
+static double share_of_layer(const beam *b, const bin *own, double cosine) {
+    const double range = 1 - b->least,
+                 at = range > 0 ? fmin(fmax((cosine - b->least) / range, 0), 1) * (COSINES - 1) : 0;
+    const int k = at < COSINES - 2 ? (int)at : COSINES - 2;
+    return (own->layer[k] + (at - k) * (own->layer[k + 1] - own->layer[k])) / cosine;
+}
 
 static skg_status fill_bins(beam *b) {
     const skg_recipe *recipe = b->work->recipe;
@@ -33,12 +61,14 @@ static skg_status fill_bins(beam *b) {
     SKG_TRY(skg_alloc(spectrum->count, sizeof *b->bins, "flat field", &b->bins));
     for (int64_t i = 0; i < spectrum->count; i++) {
         bin *own = &b->bins[i];
-        if (!(spectrum->photons[i] > 0)) continue;
+        if (!(spectrum->photons[i] > 0) || !is_in_band(&recipe->options, b->channel, spectrum->energy_kev[i]))
+            continue;
         SKG_TRY(skg_signal_get(&recipe->options, spectrum->energy_kev[i], &own->recorded));
         b->sum += own->recorded *= spectrum->photons[i];
         if (recipe->options.grid)
             SKG_TRY(skg_grid_attenuation(recipe->options.grid, spectrum->energy_kev[i], &own->strip,
                                          &own->interspace));
+        if (recipe->options.oblique) SKG_TRY(fill_layer(b, spectrum->energy_kev[i], own));
     }
     return SKG_OK;
 }
@@ -70,6 +100,7 @@ static double share_at(const beam *b, double column, double row) {
         if (!(share > 0)) continue;
         share *= skg_beam_profile_at(&b->profile, &at, i);
         if (options->grid) share *= skg_grid_pass(options->grid, own->strip, own->interspace, oblique, tilt);
+        if (options->oblique) share *= share_of_layer(b, own, 1 / oblique);
         sum += share;
     }
     return b->sum > 0 ? sum / b->sum : 1;
@@ -92,6 +123,12 @@ static skg_status fill(beam *b, skg_open_beam *open) {
     if (work->recipe->options.grid) SKG_TRY(skg_sight_strips(work, b->across));
     skg_cross(work->view->column_step, work->view->row_step, b->normal);
     skg_scale_vector(1 / skg_length(b->normal), b->normal, b->normal);
+    b->least = 1;
+    for (int k = 0; k < 4; k++) {
+        double ray[3], place = 0;
+        ray_to(b, k & 1 ? (double)work->view->columns : 0, k & 2 ? (double)work->view->rows : 0, ray, &place);
+        b->least = fmin(b->least, fabs(skg_dot(b->normal, ray)) / skg_length(ray));
+    }
     SKG_TRY(fill_bins(b));
     open->columns = places_of(work->view->columns), open->rows = places_of(work->view->rows);
     SKG_TRY(skg_alloc(open->rows * open->columns, sizeof *open->shares, "flat field", &open->shares));
@@ -101,12 +138,13 @@ static skg_status fill(beam *b, skg_open_beam *open) {
     return SKG_OK;
 }
 
-skg_status skg_open_beam_make(const skg_scatter_work *work, skg_open_beam *open) {
+skg_status skg_open_beam_make(const skg_scatter_work *work, int32_t channel, skg_open_beam *open) {
     const skg_plan_options *options = &work->recipe->options;
     const int is_point = work->view->projection == SKG_PROJECTION_POINT;
-    beam b = {.work = work};
+    beam b = {.work = work, .channel = channel};
     *open = (skg_open_beam){0};
-    if (!options->grid && !(is_point && (options->heel || options->bowtie))) return SKG_OK;
+    if (!options->grid && !options->oblique && !(is_point && (options->heel || options->bowtie)))
+        return SKG_OK;
     const skg_status status = fill(&b, open);
     skg_beam_profile_free(&b.profile);
     skg_free(&b.bins);

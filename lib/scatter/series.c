@@ -226,7 +226,8 @@ skg_status skg_series_make(skg_context *context, int64_t count, skg_series_frame
     const double begun = skg_seconds();
     skg_status status = SKG_OK;
     *is_smooth = 0;
-    if (count < 2 * INTERVALS) return SKG_OK;
+    /* Bands and layers would each need a fit of their own. */
+    if (count < 2 * INTERVALS || skg_model_sums(&series->recipe->model) > 1) return SKG_OK;
     m.noise = series->recipe->options.noise != 0;
     SKG_TRY_CLEANUP(begin(&m));
     SKG_TRY_CLEANUP(converge(&m, is_smooth));

@@ -14,8 +14,12 @@ typedef struct {
     skg_beam_profile profile;
     float *profiles; /* [profile_count] as kernels/profile.clh has them; NULL: none */
     int64_t profile_count;
-    double photons;          /* of the spectrum, those that leave towards the field */
-    double signal, variance; /* what 1 in the columns of what a photon adds stands for */
+    float *
+        detector; /* [detector_count] as kernels/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
+    int64_t detector_count;
+    int32_t bands, layers, cosines, oblique; /* images of a frame; of the table of layers: 0: none */
+    double photons;                          /* of the spectrum, those that leave towards the field */
+    double signal, variance;                 /* what 1 in the columns of what a photon adds stands for */
 } skg_scatter_tables;
 
 /* More photons are followed of energies that add more to the image. Free the tables also after a failure. */

@@ -94,6 +94,10 @@ static skg_status send_tables(skg_context *context, const skg_scatter_object *ob
         SKG_TRY(skg_buffer_write(context, &t->profiles,
                                  tables->profile_count * (int64_t)sizeof *tables->profiles, tables->profiles,
                                  "beam"));
+    if (tables->detector)
+        SKG_TRY(skg_buffer_write(context, &t->detector,
+                                 tables->detector_count * (int64_t)sizeof *tables->detector, tables->detector,
+                                 "detector"));
     return skg_buffer_write(context, &t->beam, tables->bins * four, tables->beam, "beam");
 }
 
@@ -128,9 +132,20 @@ static void fill_profile(const skg_beam_profile *p, skg_tracing *t) {
     if (p->bowtie) args->fan_rows = (SKG_INT)p->filter->count;
 }
 
+static void fill_images(const skg_recipe *recipe, const skg_scatter_tables *tables, skg_tracing *t) {
+    t->bands = recipe->options.bands > 0;
+    t->layers = tables->layers;
+    t->oblique = tables->oblique;
+    t->layered = tables->cosines > 0;
+    t->args.bands = tables->bands;
+    t->args.edges = t->bands ? tables->bands + 1 : 0;
+    t->args.cosines = tables->cosines;
+}
+
 static skg_status clear(skg_context *context, skg_tracing *t) {
     static const cl_int none = 0;
-    t->sums_count = (int64_t)SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * t->args.rows * t->args.columns;
+    t->sums_count = (int64_t)SKG_SCATTER_BATCHES * t->layers * t->args.bands * SKG_SCATTER_PLANES *
+                    t->args.rows * t->args.columns;
     const int64_t bytes = t->sums_count * (int64_t)sizeof(int64_t);
     SKG_TRY(skg_buffer_reserve(context, &t->sums, bytes, CL_MEM_READ_WRITE, "scatter"));
     SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, t->sums.memory, &none, sizeof none, 0,
@@ -151,6 +166,7 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     SKG_TRY(skg_sight_fill(work, &object->cells, &t->args));
     fill_tables(&object->physics, tables, &t->args);
     fill_profile(&tables->profile, t);
+    fill_images(work->recipe, tables, t);
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
     SKG_TRY(send_lattice(context, seed, &t->lattice));
@@ -158,14 +174,15 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 }
 
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
-    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh",   "scatter.clh",
-                                        "sight.clh",       "strips.clh", "profile.clh", "scatter.cl"};
+    static const char *const files[] = {"exponential.clh", "random.clh",  "noise.clh",
+                                        "scatter.clh",     "sight.clh",   "strips.clh",
+                                        "arrive.clh",      "profile.clh", "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
-    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0},
-                                  {"SKG_GRID", t->grid},
-                                  {"SKG_HEEL", t->heel},
-                                  {"SKG_BOWTIE", t->bowtie}};
+    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid},
+                                  {"SKG_HEEL", t->heel},        {"SKG_BOWTIE", t->bowtie},
+                                  {"SKG_BANDS", t->bands},      {"SKG_LAYERS", t->layers},
+                                  {"SKG_LAYERED", t->layered},  {"SKG_OBLIQUE", t->oblique}};
     return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
                            SKG_DEFINES(defines), program);
 }
@@ -189,6 +206,7 @@ static skg_status launch(skg_context *context, cl_program program, skg_tracing *
         SKG_ARGUMENT(SCATTER, profiles, t->profiles.memory),
         SKG_ARGUMENT(SCATTER, spots, t->spots.memory),
         SKG_ARGUMENT(SCATTER, lattice, t->lattice.memory),
+        SKG_ARGUMENT(SCATTER, detector, t->detector.memory),
         SKG_ARGUMENT(SCATTER, sums, t->sums.memory),
     };
     return SKG_LAUNCH_ONCE(context, program, "skg_scatter", "scatter", &work, arguments, NULL);
@@ -218,12 +236,12 @@ skg_status skg_trace_read(skg_context *context, const skg_tracing *t, int64_t *s
 }
 
 void skg_trace_release(skg_tracing *t) {
-    skg_buffer *const buffers[] = {&t->cells,    &t->energies, &t->momenta, &t->angles, &t->beam,
-                                   &t->profiles, &t->spots,    &t->lattice, &t->sums};
+    skg_buffer *const buffers[] = {&t->cells,    &t->energies, &t->momenta, &t->angles,   &t->beam,
+                                   &t->profiles, &t->spots,    &t->lattice, &t->detector, &t->sums};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
 int64_t skg_trace_bytes(const skg_tracing *t) {
     return t->cells.bytes + t->energies.bytes + t->momenta.bytes + t->angles.bytes + t->beam.bytes +
-           t->profiles.bytes + t->spots.bytes + t->lattice.bytes + t->sums.bytes;
+           t->profiles.bytes + t->spots.bytes + t->lattice.bytes + t->detector.bytes + t->sums.bytes;
 }

@@ -138,6 +138,23 @@ START_TEST(quantities) {
 }
 END_TEST
 
+/* The last band is the last plane of a file: here that of photons that kept their energy. */
+START_TEST(bands_have_planes_of_their_own) {
+    static float kept[PIXELS], sigma[PIXELS], alone[PIXELS];
+    ck_run(0, "image scene.json --bands 1,59.9,61 -o t.mha --scatter histories=4000 --scatter-image a.mha "
+              "--scatter-sigma e.mha --json");
+    json_t *object = said_json();
+    const double mean = number_of(member(object, "scatter"), "mean");
+    json_decref(object);
+    read_mha("a.mha", kept);
+    read_mha("e.mha", sigma);
+    ck_run(0, "image scene.json --bands 59.9,61 -o t.mha --scatter histories=4000 --scatter-image b.mha");
+    read_mha("b.mha", alone);
+    for (int i = 0; i < PIXELS; i++) ck_assert(kept[i] == alone[i] && sigma[i] > 0);
+    ck_assert_double_gt(mean, mean_of(kept)); /* of both bands: most photons have lost some */
+}
+END_TEST
+
 START_TEST(without_scatter_nothing_is_said_of_it) {
     ck_run(0, "image scene.json -o a.mha --json");
     json_t *object = said_json();
@@ -208,6 +225,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, nothing_in_the_beam_scatters_nothing);
     tcase_add_test(tests, the_key_and_the_flag_are_the_same);
     tcase_add_test(tests, quantities);
+    tcase_add_test(tests, bands_have_planes_of_their_own);
     tcase_add_test(tests, without_scatter_nothing_is_said_of_it);
     tcase_add_loop_test(tests, refused_flags, 0, sizeof bad / sizeof *bad);
     tcase_add_test(tests, outputs_are_guarded);

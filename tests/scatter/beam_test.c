@@ -1,4 +1,4 @@
-/* Scatter behind what stands in the beam: heel effect, bow-tie filter, grid. */
+/* Scatter behind what stands in the beam, heel effect, bow-tie filter and grid, and in an oblique scintillator. */
 #include "subject.h"
 #include "suite.h"
 #include "support/named.h"
@@ -10,9 +10,13 @@ typedef struct {
     skg_heel heel;
     skg_bowtie bowtie;
     skg_grid grid;
+    skg_response *response;
 } effects;
 
-enum { HEEL = 1, BOWTIE = 2, GRID = 4 };
+enum { HEEL = 1, BOWTIE = 2, GRID = 4, OBLIQUE = 8 };
+
+static const int combinations[] = {0, HEEL, BOWTIE, GRID, OBLIQUE, HEEL + BOWTIE + GRID + OBLIQUE};
+enum { COMBINATIONS = sizeof combinations / sizeof *combinations };
 
 /* mm. Shares change by less than 0.3 % over the sphere. */
 static const double RADIUS = 0.2;
@@ -32,17 +36,23 @@ static void make_effects(effects *e, double kvp) {
     skg_grid_init(&e->grid);
     e->grid.ratio = 8, e->grid.lines_per_cm = 40, e->grid.strip_mm = 0.05, e->grid.focus_mm = 900;
     e->grid.interspace = named("Aluminum");
+    skg_material *layer = named("Cesium Iodide");
+    ck_skg(skg_response_create_scintillator(layer, 0.2, 0.8, &e->response));
+    skg_material_release(&layer);
 }
 
 static void free_effects(effects *e) {
     skg_material_release(&e->bowtie.material);
     skg_material_release(&e->grid.interspace);
+    skg_response_release(&e->response);
 }
 
 static void use(subject *s, const effects *e, int which) {
     s->options.heel = which & HEEL ? &e->heel : NULL;
     s->options.bowtie = which & BOWTIE ? &e->bowtie : NULL;
     s->options.grid = which & GRID ? &e->grid : NULL;
+    s->options.oblique = (which & OBLIQUE) != 0;
+    s->options.response = which & OBLIQUE ? e->response : NULL;
 }
 
 /* keV of a small sphere in the way to a place of the detector, in a beam as wide as the sphere. */
@@ -169,8 +179,9 @@ START_TEST(ratios_are_over_the_open_beam_of_each_pixel) {
     skg_spectrum *beams[2] = {tube(90), NULL};
     ck_skg(skg_spectrum_create_mono(60, 1e5, &beams[1]));
     make_effects(&e, 90);
-    for (int which = 0; which < 8; which++)
+    for (int c = 0; c < COMBINATIONS; c++)
         for (int b = 0; b < 2; b++) {
+            const int which = combinations[c];
             double *open = open_image(&e, which, beams[b]), worst = 0;
             pictures energy = take(&e, which, beams[b], SKG_QUANTITY_ENERGY, 0);
             pictures ratio = take(&e, which, beams[b], SKG_QUANTITY_TRANSMISSION, 0);
@@ -201,7 +212,8 @@ START_TEST(noisy_ratios_are_the_same_on_average) {
     skg_spectrum *beam = NULL;
     ck_skg(skg_spectrum_create_mono(60, 1e12, &beam));
     make_effects(&e, 90);
-    for (int which = 1; which < 8; which++) {
+    for (int c = 1; c < COMBINATIONS; c++) {
+        const int which = combinations[c];
         pictures still = take(&e, which, beam, SKG_QUANTITY_TRANSMISSION, 0);
         pictures noisy = take(&e, which, beam, SKG_QUANTITY_TRANSMISSION, 1);
         for (int64_t i = 0; i < still.count; i++)

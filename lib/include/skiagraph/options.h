@@ -462,8 +462,8 @@ typedef struct {
     const skg_collimation *collimation;
     /** Scattered photons, which are added to images before noise and blur; NULL: none. Frames whose scene or view
      * differs from the last one's take seconds, and submitting waits for them. Needs closed meshes, materials of known
-     * composition and density, energies up to 1,022 keV, and one channel; not with world, oblique, depth_blur, dqe,
-     * nor half precision. The field of the beam may not be wider than the heel's anode and the bow-tie's profile. */
+     * composition and density, and energies up to 1,022 keV; not with world, nor half precision. The field of the
+     * beam may not be wider than the heel's anode and the bow-tie's profile allow. */
     const skg_scatter *scatter;
 } skg_plan_options;
 
