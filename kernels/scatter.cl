@@ -133,6 +133,9 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
         const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
         skg_march(s->args, s->cells, p->at, way, enter, length, jitter, &sums);
+#if SKG_WORLD
+        skg_add_world(s->args, distance - length, &sums);
+#endif
         skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
         const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
@@ -275,6 +278,21 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     p->alive |= fresh;
 }
 
+#if SKG_WORLD
+/* The share of photons that come to the cells: those that start within them have no way there. */
+static skg_fv skg_reach_cells(const skg_scattering *s, const skg_photons *p, skg_fv enter) {
+    skg_mixtures before;
+    skg_fv mm = enter;
+#if SKG_PARALLEL
+    const skg_fv start = skg_dot3(p->at, p->way) - (skg_fv)(s->args->world_start);
+    mm = p->order == (skg_uv)(0) ? enter + start : enter;
+#endif
+    for (int l = 0; l < SKG_WIDE; l++) before.of[l] = (float4)(0.0f);
+    skg_add_world(s->args, mm, &before);
+    return skg_passes(s, &before, p->kev);
+}
+#endif
+
 /* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
 static void skg_flight(const skg_scattering *s, __constant const uint *lattice, __global const float *angles,
                        uint batch, skg_photons *p) {
@@ -297,8 +315,17 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv place = skg_energy_place(s->args, p->kev);
     const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
     const skg_fv passed = skg_exp(-depth);
+    skg_fv arrives = passed;
+#if SKG_WORLD
+    skg_mixtures around = sums;
+    skg_add_world(s->args, p->reach - length, &around);
+    arrives = skg_passes(s, &around, p->kev);
+#endif
     skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,
-              p->weight * p->share * passed);
+              p->weight * p->share * arrives);
+#if SKG_WORLD
+    p->weight *= skg_reach_cells(s, p, enter);
+#endif
     /* Somewhere within the object. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
     p->alive &= depth > (skg_fv)(1e-7f);

@@ -19,6 +19,7 @@ enum { COSINES = 33 };
 typedef struct {
     double recorded;          /* photons times what one adds */
     double strip, interspace; /* of the grid, 1/mm */
+    double world;             /* 1/mm */
     double layer[COSINES];    /* the cosine times what is recorded over what is of straight photons */
 } bin;
 
@@ -69,6 +70,10 @@ static skg_status fill_bins(beam *b) {
             SKG_TRY(skg_grid_attenuation(recipe->options.grid, spectrum->energy_kev[i], &own->strip,
                                          &own->interspace));
         if (recipe->options.oblique) SKG_TRY(fill_layer(b, spectrum->energy_kev[i], own));
+        if (recipe->options.world)
+            SKG_TRY(
+                skg_material_attenuation_get(recipe->options.world, spectrum->energy_kev[i], &own->world));
+        own->world /= 10;
     }
     return SKG_OK;
 }
@@ -93,6 +98,10 @@ static double share_at(const beam *b, double column, double row) {
     const double height = fabs(skg_dot(b->normal, ray)), oblique = skg_length(ray) / height;
     const double focus = options->grid && options->grid->focus_mm > 0 ? 1 / options->grid->focus_mm : 0;
     const double tilt = skg_dot(b->across, ray) / height - place * focus;
+    /* Of a parallel beam, `first` is 1 in units of the path parameter that starts at `start`. */
+    const double *start = b->camera.start;
+    const double path =
+        skg_length(ray) * (b->camera.parallel ? 1 - start[0] - start[1] * column - start[2] * row : 1);
     const skg_beam_place at = skg_beam_profile_find(&b->profile, ray);
     for (int64_t i = 0; i < b->profile.bins; i++) {
         const bin *own = &b->bins[i];
@@ -101,7 +110,7 @@ static double share_at(const beam *b, double column, double row) {
         share *= skg_beam_profile_at(&b->profile, &at, i);
         if (options->grid) share *= skg_grid_pass(options->grid, own->strip, own->interspace, oblique, tilt);
         if (options->oblique) share *= share_of_layer(b, own, 1 / oblique);
-        sum += share;
+        sum += share * exp(-own->world * path);
     }
     return b->sum > 0 ? sum / b->sum : 1;
 }
@@ -143,7 +152,8 @@ skg_status skg_open_beam_make(const skg_scatter_work *work, int32_t channel, skg
     const int is_point = work->view->projection == SKG_PROJECTION_POINT;
     beam b = {.work = work, .channel = channel};
     *open = (skg_open_beam){0};
-    if (!options->grid && !options->oblique && !(is_point && (options->heel || options->bowtie)))
+    if (!options->grid && !options->oblique && !options->world &&
+        !(is_point && (options->heel || options->bowtie)))
         return SKG_OK;
     const skg_status status = fill(&b, open);
     skg_beam_profile_free(&b.profile);

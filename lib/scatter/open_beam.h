@@ -1,5 +1,5 @@
-/* The open beam behind what stands in it: heel effect, bow-tie filter, anti-scatter grid, oblique
- * scintillator. Private.
+/* The open beam behind what stands in it: heel effect, bow-tie filter, world, anti-scatter grid,
+ * oblique scintillator. Private.
  *
  * Ratios are shares of the flat field of their own pixel, which has these effects; so scatter is divided by them, too. They change
  * smoothly over the detector, and are computed at some places of it, for all energies. */

@@ -80,6 +80,11 @@ static skg_status fill_field(const skg_scatter_work *work, const skg_cells *cell
     skg_add_scaled(field.centre, -1, work->view->source, way);
     args->far = (float)skg_length(way);
     if (!is_parallel(work->view)) return SKG_OK;
+    double start[3], direction[3];
+    find_direction(work->view, direction);
+    skg_add_scaled(work->view->source, -1, cells->low, start);
+    if (work->view->projection == SKG_PROJECTION_PARALLEL)
+        args->world_start = (float)skg_dot(start, direction);
     double middle[3]; /* back to before the object, from wherever the field's plane is */
     for (int k = 0; k < 3; k++) middle[k] = cells->low[k] + 0.5 * cells->size[k] - field.centre[k];
     args->far = (float)(skg_length(middle) + skg_length(cells->size) + skg_length(u) + skg_length(v));

@@ -167,6 +167,8 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     fill_tables(&object->physics, tables, &t->args);
     fill_profile(&tables->profile, t);
     fill_images(work->recipe, tables, t);
+    t->world = work->recipe->options.world != NULL;
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) t->args.world[k] = (float)object->world[k];
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
     SKG_TRY(send_lattice(context, seed, &t->lattice));
@@ -179,10 +181,10 @@ static skg_status get_program(skg_context *context, const skg_tracing *t, cl_pro
                                         "arrive.clh",      "profile.clh", "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
-    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid},
-                                  {"SKG_HEEL", t->heel},        {"SKG_BOWTIE", t->bowtie},
-                                  {"SKG_BANDS", t->bands},      {"SKG_LAYERS", t->layers},
-                                  {"SKG_LAYERED", t->layered},  {"SKG_OBLIQUE", t->oblique}};
+    const skg_define defines[] = {
+        {"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid},       {"SKG_HEEL", t->heel},
+        {"SKG_BOWTIE", t->bowtie},    {"SKG_BANDS", t->bands},     {"SKG_LAYERS", t->layers},
+        {"SKG_LAYERED", t->layered},  {"SKG_OBLIQUE", t->oblique}, {"SKG_WORLD", t->world}};
     return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
                            SKG_DEFINES(defines), program);
 }

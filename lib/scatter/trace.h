@@ -18,7 +18,7 @@ typedef struct {
     skg_scatter_args args; /* `end`: so many histories of each batch were followed */
     int32_t noise, parallel, grid, heel, bowtie;
     int32_t layers, bands, oblique, layered; /* bands: 1: there are some */
-    int32_t reserved;
+    int32_t world;
     int64_t sums_count;
 } skg_tracing;
 

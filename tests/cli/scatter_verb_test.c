@@ -201,9 +201,9 @@ END_TEST
 START_TEST(other_verbs_meet_the_key) {
     static const char with[] = "--set 'Scatter={\"Histories\": 2000}'";
     static float plain[PIXELS], scattered[PIXELS];
-    ck_run(0, "lbuffer scene.json --part slab -o a.mha %s --set World=air", with);
-    ck_run_fails(4, "scatter is not simulated together with World",
-                 "image scene.json -o a.mha %s --set World=air", with);
+    ck_run(0, "lbuffer scene.json --part slab -o a.mha %s --set World=water", with);
+    ck_run_fails(4, "scatter: a World of", "image scene.json -o a.mha %s --set World=water", with);
+    ck_run(0, "image scene.json -o a.mha %s --set World=air", with);
     ck_run(0, "plan scene.json %s", with);
     ck_assert_msg(strstr(said, "those that the parts scatter"), "%s", said);
     ck_run(0, "view scene.json -o v.png --size 96,64 %s", with);

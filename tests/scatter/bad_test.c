@@ -122,11 +122,6 @@ END_TEST
 
 START_TEST(options) {
     subject s = filled();
-    ck_skg(skg_material_create_named("Air, Dry (near sea level)", &s.options.world));
-    skg_material *world = s.options.world;
-    refuse(&s, SKG_ERR_UNSUPPORTED, "World: the surroundings scatter nothing here");
-    skg_material_release(&world);
-    s = filled();
     s.options.precision = SKG_PRECISION_HALF;
     refuse(&s, SKG_ERR_UNSUPPORTED, "precision half");
 }

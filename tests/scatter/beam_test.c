@@ -1,4 +1,4 @@
-/* Scatter behind what stands in the beam, heel effect, bow-tie filter and grid, and in an oblique scintillator. */
+/* Scatter behind what stands in the beam, heel effect, bow-tie filter and grid, in an oblique scintillator, and in air. */
 #include "subject.h"
 #include "suite.h"
 #include "support/named.h"
@@ -11,11 +11,13 @@ typedef struct {
     skg_bowtie bowtie;
     skg_grid grid;
     skg_response *response;
+    skg_material *world;
 } effects;
 
-enum { HEEL = 1, BOWTIE = 2, GRID = 4, OBLIQUE = 8 };
+enum { HEEL = 1, BOWTIE = 2, GRID = 4, OBLIQUE = 8, WORLD = 16 };
 
-static const int combinations[] = {0, HEEL, BOWTIE, GRID, OBLIQUE, HEEL + BOWTIE + GRID + OBLIQUE};
+static const int combinations[] = {
+    0, HEEL, BOWTIE, GRID, OBLIQUE, WORLD, HEEL + BOWTIE + GRID + OBLIQUE + WORLD};
 enum { COMBINATIONS = sizeof combinations / sizeof *combinations };
 
 /* mm. Shares change by less than 0.3 % over the sphere. */
@@ -39,12 +41,16 @@ static void make_effects(effects *e, double kvp) {
     skg_material *layer = named("Cesium Iodide");
     ck_skg(skg_response_create_scintillator(layer, 0.2, 0.8, &e->response));
     skg_material_release(&layer);
+    skg_material *air = named("Air, Dry (near sea level)"); /* dense enough to be seen */
+    ck_skg(skg_material_create_at_density(air, 0.005, &e->world));
+    skg_material_release(&air);
 }
 
 static void free_effects(effects *e) {
     skg_material_release(&e->bowtie.material);
     skg_material_release(&e->grid.interspace);
     skg_response_release(&e->response);
+    skg_material_release(&e->world);
 }
 
 static void use(subject *s, const effects *e, int which) {
@@ -53,6 +59,7 @@ static void use(subject *s, const effects *e, int which) {
     s->options.grid = which & GRID ? &e->grid : NULL;
     s->options.oblique = (which & OBLIQUE) != 0;
     s->options.response = which & OBLIQUE ? e->response : NULL;
+    s->options.world = which & WORLD ? e->world : NULL;
 }
 
 /* keV of a small sphere in the way to a place of the detector, in a beam as wide as the sphere. */
@@ -227,6 +234,87 @@ START_TEST(noisy_ratios_are_the_same_on_average) {
 }
 END_TEST
 
+/* A component of the scatter. */
+static double component_of(subject *s, int32_t component) {
+    skg_output output;
+    skg_job *job = NULL;
+    skg_output_init(&output);
+    output.kind = SKG_OUTPUT_SCATTER_COMPONENT, output.component = component;
+    float *image = calloc((size_t)(s->view.rows * s->view.columns), sizeof *image);
+    output.data = image;
+    ck_skg(skg_plan_submit(s->plan, 1, NULL, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    const double sum = subject_sum(s, image);
+    free(image);
+    return sum;
+}
+
+/* From the source to a small sphere with 60 keV, and on with what the angle has left: exp(-mu l) of both ways. */
+START_TEST(a_world_attenuates_both_ways) {
+    static const double at[3] = {0, 0, 0}, detector[3] = {120, 0, 200}, kev = 60, electron = 510.99895;
+    for (int parallel = 0; parallel < 2; parallel++) {
+        effects e;
+        double sums[2][2], left = 0, per_cm[2];
+        make_effects(&e, 90);
+        for (int which = 0; which <= WORLD; which += WORLD) {
+            subject s;
+            subject_open(&s);
+            solid ball = solid_sphere(RADIUS, 24, 12);
+            subject_add(&s, run_mesh(&ball), "Water, Liquid", at[0], at[1], at[2], -1);
+            solid_free(&ball);
+            for (int k = 0; k < 3; k++) s.view.centre[k] = detector[k];
+            s.view.columns = s.view.rows = 8;
+            s.view.column_step[0] = s.view.row_step[1] = 1;
+            if (parallel) s.view.projection = SKG_PROJECTION_PARALLEL, s.view.source[0] = 120;
+            s.jaws.kind = SKG_COLLIMATION_RECTANGLE, s.jaws.distance_mm = 500;
+            for (int k = 0; k < 2; k++) {
+                const double middle = k ? 0 : parallel ? 120 : detector[0] * 500 / 700;
+                s.jaws.low[k] = -middle - RADIUS, s.jaws.high[k] = -middle + RADIUS;
+            }
+            s.scatter.histories = 1 << 14;
+            use(&s, &e, which);
+            subject_plan(&s);
+            for (int k = 0; k < 2; k++)
+                sums[which > 0][k] = component_of(&s, k ? SKG_SCATTER_COMPONENT_COMPTON_FIRST
+                                                        : SKG_SCATTER_COMPONENT_RAYLEIGH_FIRST);
+            subject_close(&s);
+        }
+        const double on = hypot(detector[0], detector[2]), before = 500;
+        left = kev / (1 + kev / electron * (1 - detector[2] / on));
+        ck_skg(skg_material_attenuation_get(e.world, kev, &per_cm[0]));
+        ck_skg(skg_material_attenuation_get(e.world, left, &per_cm[1]));
+        for (int k = 0; k < 2; k++) {
+            const double share = sums[1][k] / sums[0][k],
+                         expected = exp(-(per_cm[0] * before + per_cm[k] * on) / 10);
+            printf("parallel %d, %s: %.5f, closed form %.5f\n", parallel, k ? "Compton" : "Rayleigh", share,
+                   expected);
+            fflush(stdout); /* before an assertion ends the process */
+            /* Air scatters in the corners of the sphere's box, too: .005 (6 / pi - 1) as much. */
+            ck_assert_double_eq_tol(share / expected, 1, 1e-2);
+        }
+        free_effects(&e);
+    }
+}
+END_TEST
+
+START_TEST(dense_worlds_are_refused) {
+    subject s;
+    subject_open(&s);
+    subject_fill(&s);
+    s.options.world = named("Water, Liquid");
+    skg_material *world = s.options.world;
+    ck_skg_fails(subject_try(&s), SKG_ERR_UNSUPPORTED, "make it a part that holds the others");
+    s.view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
+    s.view.source[2] = 1;
+    ck_skg_fails(subject_try(&s), SKG_ERR_UNSUPPORTED, "a parallel beam from infinity");
+    skg_material_release(&world);
+    s.options.world = world = named("mu:0.0001");
+    ck_skg_fails(subject_try(&s), SKG_ERR_MATERIAL, "World: mu:0.0001");
+    skg_material_release(&world);
+    subject_close(&s);
+}
+END_TEST
+
 /* A field that is wider than what the effects are given for. */
 START_TEST(fields_that_are_too_wide_are_refused) {
     for (int which = HEEL; which <= BOWTIE; which++) {
@@ -261,6 +349,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_bowtie_thins_the_beam_by_its_path);
     tcase_add_test(tests, ratios_are_over_the_open_beam_of_each_pixel);
     tcase_add_test(tests, noisy_ratios_are_the_same_on_average);
+    tcase_add_test(tests, a_world_attenuates_both_ways);
+    tcase_add_test(tests, dense_worlds_are_refused);
     tcase_add_test(tests, fields_that_are_too_wide_are_refused);
 }
 
