@@ -86,7 +86,8 @@ static skg_status fill_field(const skg_scatter_work *work, const skg_cells *cell
     if (work->view->projection == SKG_PROJECTION_PARALLEL)
         args->world_start = (float)skg_dot(start, direction);
     double middle[3]; /* back to before the object, from wherever the field's plane is */
-    for (int k = 0; k < 3; k++) middle[k] = cells->low[k] + 0.5 * cells->size[k] - field.centre[k];
+    for (int k = 0; k < 3; k++)
+        middle[k] = cells->low[k] + 0.5 * cells->size[k] - (corner[k] + 0.5 * (u[k] + v[k]));
     args->far = (float)(skg_length(middle) + skg_length(cells->size) + skg_length(u) + skg_length(v));
     return SKG_OK;
 }
