@@ -89,7 +89,7 @@ def test_a_share_of_the_flat_field(slab):
 
 def test_bands(slab):
     found = slab.scatter(histories=2000, bands=[1, 50, 59.9, 61], components=True)
-    whole = slab.scatter(histories=2000, quantity="photons")
+    whole = slab.scatter(histories=2000)
     assert found["image"].shape == found["sigma"].shape == found["total"].shape == (3, *whole["image"].shape)
     assert found["components"]["rayleigh"].shape == (3, 3, *whole["image"].shape)
     kept = found["components"]["compton"][:, 2].sum() / found["components"]["compton"].sum()
