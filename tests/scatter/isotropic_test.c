@@ -109,9 +109,44 @@ START_TEST(a_half_space_reflects_as_the_exact_solution) {
 }
 END_TEST
 
+/* Photons that nothing absorbs leave a cube upwards or downwards, alike: a beam along the detector's plane through the middle of a
+ * cube brings half of those that interact to a detector that is far wider than the cube and lies on it. No photon is lost or made
+ * over whole histories. */
+START_TEST(half_of_all_photons_go_up) {
+    static const double CUBE = 10, WIDE = 2e5, SLOPE = 1e-3, paths[] = {0.5, 2, 4};
+    const double above = CUBE / 2 + 0.01;
+    for (size_t p = 0; p < sizeof paths / sizeof *paths; p++) {
+        subject s;
+        double orders[3], sigma = 0;
+        subject_open(&s);
+        subject_add_box(&s, CUBE, CUBE, CUBE, "Water, Liquid");
+        s.view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
+        s.view.source[0] = 1, s.view.source[2] = SLOPE;
+        s.view.centre[2] = above;
+        s.view.columns = s.view.rows = SIDE;
+        s.view.column_step[0] = s.view.row_step[1] = WIDE / SIDE;
+        s.jaws.kind = SKG_COLLIMATION_RECTANGLE, s.jaws.distance_mm = 1;
+        /* .1 mm high and 1 mm wide where it meets the cube. */
+        s.jaws.low[0] = above / SLOPE - 50, s.jaws.high[0] = above / SLOPE + 50;
+        s.jaws.low[1] = -0.5, s.jaws.high[1] = 0.5;
+        s.options.quantity = SKG_QUANTITY_PHOTONS;
+        subject_plan(&s);
+        ck_skg(isotropic_run(run_context, s.plan, 1, paths[p] / CUBE, HISTORIES, orders, &sigma));
+        const double half = 0.5 * -expm1(-paths[p]), share = (orders[0] + orders[1] + orders[2]) / half;
+        printf("%g free paths: %.5f +- %.5f of half of the photons, %.3f of them after one interaction\n",
+               paths[p], share, sigma / half, orders[0] / (orders[0] + orders[1] + orders[2]));
+        fflush(stdout); /* before an assertion ends the process */
+        /* The beam's slope moves interactions by up to .001 of the cube. */
+        ck_assert_double_eq_tol(share, 1, 4 * sigma / half + 1e-3);
+        subject_close(&s);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_test(tests, a_half_space_reflects_as_the_exact_solution);
+    tcase_add_test(tests, half_of_all_photons_go_up);
 }
 
 SKG_SUITE_MAIN("scatter/isotropic", add_tests)
