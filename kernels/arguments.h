@@ -144,7 +144,7 @@
 
 #define SKG_ARGUMENTS_SCATTER(X) \
     X(SCATTER, args) X(SCATTER, cells) X(SCATTER, energies) X(SCATTER, momenta) X(SCATTER, angles) X(SCATTER, beam) \
-    X(SCATTER, spots) X(SCATTER, lattice) X(SCATTER, sums)
+    X(SCATTER, profiles) X(SCATTER, spots) X(SCATTER, lattice) X(SCATTER, detector) X(SCATTER, sums)
 
 #define SKG_ARGUMENTS_SCATTERED(X) \
     X(SCATTERED, args) X(SCATTERED, mean) X(SCATTERED, variance) X(SCATTERED, image)

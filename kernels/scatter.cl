@@ -7,6 +7,7 @@
 typedef struct {
     const skg_scatter_args *args;
     __global const float4 *cells, *energies, *momenta;
+    __global const float *detector;
     __global uint *sums; /* of the batch */
 } skg_scattering;
 
@@ -37,19 +38,6 @@ static void skg_deposit(__global uint *sums, int place, float value) {
     if (high) atomic_add(word + 1, high);
 }
 
-#if SKG_GRID
-/* The share that passes the grid at place (u, v) of the detector. signal: rows of SKG_OF_SIGNAL. */
-static skg_fv skg_through_grid(const skg_scatter_args *args, const skg_mixtures *signal, skg_fv u, skg_fv v, skg_place3 way) {
-    float strip[SKG_WIDE], interspace[SKG_WIDE];
-    for (int l = 0; l < SKG_WIDE; l++) strip[l] = signal->of[l].z, interspace[l] = signal->of[l].w;
-    const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
-    const skg_fv oblique = (skg_fv)(1.0f) / max(facing, (skg_fv)(1e-3f));
-    const skg_fv slope = (way.x * args->strips[0] + way.y * args->strips[1] + way.z * args->strips[2]) * oblique;
-    const skg_fv place = (u - (skg_fv)(0.5f)) * args->strips_u + (v - (skg_fv)(0.5f)) * args->strips_v;
-    return skg_strips_pass(args, SKG_LOAD_V(realv, strip), SKG_LOAD_V(realv, interspace), oblique, slope - place * args->focus);
-}
-#endif
-
 /* Adds what photons bring to places (u, v) of the detector, 0 to 1, in the planes of their order and kind. */
 static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u,
                       skg_fv v, skg_place3 way, skg_fv kev, skg_fv weight) {
@@ -60,26 +48,44 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
     const skg_intv plane = min(SKG_AS_INT_V(order), (skg_intv)(3)) - 1 + (changed & 3);
     const skg_intv cell = row * s->args->columns + column,
                    cells = (skg_intv)(s->args->rows * s->args->columns);
+    const skg_arrival arrival = skg_arrive(s->args, way, kev);
+    const int images = SKG_SCATTER_PLANES * s->args->rows * s->args->columns;
     skg_mixtures signal;
     float weights[SKG_WIDE];
     int places[SKG_WIDE], wanted[SKG_WIDE];
-    skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_SIGNAL, skg_energy_place(s->args, kev), &signal);
+    skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_SIGNAL, arrival.place, &signal);
 #if SKG_GRID
-    weight *= skg_through_grid(s->args, &signal, u, v, way);
+    weight *= skg_through_grid(s->args, &signal, u, v, way, arrival.facing);
 #endif
-    SKG_STORE_V(realv, weight * (skg_fv)(s->args->scale), weights);
     SKG_STORE_V(intv, plane * cells + cell, places);
 #if SKG_NOISE
     int powers[SKG_WIDE];
     SKG_STORE_V(intv, SKG_SCATTER_KINDS * cells + cell, powers);
 #endif
     SKG_STORE_V(intv, who & (weight > (skg_fv)(0.0f)), wanted);
-    for (int l = 0; l < SKG_WIDE; l++) {
-        if (!wanted[l]) continue;
-        skg_deposit(s->sums, places[l], weights[l] * signal.of[l].x);
-#if SKG_NOISE
-        skg_deposit(s->sums, powers[l], weights[l] * signal.of[l].y);
+#if SKG_BANDS
+    int bands[SKG_WIDE];
+    skg_find_bands(s->args, s->detector, kev, bands);
 #endif
+    for (int layer = 0; layer < SKG_LAYERS; layer++) {
+#if SKG_LAYERED
+        const skg_fv part = weight * skg_layer_share(s->args, s->detector + s->args->edges, layer, &arrival);
+#else
+        const skg_fv part = weight;
+#endif
+        SKG_STORE_V(realv, part * (skg_fv)(s->args->scale), weights);
+        for (int l = 0; l < SKG_WIDE; l++) {
+            int image = layer * s->args->bands;
+            if (!wanted[l]) continue;
+#if SKG_BANDS
+            if (bands[l] < 0) continue;
+            image += bands[l];
+#endif
+            skg_deposit(s->sums, image * images + places[l], weights[l] * signal.of[l].x);
+#if SKG_NOISE
+            skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].y);
+#endif
+        }
     }
 }
 
@@ -127,6 +133,9 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
         const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
         skg_march(s->args, s->cells, p->at, way, enter, length, jitter, &sums);
+#if SKG_WORLD
+        skg_add_world(s->args, distance - length, &sums);
+#endif
         skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
         const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
@@ -196,13 +205,20 @@ static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattic
 
 /* Photons that leave the source: the place in the field, the energy, the point of the focal spot. */
 static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __global const float4 *beam,
-                     __global const float4 *spots, uint batch, skg_intv fresh, skg_photons *p) {
+                     __global const float *profiles, __global const float4 *spots, uint batch, skg_intv fresh,
+                     skg_photons *p) {
     const skg_scatter_args *args = s->args;
     const skg_fv u = skg_lattice(s, lattice, batch, p->history, 0),
                  v = skg_lattice(s, lattice, batch, p->history, 1);
     const skg_fv energy = skg_lattice(s, lattice, batch, p->history, 2),
                  spot = skg_lattice(s, lattice, batch, p->history, 12);
     float at[SKG_WIDE], kev[SKG_WIDE], weight[SKG_WIDE], x[SKG_WIDE], y[SKG_WIDE], z[SKG_WIDE];
+#if SKG_HEEL
+    int bins[SKG_WIDE];
+#endif
+#if SKG_BOWTIE
+    float per_mm[SKG_WIDE];
+#endif
     SKG_STORE_V(realv, energy, at);
     SKG_STORE_V(realv, spot * (skg_fv)((float)args->spots), x);
     for (int l = 0; l < SKG_WIDE; l++) {
@@ -216,6 +232,12 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
         }
         kev[l] = beam[low].x;
         weight[l] = beam[low].z;
+#if SKG_HEEL
+        bins[l] = low;
+#endif
+#if SKG_BOWTIE
+        per_mm[l] = beam[low].w;
+#endif
         const float4 point = spots[min((int)x[l], args->spots - 1)];
         x[l] = point.x, y[l] = point.y, z[l] = point.z;
     }
@@ -235,7 +257,13 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     const skg_place3 way = skg_times(to, one_over);
     /* Photons per sr: the field's area as the source sees it, over that at its middle. */
     const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
-    const skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
+    skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
+#if SKG_HEEL
+    share *= skg_heel_share(args, profiles, bins, way);
+#endif
+#if SKG_BOWTIE
+    share *= skg_filter_share(args, profiles, per_mm, way);
+#endif
 #endif
     p->at.x = fresh ? begin.x : p->at.x, p->at.y = fresh ? begin.y : p->at.y,
     p->at.z = fresh ? begin.z : p->at.z;
@@ -249,6 +277,21 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     p->reach = fresh ? skg_until_plane(args, begin, way) : p->reach;
     p->alive |= fresh;
 }
+
+#if SKG_WORLD
+/* The share of photons that come to the cells: those that start within them have no way there. */
+static skg_fv skg_reach_cells(const skg_scattering *s, const skg_photons *p, skg_fv enter) {
+    skg_mixtures before;
+    skg_fv mm = enter;
+#if SKG_PARALLEL
+    const skg_fv start = skg_dot3(p->at, p->way) - (skg_fv)(s->args->world_start);
+    mm = p->order == (skg_uv)(0) ? enter + start : enter;
+#endif
+    for (int l = 0; l < SKG_WIDE; l++) before.of[l] = (float4)(0.0f);
+    skg_add_world(s->args, mm, &before);
+    return skg_passes(s, &before, p->kev);
+}
+#endif
 
 /* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
 static void skg_flight(const skg_scattering *s, __constant const uint *lattice, __global const float *angles,
@@ -272,8 +315,17 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv place = skg_energy_place(s->args, p->kev);
     const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
     const skg_fv passed = skg_exp(-depth);
+    skg_fv arrives = passed;
+#if SKG_WORLD
+    skg_mixtures around = sums;
+    skg_add_world(s->args, p->reach - length, &around);
+    arrives = skg_passes(s, &around, p->kev);
+#endif
     skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,
-              p->weight * p->share * passed);
+              p->weight * p->share * arrives);
+#if SKG_WORLD
+    p->weight *= skg_reach_cells(s, p, enter);
+#endif
     /* Somewhere within the object. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
     p->alive &= depth > (skg_fv)(1e-7f);
@@ -310,21 +362,23 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
 /* cells     [cells] coefficients of their mixtures
  * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy; momenta: [momenta][2] S and F^2
  * angles    [rows][SKG_SCATTER_ANGLES + 1] cosines between which scattering is equally likely
- * beam      [bins] energy, share of the bins up to this one, weight
+ * beam      [bins] energy, share of the bins up to this one, weight, 1/mm of a bow-tie filter
+ * profiles  with SKG_HEEL or SKG_BOWTIE: their tables (profile.clh); else NULL
  * spots     [spots] points of the source, or the direction of a parallel beam
  * lattice   [SKG_SCATTER_DIMENSIONS] generating vector; then for each batch its shift
- * sums      [batches][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
+ * detector  with SKG_BANDS [bands + 1] their edges, keV; then with SKG_LAYERED what layers record (arrive.clh); else NULL
+ * sums      [batches][SKG_LAYERS][bands][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
  * Work-items: those of a batch, then batches. */
 __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
                           __global const float4 *energies, __global const float4 *momenta,
                           __global const float *angles, __global const float4 *beam,
-                          __global const float4 *spots, __constant const uint *lattice, __global uint *sums) {
+                          __global const float *profiles, __global const float4 *spots, __constant const uint *lattice, __global const float *detector,
+                          __global uint *sums) {
     const uint batch = (uint)get_global_id(1);
     uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
     const uint end = min(next + (uint)args.each, (uint)args.end);
-    const skg_scattering s = {&args, cells, energies, momenta,
-                              sums + (size_t)batch *
-                                         (size_t)(2 * SKG_SCATTER_PLANES * args.rows * args.columns)};
+    const int images = SKG_LAYERS * args.bands * SKG_SCATTER_PLANES * args.rows * args.columns;
+    const skg_scattering s = {&args, cells, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images};
     skg_photons p = {
         .alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};
     uint numbers[SKG_WIDE];
@@ -338,7 +392,7 @@ __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
         }
         p.history = SKG_AS_UINT_V(SKG_LOAD_V(intv, (int *)numbers));
         if (skg_any(SKG_LOAD_V(intv, fresh)))
-            skg_emit(&s, lattice, beam, spots, batch, SKG_LOAD_V(intv, fresh), &p);
+            skg_emit(&s, lattice, beam, profiles, spots, batch, SKG_LOAD_V(intv, fresh), &p);
         if (!skg_any(p.alive)) break;
         skg_flight(&s, lattice, angles, batch, &p);
     }

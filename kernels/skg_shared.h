@@ -241,8 +241,12 @@ typedef struct {
     float strips[3], focus;             /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */
     float strips_u, strips_v;           /* mm across the strips along the sides of the detector */
     float period, strip, height;        /* of the strips, mm */
-    float unused;                       /* 0 */
+    float anode[3], heel_low, heel_per; /* SKG_HEEL: across its face; cosine of the first row of the table, rows for a cosine of 1 */
+    float world[4], world_start;        /* SKG_WORLD: coefficients around the cells; of a parallel beam where it begins, mm along it */
+    float central[3], fan[3];           /* SKG_BOWTIE: to the detector's middle; where the angles of the fan grow */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
+    SKG_INT heel_rows, fan_rows;        /* of the table of the heel effect and of the filter's; 0: none */
+    SKG_INT bands, edges, cosines;      /* channels of the image; numbers before the table of layers; its cosines */
     SKG_INT first, end, each;           /* histories of a batch; of a work-item */
     SKG_INT seed[2];                    /* low word first */
 } skg_scatter_args;
@@ -309,6 +313,6 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 48 * 4 + 15 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
+_Static_assert(sizeof(skg_scatter_args) == 63 * 4 + 20 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
 #endif
 #endif

@@ -249,12 +249,12 @@ int skg_response_is_layer(const skg_response *response) {
     return response && (response->base ? skg_response_is_layer(response->base) : response->count == 0);
 }
 
-skg_status skg_response_depth_share(const skg_response *response, double energy_kev, double from, double to,
-                                    double *share) {
+skg_status skg_response_depth_share(const skg_response *response, double energy_kev, double oblique,
+                                    double from, double to, double *share) {
     double per_cm = 0;
-    if (response->base) return skg_response_depth_share(response->base, energy_kev, from, to, share);
+    if (response->base) return skg_response_depth_share(response->base, energy_kev, oblique, from, to, share);
     SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
-    const double depth = per_cm * response->mm / 10;
+    const double depth = per_cm * response->mm / 10 * oblique;
     *share = exp(-depth * from) * expm1(-depth * (to - from)) / expm1(-depth);
     return SKG_OK;
 }

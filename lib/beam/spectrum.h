@@ -30,9 +30,10 @@ int skg_response_assumes_efficiency(const skg_response *response);
 /* Whether a response is that of a layer, which depends on how oblique photons cross it. */
 int skg_response_is_layer(const skg_response *response);
 
-/* Of the photons that interact in a layer, the share that does so between two depths, given as shares of its thickness. */
-skg_status skg_response_depth_share(const skg_response *response, double energy_kev, double from, double to,
-                                    double *share);
+/* Of the photons that interact in a layer, the share that does so between two depths, given as shares of its thickness. oblique: path
+ * through the layer over its thickness */
+skg_status skg_response_depth_share(const skg_response *response, double energy_kev, double oblique,
+                                    double from, double to, double *share);
 
 /* The lowest energy that a response is given for, keV; 0: any. */
 double skg_response_lowest(const skg_response *response);

@@ -77,8 +77,12 @@ static skg_status run(skg_job *job, const skg_frame_work *work, const skg_scatte
 skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image) {
     SKG_TRY(compute(job, work, -1));
     const skg_scatterer *s = job->scatterer;
-    const skg_scattered_image what = {s->images.mean.memory,
-                                      job->recipe->options.noise ? s->images.variance.memory : NULL, 1};
+    const skg_plan_options *options = &job->recipe->options;
+    const skg_scattered_image what = {.mean = s->images.mean.memory,
+                                      .variance = options->noise ? s->images.variance.memory : NULL,
+                                      .channels = skg_model_sums(&job->recipe->model),
+                                      .add = 1,
+                                      .apart = options->noise && options->dqe};
     return s->report.mean > 0 ? run(job, work, &what, image) : SKG_OK;
 }
 
@@ -86,9 +90,9 @@ skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work) {
     const int is_component = work->shows == SKG_OUTPUT_SCATTER_COMPONENT;
     SKG_TRY(compute(job, work, is_component ? work->kind : -1));
     const skg_scatter_images *images = &job->scatterer->images;
-    const skg_scattered_image what = {is_component                        ? images->component.memory
-                                      : work->shows == SKG_OUTPUT_SCATTER ? images->shown.memory
-                                                                          : images->sigma.memory,
-                                      NULL, 0};
+    const skg_scattered_image what = {.mean = is_component                        ? images->component.memory
+                                              : work->shows == SKG_OUTPUT_SCATTER ? images->shown.memory
+                                                                                  : images->sigma.memory,
+                                      .channels = job->recipe->model.channels};
     return run(job, work, &what, &work->place);
 }

@@ -8,11 +8,17 @@
 #include <inttypes.h>
 #include <math.h>
 
+/* Photons only lose energy when they scatter. */
+static int gets_scatter(const skg_recipe *recipe, int64_t band) {
+    const skg_spectrum *beam = recipe->spectrum;
+    return recipe->options.scatter && recipe->options.band_kev[band] < beam->energy_kev[beam->count - 1];
+}
+
 static void warn_of_bands(const skg_recipe *recipe, const skg_context *context) {
     const skg_plan_options *options = &recipe->options;
     const skg_spectrum *beam = recipe->spectrum;
     for (int64_t c = 0; c < options->bands; c++)
-        if (!(recipe->model.flat_field[c] > 0))
+        if (!(recipe->model.flat_field[c] > 0) && !gets_scatter(recipe, c))
             skg_log(
                 context, SKG_LOG_WARNING,
                 "the band from %g to %g keV records nothing of the beam, whose energies go from %g to %g keV; its "

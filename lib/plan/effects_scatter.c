@@ -1,15 +1,19 @@
 /* The effect of scattered photons. */
 #include "beam/spectrum.h"
+#include "core/vector.h"
 #include "material/scattering.h"
 #include "plan/effect.h"
 #include "plan/options.h"
-#include "spectral/quantity.h"
+#include "spectral/signal.h"
 
 #include <inttypes.h>
 #include <math.h>
 
 /* Above this energy photons make pairs. */
 static const double HIGHEST_KEV = 1022;
+
+/* Share of the beam that the world may scatter: 2 % in a metre of air, of which a seventh arrives on 40 cm of detector behind it. */
+static const double WORLD_SCATTERS = 0.2;
 
 enum { PLACES_MAX = 256 };
 #define HISTORIES_MAX ((int64_t)1 << 30)
@@ -39,32 +43,51 @@ static skg_status check_numbers(const skg_scatter *s) {
     return SKG_OK;
 }
 
-/* The option that scatter does not go with; NULL: none. */
-static const char *find_conflict(const skg_plan_options *o) {
-    return o->world    ? "World: the surroundings scatter nothing here; leave them out"
-           : o->heel   ? "the heel effect; leave it out"
-           : o->bowtie ? "a bow-tie filter; leave it out"
-           : o->grid && skg_quantity_is_ratio(o)
-               ? "an anti-scatter grid and ratios to the flat field; take energy, fluence or photons"
-           : o->oblique    ? "an oblique response; take the straight one"
-           : o->bands > 1  ? "several bands; take one"
-           : o->depth_blur ? "a blur by depths; take one blur"
-           : o->dqe        ? "a DQE; take a Swank factor"
-                           : NULL;
-}
-
 static skg_status copy_scatter(skg_recipe *recipe) {
     const skg_scatter **scatter = &recipe->options.scatter;
     if (!*scatter) return SKG_OK;
     SKG_TRY(skg_copies_struct(&recipe->copies, *scatter, "skg_scatter", sizeof **scatter,
                               skg_scatter_init_sized, scatter));
-    const char *conflict = find_conflict(&recipe->options);
-    if (conflict) return skg_fail(SKG_ERR_UNSUPPORTED, "scatter is not simulated together with %s", conflict);
     return check_numbers(*scatter);
 }
 
 static int refuses_half(const skg_recipe *recipe) {
     return recipe->options.scatter != NULL;
+}
+
+/* The world's own scatter is followed in the box of the parts alone. Around it, it has to be little. */
+static skg_status check_world(const skg_recipe *recipe) {
+    const skg_spectrum *spectrum = recipe->spectrum;
+    const char *name = "";
+    double way[3], signals = 0, met = 0;
+    if (!recipe->options.world) return SKG_OK;
+    SKG_TRY(skg_material_name_get(recipe->options.world, &name));
+    if (recipe->view.projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "scatter: a parallel beam from infinity never comes through a World of %s; give the place where "
+            "it begins, or leave out the World",
+            name);
+    skg_add_scaled(recipe->view.centre, -1, recipe->view.source, way);
+    for (int64_t i = 0; i < spectrum->count; i++) {
+        skg_coefficients c;
+        double per_cm = 0, signal = 0;
+        if (!(spectrum->photons[i] > 0)) continue;
+        skg_coefficients_init(&c);
+        SKG_TRY(skg_material_attenuation_get(recipe->options.world, spectrum->energy_kev[i], &per_cm));
+        SKG_TRY(skg_material_coefficients_get(recipe->options.world, spectrum->energy_kev[i], &c));
+        SKG_TRY(skg_signal_get(&recipe->options, spectrum->energy_kev[i], &signal));
+        signal *= spectrum->photons[i];
+        signals += signal;
+        met += signal * -expm1(-per_cm * (c.compton + c.rayleigh) / c.total / 10 * skg_length(way));
+    }
+    if (!(met > WORLD_SCATTERS * signals)) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "scatter: a World of %s scatters %.3g %% of the beam between source and detector, which is followed in "
+        "the box of the parts alone and may be left out elsewhere up to %g %%; make it a part that holds the "
+        "others, or leave it out",
+        name, 100 * met / signals, 100 * WORLD_SCATTERS);
 }
 
 skg_status skg_scatter_check(const skg_recipe *recipe) {
@@ -81,6 +104,9 @@ skg_status skg_scatter_check(const skg_recipe *recipe) {
                 "the scatter",
                 scene->parts[i].label);
     }
+    if (recipe->options.world && skg_scattering_check(recipe->options.world) != SKG_OK)
+        return skg_fail(SKG_ERR_MATERIAL, "scatter: World: %s", skg_last_error());
+    SKG_TRY(check_world(recipe));
     for (int64_t i = 0; i < recipe->spectrum->count; i++)
         if (recipe->spectrum->photons[i] > 0 && recipe->spectrum->energy_kev[i] > HIGHEST_KEV)
             return skg_fail(SKG_ERR_UNSUPPORTED,

@@ -118,6 +118,7 @@ static void add_column(const filling *f, skg_columns *grid, int64_t column, cons
 static skg_status fill_row(void *user, int64_t row) {
     const filling *f = user;
     const int64_t side = f->cells->count[0], depth = f->cells->count[2];
+    const double *base = f->parts->base;
     const double each = 1 / (UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
     skg_columns grid = *f->grid;
     amount *own = NULL, *behind = NULL;
@@ -140,7 +141,7 @@ static skg_status fill_row(void *user, int64_t row) {
             float *mixture = f->cells->mixtures[(z * f->cells->count[1] + row) * side + x];
             add(sum, behind[x * (depth + 1) + z], 1);
             for (int k = 0; k < SKG_SCATTER_RANK; k++)
-                mixture[k] = (float)((double)(sum[k] + own[x * depth + z][k]) * each);
+                mixture[k] = (float)((double)(sum[k] + own[x * depth + z][k]) * each + (base ? base[k] : 0));
         }
     }
 cleanup:

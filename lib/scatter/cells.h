@@ -23,7 +23,8 @@ typedef struct {
 typedef struct {
     int64_t count;
     const skg_solid *solids;
-    const int32_t *sign;                            /* 1; -1: the solid's hits have the other sign */
+    const int32_t *sign; /* 1; -1: the solid's hits have the other sign */
+    const double *base;  /* [SKG_SCATTER_RANK] of what is around all solids, per mm; NULL: void */
     const double (*coefficients)[SKG_SCATTER_RANK]; /* of each solid less those of its parent, per mm */
     const int32_t
         *priority; /* of each, which decides where solids with the same parent overlap; NULL: amounts add */

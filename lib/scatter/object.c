@@ -16,19 +16,24 @@ const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part) {
 /* The materials of a scene, each once. */
 typedef struct {
     int64_t count;
-    skg_material **materials; /* [parts] borrowed */
+    skg_material **materials; /* [parts + 1] borrowed */
     int64_t *of_part;         /* [parts] */
+    int64_t of_world;         /* -1: vacuum */
 } palette;
 
-static skg_status find_palette(const skg_scene *scene, palette *p) {
-    SKG_TRY(skg_alloc(scene->count, sizeof *p->materials, "materials", &p->materials));
+static int64_t place_in(palette *p, skg_material *material) {
+    int64_t m = 0;
+    while (m < p->count && p->materials[m] != material) m++;
+    if (m == p->count) p->materials[p->count++] = material;
+    return m;
+}
+
+static skg_status find_palette(const skg_recipe *recipe, palette *p) {
+    const skg_scene *scene = recipe->scene;
+    SKG_TRY(skg_alloc(scene->count + 1, sizeof *p->materials, "materials", &p->materials));
     SKG_TRY(skg_alloc(scene->count, sizeof *p->of_part, "materials", &p->of_part));
-    for (int64_t i = 0; i < scene->count; i++) {
-        int64_t m = 0;
-        while (m < p->count && p->materials[m] != scene->parts[i].material) m++;
-        if (m == p->count) p->materials[p->count++] = scene->parts[i].material;
-        p->of_part[i] = m;
-    }
+    for (int64_t i = 0; i < scene->count; i++) p->of_part[i] = place_in(p, scene->parts[i].material);
+    p->of_world = recipe->options.world ? place_in(p, recipe->options.world) : -1;
     return SKG_OK;
 }
 
@@ -45,16 +50,18 @@ static skg_status make_physics(const skg_scatter_work *work, const palette *p, s
 }
 
 /* What a mm of each part adds: its own material less its parent's, as in frame/overrides.c. */
-static void find_differences(const skg_scatter_work *work, const palette *p,
-                             const skg_scatter_physics *physics, double (*differences)[SKG_SCATTER_RANK]) {
+static void find_differences(const skg_scatter_work *work, const palette *p, const skg_scatter_object *object,
+                             double (*differences)[SKG_SCATTER_RANK]) {
     const skg_scene *scene = work->recipe->scene;
+    const skg_scatter_physics *physics = &object->physics;
     for (int64_t i = 0; i < scene->count; i++) {
         const int64_t parent = scene->parts[i].inside;
         const double density = work->density ? work->density[i] : 1, fill = work->fill ? work->fill[i] : 1;
         const double around = parent >= 0 && work->density ? work->density[parent] : 1;
         for (int k = 0; k < SKG_SCATTER_RANK; k++) {
             const double own = density * physics->coefficients[p->of_part[i]][k];
-            const double outside = parent < 0 ? 0 : around * physics->coefficients[p->of_part[parent]][k];
+            const double outside =
+                parent < 0 ? object->world[k] : around * physics->coefficients[p->of_part[parent]][k];
             differences[i][k] = fill * (own - outside);
         }
     }
@@ -98,14 +105,17 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
     placed parts = {0};
     skg_status status = SKG_OK;
     *object = (skg_scatter_object){0};
-    SKG_TRY_CLEANUP(find_palette(work->recipe->scene, &p));
+    SKG_TRY_CLEANUP(find_palette(work->recipe, &p));
     SKG_TRY_CLEANUP(make_physics(work, &p, &object->physics));
     SKG_TRY_CLEANUP(place(work, &parts));
-    find_differences(work, &p, &object->physics, parts.differences);
+    for (int k = 0; k < SKG_SCATTER_RANK && p.of_world >= 0; k++)
+        object->world[k] = object->physics.coefficients[p.of_world][k];
+    find_differences(work, &p, object, parts.differences);
     const skg_cell_parts to_fill = {
         .count = work->recipe->scene->count,
         .solids = parts.solids,
         .sign = parts.sign,
+        .base = object->world,
         .coefficients = (const double(*)[SKG_SCATTER_RANK])parts.differences,
         .priority = work->recipe->priority_possible ? parts.priority : NULL,
         .clip = work->recipe->options.clip,

@@ -19,7 +19,8 @@ typedef struct {
 const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part);
 
 typedef struct {
-    skg_scatter_physics physics; /* of the parts' materials */
+    skg_scatter_physics physics;    /* of the materials of parts and world */
+    double world[SKG_SCATTER_RANK]; /* coefficients of the world; 0: vacuum */
     skg_cells cells;
 } skg_scatter_object;
 

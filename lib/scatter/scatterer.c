@@ -29,30 +29,34 @@ static skg_digest key_of(const skg_scatter_work *work) {
     return skg_digest_end(&digester);
 }
 
-/* What came so far. */
+/* What came so far: images of layers and channels, channels fastest. */
 typedef struct {
     int64_t *sums;  /* as skg_trace_read */
     double *values; /* [batches][rows][columns] workspace */
     int64_t columns, rows;
-    skg_cosines mean, variance;
+    int32_t channels, images;
+    skg_cosines all;       /* of all images together */
+    skg_cosines *channel;  /* [channels] of its layers together */
+    skg_cosines *image;    /* [images] with several layers */
+    skg_cosines *variance; /* [images] with noise */
 } arrived;
 
-/* Adds planes first to before end of each batch. */
-static void add_planes(const arrived *a, int first, int end) {
+/* Adds planes first to before end of each batch of every `step`th image from number `image` on. */
+static void add_planes(const arrived *a, int32_t image, int32_t step, int first, int end) {
     const int64_t places = a->columns * a->rows;
     for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++)
         for (int64_t p = 0; p < places; p++) {
             double sum = 0;
-            for (int k = first; k < end; k++)
-                sum += (double)a->sums[(b * SKG_SCATTER_PLANES + k) * places + p];
+            for (int64_t i = image; i < a->images; i += step)
+                for (int k = first; k < end; k++)
+                    sum += (double)a->sums[((b * a->images + i) * SKG_SCATTER_PLANES + k) * places + p];
             a->values[b * places + p] = sum;
         }
 }
 
-static skg_status fit(arrived *a, skg_cosines *cosines, int first, int end) {
+static skg_status fit(arrived *a, skg_cosines *cosines) {
     const skg_arrivals arrivals = {SKG_SCATTER_BATCHES, a->columns, a->rows, a->values};
     skg_cosines_free(cosines);
-    add_planes(a, first, end);
     return skg_cosines_fit(&arrivals, cosines);
 }
 
@@ -63,8 +67,9 @@ static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tra
     for (;;) {
         SKG_TRY(skg_trace_until(context, t, end));
         SKG_TRY(skg_trace_read(context, t, a->sums));
-        SKG_TRY(fit(a, &a->mean, 0, SKG_SCATTER_KINDS));
-        const double error = a->mean.mean > 0 ? a->mean.sigma / a->mean.mean : 0;
+        add_planes(a, 0, 1, 0, SKG_SCATTER_KINDS);
+        SKG_TRY(fit(a, &a->all));
+        const double error = a->all.mean > 0 ? a->all.sigma / a->all.mean : 0;
         if (asked->histories || error <= asked->tolerance || end >= SKG_SCATTER_HISTORIES) break;
         end = skg_trace_next(end, error, asked->tolerance);
     }
@@ -75,7 +80,7 @@ static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tra
 static void share_out(const arrived *a, skg_scatter_report *report) {
     const int64_t places = a->columns * a->rows;
     double kinds[SKG_SCATTER_KINDS] = {0}, sum = 0;
-    for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++)
+    for (int64_t b = 0; b < SKG_SCATTER_BATCHES * a->images; b++)
         for (int k = 0; k < SKG_SCATTER_KINDS; k++)
             for (int64_t p = 0; p < places; p++)
                 kinds[k] += (double)a->sums[(b * SKG_SCATTER_PLANES + k) * places + p];
@@ -87,20 +92,42 @@ static void share_out(const arrived *a, skg_scatter_report *report) {
 }
 
 static void free_components(skg_scatterer *s) {
-    for (int k = 0; k < SKG_SCATTER_KINDS; k++) skg_cosines_free(&s->components[k]);
+    for (int32_t k = 0; k < s->channels * SKG_SCATTER_KINDS; k++) skg_cosines_free(&s->components[k]);
+    skg_free(&s->components);
+    s->channels = 0;
 }
 
-/* Each order and kind by the cosines of their sum. */
-static skg_status take_components(arrived *a, skg_scatterer *s) {
+/* Planes of images as add_planes, by the cosines that their sum has. */
+static skg_status take_like(arrived *a, int32_t image, int32_t step, int first, int end,
+                            const skg_cosines *like, skg_cosines *cosines) {
     const int64_t places = a->columns * a->rows;
-    for (int k = 0; k < SKG_SCATTER_KINDS; k++) {
-        add_planes(a, k, k + 1);
-        for (int64_t p = 0; p < places; p++) {
-            double sum = 0;
-            for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++) sum += a->values[b * places + p];
-            a->values[p] = sum / SKG_SCATTER_BATCHES;
-        }
-        SKG_TRY(skg_cosines_like(&a->mean, a->values, &s->components[k]));
+    add_planes(a, image, step, first, end);
+    for (int64_t p = 0; p < places; p++) {
+        double sum = 0;
+        for (int64_t b = 0; b < SKG_SCATTER_BATCHES; b++) sum += a->values[b * places + p];
+        a->values[p] = sum / SKG_SCATTER_BATCHES;
+    }
+    return skg_cosines_like(like, a->values, cosines);
+}
+
+/* Smooths each channel, its orders and kinds, and its layers. noise: 1: their variances, too */
+static skg_status smooth(arrived *a, int noise, skg_scatterer *s) {
+    SKG_TRY(skg_alloc(a->channels * SKG_SCATTER_KINDS, sizeof *s->components, "scatter", &s->components));
+    s->channels = a->channels;
+    for (int32_t c = 0; c < a->channels; c++) {
+        skg_cosines *own = &a->channel[c];
+        add_planes(a, c, a->channels, 0, SKG_SCATTER_KINDS);
+        SKG_TRY(fit(a, own));
+        for (int k = 0; k < SKG_SCATTER_KINDS; k++)
+            SKG_TRY(take_like(a, c, a->channels, k, k + 1, own, &s->components[c * SKG_SCATTER_KINDS + k]));
+    }
+    for (int32_t i = 0; i < a->images; i++) {
+        if (a->images > a->channels)
+            SKG_TRY(
+                take_like(a, i, a->images, 0, SKG_SCATTER_KINDS, &a->channel[i % a->channels], &a->image[i]));
+        if (!noise) continue;
+        add_planes(a, i, a->images, SKG_SCATTER_KINDS, SKG_SCATTER_PLANES);
+        SKG_TRY(fit(a, &a->variance[i]));
     }
     return SKG_OK;
 }
@@ -109,19 +136,18 @@ static skg_status trace(skg_context *context, const skg_scatter_work *work, cons
                         skg_scatterer *s, arrived *a) {
     skg_scatter_tables tables;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_scatter_tables_make(work->recipe, object, &tables));
+    SKG_TRY_CLEANUP(skg_scatter_tables_make(work, object, &tables));
     SKG_TRY_CLEANUP(skg_trace_begin(context, work, object, &tables, a->columns, a->rows, &s->tracing));
     SKG_TRY_CLEANUP(follow(context, work->recipe->options.scatter, &s->tracing, a));
-    if (work->recipe->options.noise)
-        SKG_TRY_CLEANUP(fit(a, &a->variance, SKG_SCATTER_KINDS, SKG_SCATTER_PLANES));
-    SKG_TRY_CLEANUP(take_components(a, s));
+    SKG_TRY_CLEANUP(smooth(a, work->recipe->options.noise, s));
     s->photons = tables.photons * skg_sight_photons(work, &s->tracing.args) /
                  ((double)s->tracing.args.scale * (double)s->tracing.args.end);
     s->signal = tables.signal;
     const skg_shown_scatter shown = {
         .work = work,
-        .mean = &a->mean,
-        .variance = work->recipe->options.noise ? &a->variance : NULL,
+        .mean = a->channel,
+        .staged = a->images > a->channels ? a->image : a->channel,
+        .variance = work->recipe->options.noise ? a->variance : NULL,
         .photons = s->photons,
         .signal = s->signal,
         .power = tables.variance,
@@ -133,16 +159,36 @@ cleanup:
     return status;
 }
 
+static skg_status begin(const skg_scatter_work *work, arrived *a) {
+    const skg_model *model = &work->recipe->model;
+    skg_trace_places(work, &a->columns, &a->rows);
+    a->channels = model->channels, a->images = skg_model_sums(model);
+    const int64_t places = a->columns * a->rows, planes = (int64_t)a->images * SKG_SCATTER_PLANES;
+    SKG_TRY(skg_alloc(SKG_SCATTER_BATCHES * planes * places, sizeof *a->sums, "scatter", &a->sums));
+    SKG_TRY(skg_alloc(SKG_SCATTER_BATCHES * places, sizeof *a->values, "scatter", &a->values));
+    SKG_TRY(skg_alloc(a->channels, sizeof *a->channel, "scatter", &a->channel));
+    SKG_TRY(skg_alloc(a->images, sizeof *a->image, "scatter", &a->image));
+    return skg_alloc(a->images, sizeof *a->variance, "scatter", &a->variance);
+}
+
+static void drop(arrived *a) {
+    skg_cosines_free(&a->all);
+    for (int32_t c = 0; a->channel && c < a->channels; c++) skg_cosines_free(&a->channel[c]);
+    for (int32_t i = 0; a->image && i < a->images; i++) skg_cosines_free(&a->image[i]);
+    for (int32_t i = 0; a->variance && i < a->images; i++) skg_cosines_free(&a->variance[i]);
+    skg_free(&a->channel);
+    skg_free(&a->image);
+    skg_free(&a->variance);
+    skg_free(&a->sums);
+    skg_free(&a->values);
+}
+
 static skg_status compute(skg_context *context, const skg_scatter_work *work,
                           const skg_scatter_object *object, skg_scatterer *s) {
     arrived a = {0};
     skg_status status = SKG_OK;
-    skg_trace_places(work, &a.columns, &a.rows);
-    const int64_t places = a.columns * a.rows;
-    SKG_TRY_CLEANUP(
-        skg_alloc(SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * places, sizeof *a.sums, "scatter", &a.sums));
-    SKG_TRY_CLEANUP(skg_alloc(SKG_SCATTER_BATCHES * places, sizeof *a.values, "scatter", &a.values));
     const skg_shown_scatter nothing = {.work = work};
+    SKG_TRY_CLEANUP(begin(work, &a));
     if (object->cells.mixtures)
         SKG_TRY_CLEANUP(trace(context, work, object, s, &a));
     else
@@ -150,12 +196,9 @@ static skg_status compute(skg_context *context, const skg_scatter_work *work,
     s->report.mean = s->images.average;
     s->report.sigma = s->images.error;
     share_out(&a, &s->report);
-    s->report.cosines = (int32_t)a.mean.count;
+    s->report.cosines = (int32_t)a.all.count;
 cleanup:
-    skg_cosines_free(&a.mean);
-    skg_cosines_free(&a.variance);
-    skg_free(&a.sums);
-    skg_free(&a.values);
+    drop(&a);
     return status;
 }
 
@@ -216,6 +259,7 @@ skg_status skg_scatterer_take(skg_context *context, skg_scatterer *s, const skg_
     if (series->variance.value) SKG_TRY_CLEANUP(skg_joint_at(&series->variance, t, &variance));
     const skg_shown_scatter shown = {.work = work,
                                      .mean = &mean,
+                                     .staged = &mean,
                                      .variance = series->variance.value ? &variance : NULL,
                                      .photons = 1,
                                      .signal = series->signal,
@@ -235,10 +279,9 @@ cleanup:
 
 skg_status skg_scatterer_component(skg_context *context, skg_scatterer *s, const skg_scatter_work *work,
                                    int component) {
-    const skg_cosines *cosines = &s->components[component];
     const skg_shown_scatter shown = {
-        .work = work, .mean = cosines->value ? cosines : NULL, .photons = s->photons, .signal = s->signal};
-    return skg_shown_component_send(context, &shown, &s->images);
+        .work = work, .mean = s->components, .photons = s->photons, .signal = s->signal};
+    return skg_shown_component_send(context, &shown, component, &s->images);
 }
 
 void skg_scatterer_release(skg_scatterer *s) {

@@ -14,12 +14,14 @@ typedef struct {
     skg_scattered stage;
     skg_scatter_images images;
     skg_cosines
-        components[SKG_SCATTER_KINDS]; /* enum skg_scatter_component; without values: nothing scatters */
-    double photons, signal;            /* as of skg_shown_scatter */
-    skg_digest key;                    /* of the frame they hold for */
-    int64_t number;                    /* no other one of the process has it; 0: it has made no series yet */
-    int32_t known;                     /* 1: they hold for it */
-    int32_t warned;                    /* 1: of materials that four coefficients mix badly */
+        *components; /* [channels][SKG_SCATTER_KINDS] enum skg_scatter_component; NULL: nothing scatters */
+    double photons, signal; /* as of skg_shown_scatter */
+    skg_digest key;         /* of the frame they hold for */
+    int64_t number;         /* no other one of the process has it; 0: it has made no series yet */
+    int32_t channels;       /* of components */
+    int32_t known;          /* 1: they hold for it */
+    int32_t warned;         /* 1: of materials that four coefficients mix badly */
+    int32_t reserved;
     skg_scatter_report report;
 } skg_scatterer;
 

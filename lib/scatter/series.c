@@ -68,7 +68,7 @@ static void add_sums(const maker *m, knot *k) {
 static skg_status trace(maker *m, const skg_scatter_work *work, const skg_scatter_object *object, knot *k) {
     skg_scatter_tables tables;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_scatter_tables_make(work->recipe, object, &tables));
+    SKG_TRY_CLEANUP(skg_scatter_tables_make(work, object, &tables));
     SKG_TRY_CLEANUP(skg_trace_begin(m->context, work, object, &tables, m->columns, m->rows, &m->tracing));
     m->tracing.args.end = (SKG_INT)k->end;
     SKG_TRY_CLEANUP(skg_trace_until(m->context, &m->tracing, m->end));
@@ -226,7 +226,8 @@ skg_status skg_series_make(skg_context *context, int64_t count, skg_series_frame
     const double begun = skg_seconds();
     skg_status status = SKG_OK;
     *is_smooth = 0;
-    if (count < 2 * INTERVALS) return SKG_OK;
+    /* Bands and layers would each need a fit of their own. */
+    if (count < 2 * INTERVALS || skg_model_sums(&series->recipe->model) > 1) return SKG_OK;
     m.noise = series->recipe->options.noise != 0;
     SKG_TRY_CLEANUP(begin(&m));
     SKG_TRY_CLEANUP(converge(&m, is_smooth));

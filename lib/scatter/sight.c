@@ -80,20 +80,37 @@ static skg_status fill_field(const skg_scatter_work *work, const skg_cells *cell
     skg_add_scaled(field.centre, -1, work->view->source, way);
     args->far = (float)skg_length(way);
     if (!is_parallel(work->view)) return SKG_OK;
+    double start[3], direction[3];
+    find_direction(work->view, direction);
+    skg_add_scaled(work->view->source, -1, cells->low, start);
+    if (work->view->projection == SKG_PROJECTION_PARALLEL)
+        args->world_start = (float)skg_dot(start, direction);
     double middle[3]; /* back to before the object, from wherever the field's plane is */
-    for (int k = 0; k < 3; k++) middle[k] = cells->low[k] + 0.5 * cells->size[k] - field.centre[k];
+    for (int k = 0; k < 3; k++)
+        middle[k] = cells->low[k] + 0.5 * cells->size[k] - (corner[k] + 0.5 * (u[k] + v[k]));
     args->far = (float)(skg_length(middle) + skg_length(cells->size) + skg_length(u) + skg_length(v));
+    return SKG_OK;
+}
+
+skg_status skg_sight_strips(const skg_scatter_work *work, double across[3]) {
+    const skg_grid *grid = work->recipe->options.grid;
+    const skg_view *view = &work->recipe->view;
+    const double *rows = view->column_step;
+    skg_shades shades = {0};
+    skg_camera camera;
+    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
+    SKG_TRY(skg_shade_direction(view, skg_length(grid->direction) > 0 ? grid->direction : rows, "grid",
+                                "a direction across the strips", shades.strips_toward));
+    if (!skg_grid_across(&shades, &camera, across))
+        return skg_fail(SKG_ERR_SCENE, "scatter: the grid's direction points along the detector's normal");
     return SKG_OK;
 }
 
 static skg_status fill_grid(const skg_scatter_work *work, skg_scatter_args *args) {
     const skg_grid *grid = work->recipe->options.grid;
-    skg_camera camera;
     double across[3];
     if (!grid) return SKG_OK;
-    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
-    if (!skg_grid_across(&work->recipe->model.shades, &camera, across))
-        return skg_fail(SKG_ERR_SCENE, "scatter: the grid's direction points along the detector's normal");
+    SKG_TRY(skg_sight_strips(work, across));
     set(across, args->strips);
     args->focus = grid->focus_mm > 0 ? (float)(1 / grid->focus_mm) : 0;
     args->strips_u = (float)(skg_dot(across, work->view->column_step) * (double)work->view->columns);

@@ -90,6 +90,14 @@ static skg_status send_tables(skg_context *context, const skg_scatter_object *ob
     SKG_TRY(skg_buffer_write(context, &t->angles,
                              SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1) * (int64_t)sizeof *tables->angles,
                              tables->angles, "angles"));
+    if (tables->profiles)
+        SKG_TRY(skg_buffer_write(context, &t->profiles,
+                                 tables->profile_count * (int64_t)sizeof *tables->profiles, tables->profiles,
+                                 "beam"));
+    if (tables->detector)
+        SKG_TRY(skg_buffer_write(context, &t->detector,
+                                 tables->detector_count * (int64_t)sizeof *tables->detector, tables->detector,
+                                 "detector"));
     return skg_buffer_write(context, &t->beam, tables->bins * four, tables->beam, "beam");
 }
 
@@ -108,9 +116,36 @@ static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *
     args->scale = (float)(1 / UNIT);
 }
 
+static void fill_profile(const skg_beam_profile *p, skg_tracing *t) {
+    skg_scatter_args *args = &t->args;
+    t->heel = p->heel, t->bowtie = p->bowtie;
+    for (int k = 0; k < 3; k++) {
+        args->anode[k] = (float)p->anode[k];
+        args->central[k] = (float)p->central[k];
+        args->fan[k] = (float)p->fan[k];
+    }
+    if (p->heel) {
+        args->heel_low = (float)p->low;
+        args->heel_per = p->high > p->low ? (float)((SKG_HEEL_ROWS - 1) / (p->high - p->low)) : 0;
+        args->heel_rows = SKG_HEEL_ROWS;
+    }
+    if (p->bowtie) args->fan_rows = (SKG_INT)p->filter->count;
+}
+
+static void fill_images(const skg_recipe *recipe, const skg_scatter_tables *tables, skg_tracing *t) {
+    t->bands = recipe->options.bands > 0;
+    t->layers = tables->layers;
+    t->oblique = tables->oblique;
+    t->layered = tables->cosines > 0;
+    t->args.bands = tables->bands;
+    t->args.edges = t->bands ? tables->bands + 1 : 0;
+    t->args.cosines = tables->cosines;
+}
+
 static skg_status clear(skg_context *context, skg_tracing *t) {
     static const cl_int none = 0;
-    t->sums_count = (int64_t)SKG_SCATTER_BATCHES * SKG_SCATTER_PLANES * t->args.rows * t->args.columns;
+    t->sums_count = (int64_t)SKG_SCATTER_BATCHES * t->layers * t->args.bands * SKG_SCATTER_PLANES *
+                    t->args.rows * t->args.columns;
     const int64_t bytes = t->sums_count * (int64_t)sizeof(int64_t);
     SKG_TRY(skg_buffer_reserve(context, &t->sums, bytes, CL_MEM_READ_WRITE, "scatter"));
     SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, t->sums.memory, &none, sizeof none, 0,
@@ -130,6 +165,10 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     t->parallel = work->view->projection != SKG_PROJECTION_POINT;
     SKG_TRY(skg_sight_fill(work, &object->cells, &t->args));
     fill_tables(&object->physics, tables, &t->args);
+    fill_profile(&tables->profile, t);
+    fill_images(work->recipe, tables, t);
+    t->world = work->recipe->options.world != NULL;
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) t->args.world[k] = (float)object->world[k];
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
     SKG_TRY(send_lattice(context, seed, &t->lattice));
@@ -137,11 +176,15 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 }
 
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
-    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh", "scatter.clh",
-                                        "sight.clh",       "strips.clh", "scatter.cl"};
+    static const char *const files[] = {"exponential.clh", "random.clh",  "noise.clh",
+                                        "scatter.clh",     "sight.clh",   "strips.clh",
+                                        "arrive.clh",      "profile.clh", "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
-    const skg_define defines[] = {{"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid}};
+    const skg_define defines[] = {
+        {"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid},       {"SKG_HEEL", t->heel},
+        {"SKG_BOWTIE", t->bowtie},    {"SKG_BANDS", t->bands},     {"SKG_LAYERS", t->layers},
+        {"SKG_LAYERED", t->layered},  {"SKG_OBLIQUE", t->oblique}, {"SKG_WORLD", t->world}};
     return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
                            SKG_DEFINES(defines), program);
 }
@@ -162,8 +205,10 @@ static skg_status launch(skg_context *context, cl_program program, skg_tracing *
         SKG_ARGUMENT(SCATTER, momenta, t->momenta.memory),
         SKG_ARGUMENT(SCATTER, angles, t->angles.memory),
         SKG_ARGUMENT(SCATTER, beam, t->beam.memory),
+        SKG_ARGUMENT(SCATTER, profiles, t->profiles.memory),
         SKG_ARGUMENT(SCATTER, spots, t->spots.memory),
         SKG_ARGUMENT(SCATTER, lattice, t->lattice.memory),
+        SKG_ARGUMENT(SCATTER, detector, t->detector.memory),
         SKG_ARGUMENT(SCATTER, sums, t->sums.memory),
     };
     return SKG_LAUNCH_ONCE(context, program, "skg_scatter", "scatter", &work, arguments, NULL);
@@ -193,12 +238,12 @@ skg_status skg_trace_read(skg_context *context, const skg_tracing *t, int64_t *s
 }
 
 void skg_trace_release(skg_tracing *t) {
-    skg_buffer *const buffers[] = {&t->cells, &t->energies, &t->momenta, &t->angles,
-                                   &t->beam,  &t->spots,    &t->lattice, &t->sums};
+    skg_buffer *const buffers[] = {&t->cells,    &t->energies, &t->momenta, &t->angles,   &t->beam,
+                                   &t->profiles, &t->spots,    &t->lattice, &t->detector, &t->sums};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
 int64_t skg_trace_bytes(const skg_tracing *t) {
     return t->cells.bytes + t->energies.bytes + t->momenta.bytes + t->angles.bytes + t->beam.bytes +
-           t->spots.bytes + t->lattice.bytes + t->sums.bytes;
+           t->profiles.bytes + t->spots.bytes + t->lattice.bytes + t->detector.bytes + t->sums.bytes;
 }

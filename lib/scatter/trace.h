@@ -14,10 +14,11 @@ enum { SKG_SCATTER_BATCHES = 32 };
 
 /* All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer cells, energies, momenta, angles, beam, spots, lattice, sums;
+    skg_buffer cells, energies, momenta, angles, beam, profiles, spots, lattice, detector, sums;
     skg_scatter_args args; /* `end`: so many histories of each batch were followed */
-    int32_t noise, parallel, grid;
-    int32_t reserved;
+    int32_t noise, parallel, grid, heel, bowtie;
+    int32_t layers, bands, oblique, layered; /* bands: 1: there are some */
+    int32_t world;
     int64_t sums_count;
 } skg_tracing;
 
@@ -35,7 +36,7 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 /* Follows the histories of each batch up to number `end`, and waits for them. */
 skg_status skg_trace_until(skg_context *context, skg_tracing *tracing, int64_t end);
 
-/* Reads the sums: [SKG_SCATTER_BATCHES][SKG_SCATTER_PLANES][rows][columns]. */
+/* Reads the sums: [SKG_SCATTER_BATCHES][layers][channels][SKG_SCATTER_PLANES][rows][columns]. */
 skg_status skg_trace_read(skg_context *context, const skg_tracing *tracing, int64_t *sums);
 
 void skg_trace_release(skg_tracing *tracing);

@@ -173,7 +173,7 @@ static skg_status share_out(const making *m, double energy, int32_t layers, doub
     const skg_depth_blur *depths = m->options->depth_blur;
     shares[0] = 1;
     for (int32_t l = 0; depths && l < layers; l++)
-        SKG_TRY(skg_response_depth_share(m->options->response, energy, l ? depths->to[l - 1] : 0,
+        SKG_TRY(skg_response_depth_share(m->options->response, energy, 1, l ? depths->to[l - 1] : 0,
                                          depths->to[l], &shares[l]));
     return SKG_OK;
 }
@@ -193,7 +193,8 @@ static skg_status scale_noise(const making *m, skg_model *model) {
             "a DQE of %g at frequency 0 is more than the detector's response allows for this beam, %.3g; "
             "give a lower DQE, or a response that records more",
             dqe->dqe[0], most);
-    for (int32_t n = 0; n < model->nodes; n++) model->variances[n] *= most / dqe->dqe[0];
+    model->noise_scale = most / dqe->dqe[0];
+    for (int32_t n = 0; n < model->nodes; n++) model->variances[n] *= model->noise_scale;
     return SKG_OK;
 }
 
@@ -275,7 +276,7 @@ skg_status skg_model_begin(const skg_scene *scene, const skg_view *view, const s
                            const skg_plan_options *options, skg_model *model) {
     making m = {.scene = scene, .spectrum = spectrum, .options = options, .bodies = scene->count + 1};
     skg_status status = SKG_OK;
-    *model = (skg_model){0};
+    *model = (skg_model){.noise_scale = 1};
     SKG_TRY_CLEANUP(choose_nodes(&m, model));
     SKG_TRY_CLEANUP(look_up(&m, model));
     SKG_TRY_CLEANUP(choose_planes(&m, model));

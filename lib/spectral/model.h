@@ -25,6 +25,7 @@ typedef struct {
     double *weights; /* [nodes][layers][channels] of the quantity: per mm2 for fluence, of I/I0 for ratios */
     /* [nodes][layers][channels] with noise: the sum of squares of what single photons add; otherwise NULL. */
     double *variances;
+    double noise_scale;  /* by which the variances of single photons were multiplied for a DQE; 1: not */
     double *flat_field;  /* [channels] the sum of the weights before they were made those of a ratio */
     int64_t world_plane; /* the plane to which a mm of the world's path adds world_weight; -1: vacuum */
     double world_weight;

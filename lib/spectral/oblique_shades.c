@@ -2,7 +2,7 @@
 #include "spectral/oblique_shades.h"
 
 #include "core/vector.h"
-#include "spectral/quantity.h"
+#include "spectral/signal.h"
 
 #include <math.h>
 
@@ -16,13 +16,6 @@ static skg_status see(void *user, const skg_camera *camera, const double ray[3],
     (void)column, (void)row;
     e->low = fmin(e->low, q), e->high = fmax(e->high, q);
     return SKG_OK;
-}
-
-/* What is recorded of a photon: energy, or 1 if photons are counted. */
-static skg_status record(const skg_shading *shading, double kev, double oblique, double *recorded) {
-    const int counts = skg_quantity_counts(shading->options);
-    return skg_response_get(shading->options->response, kev, oblique, counts ? NULL : recorded,
-                            counts ? recorded : NULL);
 }
 
 skg_status skg_oblique_shades(const skg_shading *shading, skg_shades *shades) {
@@ -40,8 +33,9 @@ skg_status skg_oblique_shades(const skg_shading *shading, skg_shades *shades) {
         const double q = shades->oblique_extent.middle + shades->oblique_extent.half * skg_fit_point(s);
         for (int64_t b = 0; b < spectrum->count; b++) {
             double straight = 0, oblique = 0;
-            SKG_TRY_CLEANUP(record(shading, spectrum->energy_kev[b], 1, &straight));
-            SKG_TRY_CLEANUP(record(shading, spectrum->energy_kev[b], 1 / fmin(q, 1), &oblique));
+            SKG_TRY_CLEANUP(skg_signal_get(shading->options, spectrum->energy_kev[b], &straight));
+            SKG_TRY_CLEANUP(
+                skg_signal_oblique_get(shading->options, spectrum->energy_kev[b], 1 / fmin(q, 1), &oblique));
             directions.losses[s * directions.bins + b] = log(straight / oblique);
         }
     }

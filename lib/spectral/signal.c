@@ -3,11 +3,17 @@
 #include "core/core.h"
 #include "spectral/quantity.h"
 
-skg_status skg_signal_get(const skg_plan_options *options, double energy_kev, double *signal) {
+skg_status skg_signal_oblique_get(const skg_plan_options *options, double energy_kev, double oblique,
+                                  double *signal) {
     const int counts = skg_quantity_counts(options);
     *signal = counts ? 1 : energy_kev;
     if (!options->response) return SKG_OK;
-    return skg_response_get(options->response, energy_kev, 1, counts ? NULL : signal, counts ? signal : NULL);
+    return skg_response_get(options->response, energy_kev, oblique, counts ? NULL : signal,
+                            counts ? signal : NULL);
+}
+
+skg_status skg_signal_get(const skg_plan_options *options, double energy_kev, double *signal) {
+    return skg_signal_oblique_get(options, energy_kev, 1, signal);
 }
 
 /* A photon that arrives is recorded with the probability `efficiency` and then adds signal / efficiency on average; the

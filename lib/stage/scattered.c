@@ -1,11 +1,12 @@
 #include "stage/scattered.h"
 
+/* noise: 0: none, 1: in the image, 2: apart */
 static skg_status get_kernel(skg_context *context, skg_scattered *stage, int is_double, int noise,
                              cl_kernel *kernel) {
     static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh", "scattered.cl"};
     const skg_kernel_options options = {.precision = is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
                                         .bits = 32};
-    const skg_define defines[] = {{"SKG_NOISE", noise}};
+    const skg_define defines[] = {{"SKG_NOISE", noise > 0}, {"SKG_NOISE_APART", noise > 1}};
     cl_program program = NULL;
     if (!stage->kernels[is_double][noise]) {
         SKG_TRY(skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
@@ -21,9 +22,9 @@ skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const s
                              int64_t rows, skg_stage_log *log) {
     const int is_double = image->output_double != 0;
     const skg_scattered_args args = {
-        .key = *key, .image = skg_image_of(image, columns, rows, 1), .add = what->add};
+        .key = *key, .image = skg_image_of(image, columns, rows, what->channels), .add = what->add};
     cl_kernel kernel = NULL;
-    SKG_TRY(get_kernel(context, stage, is_double, what->variance != NULL, &kernel));
+    SKG_TRY(get_kernel(context, stage, is_double, !what->variance ? 0 : what->apart ? 2 : 1, &kernel));
     const skg_argument arguments[] = {
         SKG_ARGUMENT(SCATTERED, args, args),
         SKG_ARGUMENT(SCATTERED, mean, what->mean),
@@ -37,7 +38,7 @@ skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const s
 }
 
 void skg_scattered_release(skg_scattered *stage) {
-    for (int i = 0; i < 4; i++)
-        if (stage->kernels[i / 2][i % 2]) clReleaseKernel(stage->kernels[i / 2][i % 2]);
+    for (int i = 0; i < 6; i++)
+        if (stage->kernels[i / 3][i % 3]) clReleaseKernel(stage->kernels[i / 3][i % 3]);
     *stage = (skg_scattered){0};
 }

@@ -4,15 +4,18 @@
 
 #include "stage/attenuate.h"
 
-/* The kernels: of images of float and double, without and with noise; made on demand. All zero: none. */
+/* The kernels: of images of float and double, without and with noise, and with noise apart; made on demand. All zero: none. */
 typedef struct {
-    cl_kernel kernels[2][2];
+    cl_kernel kernels[2][3];
 } skg_scattered;
 
-/* What is added: [rows][columns] floats. variance: NULL: no noise. */
+/* What is added: [channels][rows][columns] floats. variance: NULL: no noise. */
 typedef struct {
     cl_mem mean, variance;
-    int32_t add; /* 1: to what the image holds; 0: in its place */
+    int32_t channels;
+    int32_t add;   /* 1: to what the image holds; 0: in its place */
+    int32_t apart; /* 1: deviations go to images behind those of all channels */
+    int32_t reserved;
 } skg_scattered_image;
 
 skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const skg_scattered_image *what,

@@ -50,12 +50,12 @@ def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
 
 def planes(state: State, quantity: str | None, components: bool, options: dict[str, Any]) -> dict[str, Any]:
     """The scattered part of an image, its standard error, the image, and what is reported of the scatter."""
-    if options.get("bands") is not None:
-        raise ArgumentError("scatter has one channel; leave bands= out")
+    bands = options.get("bands")
+    channels = () if bands is None else (len(bands) - 1,)
     batch = Batch(1, index=number_frames(state, 1, None, options))
     dtype = np.float64 if options.get("precision") == "double" else np.float32
     wanted = _outputs(components)
-    found = np.empty((len(wanted), *state.require_view().shape), dtype)
+    found = np.empty((len(wanted), *channels, *state.require_view().shape), dtype)
     used: list[Any] = []
 
     def submit(plan: Any) -> Any:
@@ -72,7 +72,7 @@ def planes(state: State, quantity: str | None, components: bool, options: dict[s
         return start
 
     with state.calls():
-        compute(state, submit, batch, found[0], False, True, False, {"quantity": quantity, **options})
+        compute(state, submit, batch, found[0], False, True, bool(channels), {"quantity": quantity, **options})
         report = scatter_report(used[-1])
     assert report is not None  # a frame was rendered
     parts = found[len(_KINDS):]

@@ -203,7 +203,7 @@ class Scene(_gradient.Differentiable):
 
         tolerance: its standard error over its mean; histories: instead, the number of photons. Without both, as the file
         says, or 0.01. components: whether orders and kinds are wanted apart. The rest is as in image(). Returns "image", the scatter, "sigma", its standard error, and "total", the
-        image with it, [row, column], and numbers: docs/python.md lists them.
+        image with it, [row, column], with bands= [band, row, column], and numbers: docs/python.md lists them.
         """
         return _scatter.planes(self._state, quantity, components, {**options, "scatter": _scatter.accuracy(tolerance, histories)})
 

@@ -21,15 +21,20 @@ static void set_up_scene(void) {
     write_text("scene.json", scene);
 }
 
-static void read_mha(const char *name, float values[PIXELS]) {
-    char bytes[PIXELS * 4 + 4096], path[512];
+/* The last numbers of a file. */
+static void read_floats(const char *name, size_t wanted, float *values) {
+    char bytes[2 * PIXELS * 4 + 4096], path[512];
     snprintf(path, sizeof path, "%s/%s", folder, name);
     FILE *stream = fopen(path, "rb");
     ck_assert_ptr_nonnull(stream);
     const size_t count = fread(bytes, 1, sizeof bytes, stream);
     fclose(stream);
-    ck_assert_uint_gt(count, PIXELS * sizeof *values);
-    memcpy(values, bytes + count - PIXELS * sizeof *values, PIXELS * sizeof *values);
+    ck_assert_uint_gt(count, wanted * sizeof *values);
+    memcpy(values, bytes + count - wanted * sizeof *values, wanted * sizeof *values);
+}
+
+static void read_mha(const char *name, float values[PIXELS]) {
+    read_floats(name, PIXELS, values);
 }
 
 static double mean_of(const float values[PIXELS]) {
@@ -138,6 +143,25 @@ START_TEST(quantities) {
 }
 END_TEST
 
+/* A file has the bands of a pixel side by side; the second is that of photons that kept their energy. */
+START_TEST(bands_have_planes_of_their_own) {
+    static float both[2 * PIXELS], sigma[2 * PIXELS], alone[PIXELS];
+    ck_run(0, "image scene.json --bands 1,59.9,61 -o t.mha --scatter histories=4000 --scatter-image a.mha "
+              "--scatter-sigma e.mha --json");
+    json_t *object = said_json();
+    const double mean = number_of(member(object, "scatter"), "mean");
+    json_decref(object);
+    read_floats("a.mha", 2 * PIXELS, both);
+    read_floats("e.mha", 2 * PIXELS, sigma);
+    ck_run(0, "image scene.json --bands 59.9,61 -o t.mha --scatter histories=4000 --scatter-image b.mha");
+    read_mha("b.mha", alone);
+    for (int i = 0; i < PIXELS; i++)
+        ck_assert(both[2 * i + 1] == alone[i] && sigma[2 * i] > 0 && sigma[2 * i + 1] > 0);
+    ck_assert_double_eq_tol((mean_of(both) + mean_of(both + PIXELS)) / 2, mean,
+                            1e-5 * mean); /* rounded to float */
+}
+END_TEST
+
 START_TEST(without_scatter_nothing_is_said_of_it) {
     ck_run(0, "image scene.json -o a.mha --json");
     json_t *object = said_json();
@@ -184,9 +208,9 @@ END_TEST
 START_TEST(other_verbs_meet_the_key) {
     static const char with[] = "--set 'Scatter={\"Histories\": 2000}'";
     static float plain[PIXELS], scattered[PIXELS];
-    ck_run(0, "lbuffer scene.json --part slab -o a.mha %s --set World=air", with);
-    ck_run_fails(4, "scatter is not simulated together with World",
-                 "image scene.json -o a.mha %s --set World=air", with);
+    ck_run(0, "lbuffer scene.json --part slab -o a.mha %s --set World=water", with);
+    ck_run_fails(4, "scatter: a World of", "image scene.json -o a.mha %s --set World=water", with);
+    ck_run(0, "image scene.json -o a.mha %s --set World=air", with);
     ck_run(0, "plan scene.json %s", with);
     ck_assert_msg(strstr(said, "those that the parts scatter"), "%s", said);
     ck_run(0, "view scene.json -o v.png --size 96,64 %s", with);
@@ -208,6 +232,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, nothing_in_the_beam_scatters_nothing);
     tcase_add_test(tests, the_key_and_the_flag_are_the_same);
     tcase_add_test(tests, quantities);
+    tcase_add_test(tests, bands_have_planes_of_their_own);
     tcase_add_test(tests, without_scatter_nothing_is_said_of_it);
     tcase_add_loop_test(tests, refused_flags, 0, sizeof bad / sizeof *bad);
     tcase_add_test(tests, outputs_are_guarded);

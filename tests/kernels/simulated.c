@@ -77,6 +77,8 @@ static const group groups[] = {
     {.name = "noise", .noise = 1, .colours = 1},
     {.name = "detector", .electronic = 2, .step = 0.5, .noise = 1},
     {.name = "scatter", .scatter = 32, .colours = 1, .noise = 1},
+    {.name = "scatter_bands", .scatter = 32, .colours = 1, .noise = 1, .shades = 1, .bands = 2},
+    {.name = "scatter_world", .scatter = 32, .colours = 1, .noise = 1, .world = 1, .dqe = 1},
     {.name = "double_scatter", .precision = SKG_PRECISION_DOUBLE, .scatter = 32, .parallel = 1},
     {.name = "gradient", .priority = 2, .colours = 1, .gradient = 1},
     {.name = "double_gradient",

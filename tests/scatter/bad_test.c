@@ -120,18 +120,8 @@ START_TEST(oblique_detectors) {
 }
 END_TEST
 
-static const double edges[] = {20, 40, 70};
-
 START_TEST(options) {
     subject s = filled();
-    ck_skg(skg_material_create_named("Air, Dry (near sea level)", &s.options.world));
-    skg_material *world = s.options.world;
-    refuse(&s, SKG_ERR_UNSUPPORTED, "World: the surroundings scatter nothing here");
-    skg_material_release(&world);
-    s = filled();
-    s.options.bands = 2, s.options.band_kev = edges;
-    refuse(&s, SKG_ERR_UNSUPPORTED, "several bands");
-    s = filled();
     s.options.precision = SKG_PRECISION_HALF;
     refuse(&s, SKG_ERR_UNSUPPORTED, "precision half");
 }

@@ -60,7 +60,8 @@ skg_status subject_try(subject *s) {
     s->options.collimation = s->jaws.kind == SKG_COLLIMATION_OPEN ? NULL : &s->jaws;
     skg_plan_release(&s->plan);
     ck_skg(skg_spectrum_create_mono(s->kev, s->photons, &beam));
-    const skg_status status = skg_plan_create(run_context, s->scene, &s->view, beam, &s->options, &s->plan);
+    const skg_status status =
+        skg_plan_create(run_context, s->scene, &s->view, s->beam ? s->beam : beam, &s->options, &s->plan);
     skg_spectrum_release(&beam);
     return status;
 }

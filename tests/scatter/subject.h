@@ -10,6 +10,7 @@ typedef struct {
     skg_scene *scene;
     skg_view view;
     double kev, photons; /* of the beam */
+    skg_spectrum *beam;  /* instead of these, borrowed; NULL: none */
     skg_plan_options options;
     skg_scatter scatter;
     skg_collimation jaws; /* used if kind is not SKG_COLLIMATION_OPEN */

@@ -9,3 +9,9 @@ _Static_assert((int)SUMS_BATCHES == (int)SKG_SCATTER_BATCHES && SUMS_KINDS == SK
 skg_status sums_read(skg_context *context, const skg_plan *plan, int64_t *sums) {
     return skg_trace_read(context, &plan->scatterer.tracing, sums);
 }
+
+skg_status staged_read(skg_context *context, const skg_plan *plan, int64_t count, float *means) {
+    SKG_CL_TRY(clEnqueueReadBuffer(context->device->queue, plan->scatterer.images.mean.memory, CL_TRUE, 0,
+                                   (size_t)count * sizeof *means, means, 0, NULL, NULL));
+    return SKG_OK;
+}

@@ -8,7 +8,10 @@
 /* Planes: Rayleigh scattering alone of orders 1, 2 and higher; the same with Compton scattering; what adds to the variance. */
 enum { SUMS_BATCHES = 32, SUMS_KINDS = 6, SUMS_PLANES = 7 };
 
-/* sums: [SUMS_BATCHES][SUMS_PLANES][places] */
+/* sums: [SUMS_BATCHES][SUMS_PLANES][places] of a plan of one channel */
 skg_status sums_read(skg_context *context, const skg_plan *plan, int64_t *sums);
+
+/* What the layers and channels of the last image got. means: [layers][channels][rows][columns], count in all */
+skg_status staged_read(skg_context *context, const skg_plan *plan, int64_t count, float *means);
 
 #endif

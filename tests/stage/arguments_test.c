@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { FILES_MAX = 7, ARGUMENTS_MAX = 32 };
+enum { FILES_MAX = 9, ARGUMENTS_MAX = 32 };
 
 static skg_context *context;
 
@@ -58,7 +58,8 @@ static const struct {
     {{"pixel.clh", "hits.cl", "slopes.cl", "gradient.cl"}, "-D SKG_PRIORITY=1 " NAMES, 0},
     {{"blur.cl"}, NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1 " NAMES, 0},
-    {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "sight.clh", "strips.clh", "scatter.cl"},
+    {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "sight.clh", "strips.clh", "arrive.clh",
+      "profile.clh", "scatter.cl"},
      NAMES,
      0},
     {{"exponential.clh", "random.clh", "noise.clh", "scattered.cl"}, "-D SKG_NOISE=1 " NAMES, 0},

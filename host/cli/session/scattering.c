@@ -65,7 +65,8 @@ void cli_scattering_ask(cli_scattering *scattering, cli_session *session) {
 }
 
 int cli_scattering_allocate(const cli_session *session, int32_t type, cli_scattering *scattering) {
-    const size_t pixels = (size_t)(session->view.columns * session->view.rows);
+    const int64_t channels = session->options.bands > 0 ? session->options.bands : 1;
+    const size_t pixels = (size_t)(session->view.columns * session->view.rows * channels);
     for (int i = 0; i < CLI_SCATTERED_COUNT; i++) {
         if (!scattering->paths[i]) continue;
         scattering->planes[i] = calloc(pixels, type == SKG_TYPE_FLOAT64 ? 8 : 4);
@@ -107,7 +108,7 @@ int cli_scattering_write(const cli_scattering *scattering, const skg_picture *im
             image->quantity == SKG_QUANTITY_ATTENUATION || image->quantity == SKG_QUANTITY_TRANSMISSION;
         picture.data = scattering->planes[i];
         picture.name = names[i];
-        picture.channel_names = NULL;
+        if (picture.channels == 1) picture.channel_names = NULL; /* they would name the picture */
         if (is_share) picture.quantity = SKG_QUANTITY_TRANSMISSION;
         if (is_share) picture.unit = "I/I0";
         picture.display = SKG_DISPLAY_TRANSMISSION; /* with no flat field: grey levels follow the values */
@@ -121,9 +122,9 @@ int cli_scattering_write(const cli_scattering *scattering, const skg_picture *im
     return failure;
 }
 
-/* The mean of an image; of an attenuation, that of the transmission. */
+/* The mean of all channels of an image; of an attenuation, that of the transmission. */
 static double mean_of(const skg_picture *image) {
-    const int64_t pixels = image->columns * image->rows;
+    const int64_t pixels = image->columns * image->rows * image->channels;
     double sum = 0;
     for (int64_t i = 0; i < pixels; i++) {
         const double value = image->type == SKG_TYPE_FLOAT64 ? ((const double *)image->data)[i]

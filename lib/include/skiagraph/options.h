@@ -332,7 +332,8 @@ SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy
  *          the detector and smoothed by cosines, as many as independent batches show to pay.
  * physics  photo absorption, Compton scattering (Klein and Nishina, times the scattering functions of free atoms),
  *          Rayleigh scattering (form factors of free atoms); cross sections of XCOM, as for the primary. Left out:
- *          fluorescence, Doppler broadening, the order of molecules, air, what the detector itself scatters.
+ *          fluorescence, Doppler broadening, the order of molecules, what the world scatters outside the box of all
+ *          parts, what the detector itself scatters.
  * field    without skg_plan_options.collimation the beam that scatters is limited to the detector, from its pixels'
  *          outer edges on */
 typedef struct {
@@ -462,8 +463,9 @@ typedef struct {
     const skg_collimation *collimation;
     /** Scattered photons, which are added to images before noise and blur; NULL: none. Frames whose scene or view
      * differs from the last one's take seconds, and submitting waits for them. Needs closed meshes, materials of known
-     * composition and density, energies up to 1,022 keV, and one channel; not with world, heel, bowtie,
-     * oblique, depth_blur, dqe, nor half precision, and a grid not with ratios to the flat field. */
+     * composition and density, and energies up to 1,022 keV; not with half precision, nor a world that scatters more
+     * than 20 % of the beam by itself. The field of the beam may not be wider than the heel's anode and the bow-tie's
+     * profile allow. */
     const skg_scatter *scatter;
 } skg_plan_options;
 

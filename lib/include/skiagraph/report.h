@@ -119,9 +119,9 @@ typedef struct {
     int32_t size;
     /** Cosines over the detector that the smoothing has kept. */
     int32_t cosines;
-    /** Mean over the detector, in the unit of SKG_OUTPUT_SCATTER. */
+    /** Mean over the detector and all channels, in the unit of SKG_OUTPUT_SCATTER. */
     double mean;
-    /** Its standard error: root mean square over the detector, smoothing included, in the same unit. */
+    /** Its standard error: root mean square over both, smoothing included, in the same unit. */
     double sigma;
     /** Photons from the source. */
     int64_t histories;
