@@ -66,13 +66,10 @@ static skg_status find_slopes(skg_job *job, const skg_pass *pass, const skg_velo
         const int64_t mesh = geometry->mesh_of_part[p];
         const double reference = pass->parts[p].reference;
         skg_velocities v = *of_view;
-        skg_face_moments faces = {.camera = &pass->camera,
-                                  .mesh = job->recipe->meshes.meshes[mesh],
-                                  .pose = pass->parts[p].pose,
-                                  .source = geometry->layouts[mesh].source};
+        skg_face_moments faces;
         if (direction->poses) memcpy(v.pose, direction->poses + 6 * p, sizeof v.pose);
         if (direction->vertices) v.vertices = direction->vertices[p];
-        SKG_TRY(skg_gradient_find_corners(job, mesh, &faces.corners));
+        SKG_TRY(skg_gradient_place_faces(job, pass, p, &faces));
         skg_slopes_find(&faces, &v, pass->camera.parallel || !(reference > 0) ? 1 : reference,
                         slopes + 3 * first);
         first += geometry->layouts[mesh].triangles;

@@ -23,30 +23,36 @@ static skg_status send_adjoint(skg_job *job, const struct skg_gradient_work *wor
 
 /* --- parts */
 
-skg_status skg_gradient_find_corners(skg_job *job, int64_t mesh, const int32_t **corners) {
-    struct skg_gradient_work *gradient = job->gradient;
-    if (!gradient->corners)
-        SKG_TRY(skg_staging_take(&job->staging, job->recipe->meshes.count, sizeof *gradient->corners,
-                                 "gradient", &gradient->corners));
-    if (!gradient->corners[mesh])
-        SKG_TRY(skg_gradient_read_corners(&job->machine->geometry, mesh, &job->staging,
-                                          &gradient->corners[mesh]));
-    *corners = gradient->corners[mesh];
-    return SKG_OK;
+skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t part,
+                                    skg_face_moments *faces) {
+    skg_machine *machine = job->machine;
+    const skg_geometry *geometry = &machine->geometry;
+    const int64_t mesh = geometry->mesh_of_part[part];
+    *faces = (skg_face_moments){.camera = &pass->camera,
+                                .mesh = job->recipe->meshes.meshes[mesh],
+                                .pose = pass->parts[part].pose,
+                                .source = geometry->layouts[mesh].source};
+    return skg_gradient_find_corners(machine->context, geometry, mesh, &machine->gradient, &faces->corners);
 }
 
-/* The weights of a pass on the host, for faces that are seen as lines, and the part that they are asked for. */
+/* The weights of a pass on the host, for faces that are seen as lines. */
 typedef struct {
     const skg_pass *pass;
     skg_weight_layout layout;
     double **planes; /* [layout.planes] NULL: not read */
-    int64_t part;
 } pixel_weights;
+
+/* The same for one part. */
+typedef struct {
+    const pixel_weights *all;
+    int64_t part;
+} part_weights;
 
 /* d loss / d t of a ray: what parts that compete take off is left out. */
 static double weigh_pixel(const void *user, int64_t column, int64_t row) {
-    const pixel_weights *w = user;
-    const skg_geometry_part *part = &w->pass->parts[w->part];
+    const part_weights *of_part = user;
+    const pixel_weights *w = of_part->all;
+    const skg_geometry_part *part = &w->pass->parts[of_part->part];
     double sum = 0;
     for (int32_t c = 0; c < part->contributions; c++)
         sum += part->contribution[c].weight *
@@ -55,9 +61,10 @@ static double weigh_pixel(const void *user, int64_t column, int64_t row) {
 }
 
 /* Reads the weights of a part if any of its faces is seen as a line. */
-static skg_status read_weights(skg_job *job, const int64_t *moments, int64_t triangles, pixel_weights *w) {
+static skg_status read_weights(skg_job *job, const int64_t *moments, int64_t triangles, int64_t number,
+                               pixel_weights *w) {
     const skg_gradient_memory *memory = &job->machine->gradient;
-    const skg_geometry_part *part = &w->pass->parts[w->part];
+    const skg_geometry_part *part = &w->pass->parts[number];
     int64_t count = 0;
     for (int64_t t = 0; t < triangles; t++) count += moments[3 * t] == SKG_EDGE_ON;
     for (int32_t c = 0; c < part->contributions && count > 0; c++) {
@@ -70,48 +77,71 @@ static skg_status read_weights(skg_job *job, const int64_t *moments, int64_t tri
     return SKG_OK;
 }
 
-/* Adds the faces of a part to its twist and vertices, and to the sums of all parts. */
-static skg_status add_part(skg_job *job, const skg_pass *pass, int64_t part, const skg_gathered *gathered,
-                           int64_t first, pixel_weights *weights, skg_force_sums *all) {
-    struct skg_gradient_work *gradient = job->gradient;
+/* The faces of the parts, with their moments. */
+typedef struct {
+    skg_face_moments *faces; /* [parts] */
+    part_weights *weights;   /* [parts] */
+    skg_force_sums *sums;    /* [parts] */
+    pixel_weights of_pixels;
+} faces_work;
+
+static skg_status list_faces(skg_job *job, const skg_pass *pass, const skg_gathered *gathered,
+                             faces_work *w) {
     const skg_geometry *geometry = &job->machine->geometry;
-    const int64_t mesh = geometry->mesh_of_part[part];
-    const skg_gradient *wanted = &gradient->wanted;
-    skg_force_sums sums = {0};
-    skg_face_moments faces = {.camera = &pass->camera,
-                              .mesh = job->recipe->meshes.meshes[mesh],
-                              .pose = pass->parts[part].pose,
-                              .source = geometry->layouts[mesh].source,
-                              .moments = gathered->moments + 3 * first,
-                              .unit = gathered->units[part],
-                              .weight = weigh_pixel,
-                              .weight_user = weights};
-    weights->part = part;
-    SKG_TRY(read_weights(job, faces.moments, geometry->layouts[mesh].triangles, weights));
-    SKG_TRY(skg_gradient_find_corners(job, mesh, &faces.corners));
-    SKG_TRY(skg_forces_add(&faces, &sums, wanted->vertices ? wanted->vertices[part] : NULL));
-    for (int k = 0; k < 3; k++) {
-        gradient->poses[6 * part + k] += sums.force[k];
-        gradient->poses[6 * part + 3 + k] += sums.torque[k];
-        all->force[k] += sums.force[k];
-        all->along[k] += sums.along[k];
-        all->pixel_torque[k] += sums.pixel_torque[k];
+    for (int64_t p = 0, first = 0; p < pass->scene->count; p++) {
+        const skg_geometry_part *part = &pass->parts[p];
+        const int64_t triangles = geometry->layouts[geometry->mesh_of_part[p]].triangles;
+        skg_face_moments *faces = &w->faces[p];
+        skg_part_double entry;
+        const int64_t *moments = gathered->moments + 3 * first;
+        first += triangles;
+        if (gathered->units[p] == 0) continue;
+        SKG_TRY(read_weights(job, moments, triangles, p, &w->of_pixels));
+        SKG_TRY(skg_gradient_place_faces(job, pass, p, faces));
+        skg_camera_part(&pass->camera, part->pose, part->origin, part->reference, part->flipped, &entry);
+        w->weights[p] = (part_weights){.all = &w->of_pixels, .part = p};
+        faces->moments = moments;
+        faces->unit = gathered->units[p];
+        faces->pixel[0] = entry.pixel_i, faces->pixel[1] = entry.pixel_j;
+        faces->weight = weigh_pixel;
+        faces->weight_user = &w->weights[p];
     }
     return SKG_OK;
 }
 
+/* Adds the sums of every part to its twist, and to those of all parts. */
+static void add_sums(int64_t parts, const skg_force_sums *sums, double *poses, skg_force_sums *all) {
+    for (int64_t p = 0; p < parts; p++)
+        for (int k = 0; k < 3; k++) {
+            poses[6 * p + k] += sums[p].force[k];
+            poses[6 * p + 3 + k] += sums[p].torque[k];
+            all->force[k] += sums[p].force[k];
+            all->along[k] += sums[p].along[k];
+            all->pixel_torque[k] += sums[p].pixel_torque[k];
+        }
+}
+
 static skg_status add_parts(skg_job *job, const skg_pass *pass, const skg_gathered *gathered,
                             skg_force_sums *all) {
-    const skg_geometry *geometry = &job->machine->geometry;
-    pixel_weights weights = {.pass = pass, .layout = gathered->layout};
+    struct skg_gradient_work *gradient = job->gradient;
+    const int64_t parts = pass->scene->count;
+    faces_work w = {.of_pixels = {.pass = pass, .layout = gathered->layout}};
     skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(weights.layout.planes, sizeof *weights.planes, "gradient", &weights.planes));
-    for (int64_t p = 0, first = 0; p < pass->scene->count && status == SKG_OK; p++) {
-        if (gathered->units[p] != 0) status = add_part(job, pass, p, gathered, first, &weights, all);
-        first += geometry->layouts[geometry->mesh_of_part[p]].triangles;
-    }
-    for (int64_t k = 0; k < weights.layout.planes; k++) skg_free(&weights.planes[k]);
-    skg_free(&weights.planes);
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.faces, "gradient", &w.faces));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.weights, "gradient", &w.weights));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.sums, "gradient", &w.sums));
+    SKG_TRY_CLEANUP(
+        skg_alloc(gathered->layout.planes, sizeof *w.of_pixels.planes, "gradient", &w.of_pixels.planes));
+    SKG_TRY_CLEANUP(list_faces(job, pass, gathered, &w));
+    SKG_TRY_CLEANUP(skg_forces_find(parts, w.faces, gradient->wanted.vertices, w.sums));
+    add_sums(parts, w.sums, gradient->poses, all);
+cleanup:
+    for (int64_t k = 0; w.of_pixels.planes && k < gathered->layout.planes; k++)
+        skg_free(&w.of_pixels.planes[k]);
+    skg_free(&w.of_pixels.planes);
+    skg_free(&w.faces);
+    skg_free(&w.weights);
+    skg_free(&w.sums);
     return status;
 }
 

@@ -22,7 +22,6 @@ struct skg_gradient_work {
     skg_direction direction;
     double *derivative; /* [channels][rows][columns] of the intensities */
     int64_t saturated;  /* faces whose slopes were cut off */
-    int32_t **corners;  /* [meshes] as the device has them, read once; NULL: not read */
 };
 
 #endif
