@@ -205,19 +205,3 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     for (int k = 0; k < 3; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
 #endif
 }
-
-/* The largest magnitude of each row of each plane of weights: most[plane][row]. */
-__kernel void skg_gradient_most(skg_gradient_args args, __global const skg_real *weights, __global skg_real *most) {
-    const int row = (int)get_global_id(0), plane = (int)get_global_id(1);
-    if (row >= args.layout.rows || plane >= args.planes) return;
-    __global const skg_real *from = weights + (long)plane * args.plane + (long)row * args.stride;
-    skg_realv largest = (skg_realv)(0);
-    for (int column = 0; column < args.stride; column += SKG_WIDE) {
-        const skg_realv here = fabs(SKG_LOAD_GLOBAL_V(realv, from + column));
-        largest = here <= largest ? largest : here; /* NaN stays */
-    }
-    skg_real lanes[SKG_WIDE], result = 0;
-    SKG_STORE_V(realv, largest, lanes);
-    for (int k = 0; k < SKG_WIDE; k++) result = lanes[k] <= result ? result : lanes[k];
-    most[plane * args.layout.rows + row] = result;
-}

@@ -1,5 +1,6 @@
 #include "frame/gradient_pass.h"
 
+#include "core/parallel.h"
 #include "core/vector.h"
 #include "frame/gradient_density.h"
 #include "spectral/quantity.h"
@@ -168,22 +169,47 @@ static void add_parallel(const skg_view *view, const skg_camera *camera, const s
     }
 }
 
-/* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3.
- *
- * values   of each ray: sum over planes of mm times derivative by mm; derivative by the logarithm of the intensity
- * falls    power of 1 / |D| in the intensities */
-static void add_ray_lengths(const skg_camera *camera, const skg_weight_layout *layout, const double *values,
-                            double falls, ends *e) {
+/* The rays of a pass. values: of each the sum over planes of mm times derivative by mm; derivative by the logarithm of the
+ * intensity. falls: power of 1 / |D| in the intensities. Result of each row: the sums over its rays of what changes with |D|, over
+ * |D|^2; of that times the column; of the derivatives by logarithms. */
+typedef struct {
+    const skg_camera *camera;
+    const skg_weight_layout *layout;
+    const double *values;
+    double falls;
+    double (*rows)[3];
+} ray_sums;
+
+enum { LANES = 4 }; /* sums that do not wait for each other */
+
+static skg_status add_row(void *user, int64_t row) {
+    const ray_sums *s = user;
+    const double *of_paths = s->values + row * s->layout->stride,
+                 *of_intensities = of_paths + s->layout->plane;
+    double first[3], sums[3][LANES] = {{0}};
+    skg_add_scaled(s->camera->first, (double)row, s->camera->row, first);
+    const double square = skg_dot(first, first), twice = 2 * skg_dot(first, s->camera->column),
+                 step = skg_dot(s->camera->column, s->camera->column);
+    for (int64_t c = 0; c < s->camera->columns; c++) {
+        const double column = (double)c, value = of_paths[c] - s->falls * of_intensities[c];
+        const double share = value / (square + column * (twice + column * step));
+        sums[0][c % LANES] += share;
+        sums[1][c % LANES] += share * column;
+        sums[2][c % LANES] += of_intensities[c];
+    }
+    for (int k = 0; k < 3; k++) s->rows[row][k] = sums[k][0] + sums[k][1] + sums[k][2] + sums[k][3];
+    return SKG_OK;
+}
+
+/* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3. */
+static void add_ray_lengths(const ray_sums *s, ends *e, double *intensity) {
+    const skg_camera *camera = s->camera;
     double all[3] = {0}, turn[3];
     for (int64_t r = 0; r < camera->rows; r++) {
-        const double *of_paths = values + r * layout->stride, *of_intensities = of_paths + layout->plane;
-        for (int64_t c = 0; c < camera->columns; c++) {
-            const double value = of_paths[c] - falls * of_intensities[c];
-            double ray[3];
-            for (int k = 0; k < 3; k++)
-                ray[k] = camera->first[k] + (double)c * camera->column[k] + (double)r * camera->row[k];
-            skg_add_scaled(all, value / skg_dot(ray, ray), ray, all);
-        }
+        const double *sums = s->rows[r];
+        for (int k = 0; k < 3; k++)
+            all[k] += sums[0] * (camera->first[k] + (double)r * camera->row[k]) + sums[1] * camera->column[k];
+        *intensity += sums[2];
     }
     /* The pixel is source + ray, so that its lever is that of the source. */
     skg_cross(camera->origin, all, turn);
@@ -256,20 +282,24 @@ static skg_status add_point(skg_job *job, const skg_pass *pass, const skg_force_
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     const int falls = job->machine->images.falloff;
     double *values = NULL;
+    ray_sums sums = {.camera = camera, .layout = &layout, .falls = falls ? 3 : 0};
     skg_status status = SKG_OK;
     for (int k = 0; k < 3; k++) {
         e->source[k] -= all->force[k] - all->along[k];
         e->detector[k] -= all->along[k];
         e->detector[3 + k] -= all->pixel_torque[k];
     }
-    SKG_TRY(skg_alloc(2 * layout.plane, sizeof *values, "gradient", &values));
+    SKG_TRY_CLEANUP(skg_alloc(2 * layout.plane, sizeof *values, "gradient", &values));
+    SKG_TRY_CLEANUP(skg_alloc(camera->rows, sizeof *sums.rows, "gradient", &sums.rows));
     SKG_TRY_CLEANUP(skg_gradient_read(pass, job->machine->gradient.weights.memory,
                                       layout.planes * layout.plane, 2 * layout.plane, values));
-    add_ray_lengths(camera, &layout, values, falls ? 3 : 0, e);
-    for (int64_t p = 0; p < layout.plane; p++) *intensity += values[layout.plane + p];
+    sums.values = values;
+    SKG_TRY_CLEANUP(skg_parallel(camera->rows, add_row, &sums));
+    add_ray_lengths(&sums, e, intensity);
     if (falls) add_distance(camera, camera->origin, camera->first, 3 * *intensity, e);
 cleanup:
     skg_free(&values);
+    skg_free(&sums.rows);
     return status;
 }
 
@@ -315,7 +345,8 @@ skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums
     SKG_TRY(send_adjoint(job, job->gradient));
     SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
     return skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, of_planes,
-                                   memory->adjoint.memory, memory->weights.memory, &job->staging.log);
+                                   memory->adjoint.memory, memory->weights.memory, memory->most.memory,
+                                   &job->staging.log);
 }
 
 skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,

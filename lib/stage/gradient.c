@@ -5,7 +5,6 @@
 
 #include <skiagraph/plan.h>
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -65,6 +64,9 @@ skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradie
     const int64_t most = planes > layout.planes + 2 ? planes : layout.planes + 2;
     /* Lanes without a hit read behind their rows. */
     const int64_t behind = SKG_SPARE_ROWS * layout.stride + SKG_SPARE_COLUMNS;
+    SKG_TRY(skg_buffer_reserve(pass->main.raster->context, &memory->most,
+                               layout.planes * layout.items * (int64_t)real_size(pass->main.raster),
+                               CL_MEM_READ_WRITE, "weights of a gradient"));
     return skg_buffer_reserve(pass->main.raster->context, &memory->weights,
                               (most * layout.plane + behind) * (int64_t)real_size(pass->main.raster),
                               CL_MEM_READ_WRITE, "weights of a gradient");
@@ -122,27 +124,15 @@ static skg_status read_reals(const skg_raster *raster, cl_mem memory, int64_t fi
 
 /* The largest weight of each plane. */
 static skg_status find_most(const gather_run *run, double *most) {
-    const int64_t rows = run->raster->layout.rows, planes = run->args.planes;
-    const skg_work_size work = {2, {rows, planes}, {16, 1}};
-    double *of_rows = NULL;
-    SKG_TRY(skg_staging_take(run->staging, planes * rows, sizeof *of_rows, "gradient", &of_rows));
-    SKG_TRY(reserve(run, &run->memory->most, planes * rows * (int64_t)real_size(run->raster)));
-    const skg_argument arguments[] = {
-        SKG_ARGUMENT(GRADIENT_MOST, args, run->args),
-        SKG_ARGUMENT(GRADIENT_MOST, weights, run->memory->weights.memory),
-        SKG_ARGUMENT(GRADIENT_MOST, most, run->memory->most.memory),
-    };
-    SKG_TRY(SKG_LAUNCH_ONCE(run->context, run->program, "skg_gradient_most", "gradient", &work, arguments,
-                            &run->staging->log));
-    SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * rows, of_rows));
-    for (int64_t i = 0; i < planes * rows; i++) {
-        if (!isfinite(of_rows[i]))
-            return skg_fail(
-                SKG_RANGE,
-                "gradient: the derivative of the loss by a path length is not finite in row %" PRId64
-                "; give a smaller derivative by the image, or take precision double",
-                i % rows);
-        most[i / rows] = fmax(most[i / rows], of_rows[i]);
+    const int64_t planes = run->args.planes, items = layout_of(run->pass).items;
+    double *of_items = NULL;
+    SKG_TRY(skg_staging_take(run->staging, planes * items, sizeof *of_items, "gradient", &of_items));
+    SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * items, of_items));
+    for (int64_t i = 0; i < planes * items; i++) {
+        if (!isfinite(of_items[i]))
+            return skg_fail(SKG_RANGE, "gradient: the derivative of the loss by a path length is not finite; "
+                                       "give a smaller derivative by the image, or take precision double");
+        most[i / items] = fmax(most[i / items], of_items[i]);
     }
     return SKG_OK;
 }
