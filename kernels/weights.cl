@@ -15,6 +15,10 @@ static void skg_read_adjoint(const skg_strip *strip, __global const skg_real *ad
     SKG_EACH_CHANNEL {
         __global const skg_real *from = adjoint + ((long)c * down + strip->row / SKG_FINE) * across;
         SKG_EACH_RUN {
+            if (SKG_FINE == 1 && strip->column + (r + 1) * SKG_WIDE <= columns) {
+                slope[c][r] = SKG_LOAD_GLOBAL_V(realv, from + strip->column + r * SKG_WIDE);
+                continue;
+            }
             skg_real lanes[SKG_WIDE];
             for (int k = 0; k < SKG_WIDE; k++) {
                 const int column = strip->column + r * SKG_WIDE + k;
@@ -82,14 +86,15 @@ static void skg_slopes_of_nodes(const skg_strip *strip, const skg_pixels *pixels
     }
 }
 
-/* Adds up the derivatives by the mm of the planes, and by the logarithm of the intensity. */
+/* Adds up the derivatives by the mm of the planes that are needed, and by the logarithm of the intensity. */
 static void skg_add_slopes(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS],
-                           skg_realv total[SKG_SUMMED][SKG_RUNS], skg_realv *shown) {
+                           const uchar *needed, skg_realv total[SKG_SUMMED][SKG_RUNS], skg_realv *shown) {
     for (int first = 0; first < strip->args.nodes; first += SKG_TOGETHER) {
         const int count = min(SKG_TOGETHER, strip->args.nodes - first);
         skg_realv node[SKG_TOGETHER][SKG_RUNS];
         skg_slopes_of_nodes(strip, pixels, slope, first, count, node, shown);
         SKG_EACH_SUMMED {
+            if (!needed[p]) continue;
             __constant const skg_real *coefficient = strip->coefficients + first * SKG_PLANES + p;
             skg_realv sum[SKG_RUNS];
             SKG_EACH_RUN sum[r] = total[p][r];
@@ -128,6 +133,19 @@ static void skg_put_sums(const skg_strip *strip, int plane, const skg_realv *val
     skg_put_weights(strip, plane, scaled, weights);
 }
 
+/* Which planes parts of accumulators make that have hits in the runs. In the others no length changes, but for the world's. */
+static void skg_find_needed(const skg_strip *strip, uchar *needed) {
+    for (int p = 0; p < SKG_SUMMED; p++) needed[p] = SKG_WEIGH_PLANES || (SKG_WORLD && p == strip->args.world_plane);
+#if SKG_SUMS
+    for (int s = 0; s < SKG_SUMS; s++) {
+        if (!skg_meets(strip, s)) continue;
+        for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= strip->lists[s * SKG_SUMMED + p] != 0;
+    }
+#else
+    for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= skg_meets(strip, p);
+#endif
+}
+
 static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjoint, __global skg_real *weights,
                            skg_realv *most) {
     skg_pixels pixels;
@@ -150,7 +168,9 @@ static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjo
     skg_add_nodes(strip, &pixels);
 #endif
     SKG_EACH_RUN skg_unfinish(strip, &pixels, slope, r);
-    skg_add_slopes(strip, &pixels, slope, total, shown);
+    uchar needed[SKG_SUMMED];
+    skg_find_needed(strip, needed);
+    skg_add_slopes(strip, &pixels, slope, needed, total, shown);
 #endif
     SKG_EACH_SUMMED SKG_EACH_RUN path[r] = fma(total[p][r], pixels.x[p][r], path[r]);
 #if SKG_WEIGH_PLANES
