@@ -113,12 +113,13 @@ static double **make_vertices(const bench_thorax *thorax) {
 }
 
 static void compare(const settings *set, const bench_thorax *thorax, skg_plan *plan, FILE *csv) {
-    static const char *const names[4] = {"image", "image, poses, source, detector",
+    static const char *const names[4] = {"image", "image, poses, source, detector, densities",
                                          "the same and all vertices", "image, along a pose"};
     double *adjoint = bench_alloc((size_t)(set->size * set->size), sizeof *adjoint), view[9];
     double *derivative = bench_alloc((size_t)(set->size * set->size), sizeof *derivative);
     double *twists = bench_alloc((size_t)(6 * thorax->parts), sizeof *twists);
     double **vertices = make_vertices(thorax);
+    double *densities = bench_alloc((size_t)thorax->parts, sizeof *densities);
     contender all[4] = {0};
     bench_times times[4] = {0};
     const bench_frame frames[4] = {frame, frame, frame, frame};
@@ -135,6 +136,7 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
         c->adjoint.channels = 1, c->adjoint.rows = c->adjoint.columns = set->size, c->adjoint.data = adjoint;
         skg_gradient_init(&c->gradient);
         c->gradient.poses = bench_alloc((size_t)(6 * thorax->parts), sizeof(double));
+        c->gradient.densities = densities;
         c->gradient.source = view, c->gradient.detector = view + 3;
         if (k == 2) c->gradient.vertices = vertices;
         skg_direction_init(&c->direction);
@@ -154,6 +156,7 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
     for (int64_t p = 0; p < thorax->parts; p++) free(vertices[p]);
     free(vertices);
     free(twists);
+    free(densities);
     free(derivative);
     free(adjoint);
 }

@@ -1,6 +1,7 @@
 #include "frame/derivative_pass.h"
 
 #include "core/vector.h"
+#include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
 #include "geometry/slopes.h"
 #include "spectral/quantity.h"

@@ -317,9 +317,8 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
         job->gradient ? add_gradient(job, work, number, &pass) : enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
-    for (int64_t p = 0; job->gradient && job->gradient->wanted.densities && p < job->recipe->scene->count;
-         p++)
-        if (status == SKG_OK) status = add_density(job, work, number, p);
+    for (int64_t p = 0; job->gradient && job->gradient->needs_lengths && p < job->recipe->scene->count; p++)
+        if (status == SKG_OK && job->gradient->needs_lengths[p]) status = add_density(job, work, number, p);
     return status;
 }
 

@@ -231,6 +231,7 @@ static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const sk
     SKG_TRY(check_wanted(call, plan->recipe, &plan->machine, &work.wanted));
     SKG_TRY_CLEANUP(skg_alloc(6 * scene->count, sizeof *work.poses, "gradient", &work.poses));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.densities, "gradient", &work.densities));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.needs_lengths, "gradient", &work.needs_lengths));
     SKG_TRY_CLEANUP(find_adjoint(call, plan, frame, adjoint, &work.wanted, &work.adjoint));
     clear_vertices(scene, &work.wanted);
     SKG_TRY_CLEANUP(run(plan, frame, &work));
@@ -239,6 +240,7 @@ cleanup:
     skg_free(&work.adjoint);
     skg_free(&work.poses);
     skg_free(&work.densities);
+    skg_free(&work.needs_lengths);
     skg_free(&work.planes);
     return status;
 }

@@ -17,8 +17,4 @@ skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64
 skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
                               int32_t of_planes);
 
-/* Says where the faces of a part are in a pass. */
-skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t part,
-                                    skg_face_moments *faces);
-
 #endif

@@ -12,9 +12,10 @@ struct skg_gradient_work {
     skg_gradient wanted;
     /* [layers][channels][rows][columns] by the intensities that the stage `attenuate` shows */
     double *adjoint;
-    double *poses;     /* [parts][6] */
-    double *densities; /* [parts] */
-    double view[9];    /* by the source and by the twist of the detector */
+    double *poses;          /* [parts][6] */
+    double *densities;      /* [parts] */
+    uint8_t *needs_lengths; /* [parts] 1: its density takes the path lengths through it */
+    double view[9];         /* by the source and by the twist of the detector */
     /* [planes of the model][rows][row_stride] by the mm of a pass, if densities are wanted; freed by the caller */
     double *planes;
     int32_t forward; /* 1: the derivative of the image along `direction` instead */

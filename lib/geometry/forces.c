@@ -17,7 +17,7 @@ typedef struct {
 
 /* Sums over faces in the axes of a mesh, of which those of the world follow: with V the sum of weight t^2 D, and n over h. */
 typedef struct {
-    double force[3], along[3];
+    double length, force[3], along[3];
     double turn[3][3];         /* of the place of a hit times what pushes it */
     skg_force_sums of_edge_on; /* in the world's axes */
 } local_sums;
@@ -186,6 +186,7 @@ static void add_face(const skg_face_moments *faces, const local_camera *camera, 
     const double behind = parallel ? f.moment * skg_dot(f.push, f.corner[0]) - depth : 0;
     const double force = parallel ? f.moment : depth, along = parallel ? behind : f.moment;
     if (parallel) skg_add_scaled(f.place, behind, camera->beam, f.place);
+    sums->length += parallel ? behind : depth;
     for (int c = 0; c < 3; c++) {
         sums->force[c] += force * f.push[c];
         sums->along[c] += along * f.push[c];
@@ -237,6 +238,7 @@ static void add_sums(const local_sums *more, const skg_face_moments *faces, cons
             world[r][c] = turn[r][0] * camera->inverse[0][c] + turn[r][1] * camera->inverse[1][c] +
                           turn[r][2] * camera->inverse[2][c];
     skg_cross(faces->camera->origin, force, torque);
+    sums->length += more->length;
     for (int k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
         sums->force[k] += force[k] + more->of_edge_on.force[k];

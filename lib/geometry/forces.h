@@ -27,7 +27,8 @@ typedef struct {
 /* Sums over faces, about the world's origin. t: the path parameter of a corner. */
 typedef struct {
     double force[3], torque[3]; /* of F, of x x F */
-    double along[3];            /* of t F; with a parallel beam of (t - 1) F */
+    double length; /* of weight t; with a parallel beam of weight (t - 1). Faces that contain rays add none */
+    double along[3];        /* of t F; with a parallel beam of (t - 1) F */
     double pixel_torque[3]; /* of t p x F, p the pixel that sees the corner; with a parallel beam of p x F */
 } skg_force_sums;
 

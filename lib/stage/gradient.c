@@ -85,8 +85,7 @@ static skg_status get_batches(const gather_run *run, cl_program *program) {
     static const char *const files[] = {"batch.clh", "gather.clh", "draw.clh", "collect.clh",
                                         "gradient_batches.cl"};
     static const skg_define defines[] = {{"SKG_GATHER", 1}};
-    return skg_kernels_get(run->context, &run->raster->options.kernels, 5, files, SKG_DEFINES(defines),
-                           program);
+    return skg_kernels_get(run->context, &run->pass->kernels, 5, files, SKG_DEFINES(defines), program);
 }
 
 static skg_status begin(gather_run *run) {
@@ -103,8 +102,7 @@ static skg_status begin(gather_run *run) {
         .stride = (SKG_INT)layout.stride,
         .plane = (SKG_INT)layout.plane,
         .planes = (SKG_INT)layout.planes};
-    return skg_kernels_get(run->context, &run->raster->options.kernels, 4, files, SKG_DEFINES(defines),
-                           &run->program);
+    return skg_kernels_get(run->context, &run->pass->kernels, 4, files, SKG_DEFINES(defines), &run->program);
 }
 
 /* Reads reals of the device as doubles, and waits. Floats are read into the end of the doubles' memory. */
