@@ -97,7 +97,7 @@ START_TEST(gradients_are_those_of_differences) {
         ck_assert_msg(fabs(got - expected) <= 1e-6 * size,
                       "%s, direction %d: %.12g, by differences %.12g of %.3g", set->name, way, got, expected,
                       size);
-        ck_assert_int_gt(used, 5);
+        ck_assert_int_gt(used, set->nested > 1 ? 1 : 5); /* the core covers few pixels */
     }
     skg_plan_release(&plan);
     release(&r);
