@@ -1,6 +1,8 @@
-/* What a gradient costs: the thorax with a material for each organ, the image alone against image and gradient, alternately. */
+/* What a gradient costs: the thorax with a material for each organ, the image alone against image and gradient, alternately. Then
+ * image and gradient against those of a volume, 200 x 200 pixels, by six numbers. */
 #include "common/bench.h"
 #include "common/thorax.h"
+#include "gradient_volume.h"
 
 #include "affinity/affinity.h"
 
@@ -87,12 +89,12 @@ static void set_materials(skg_scene *scene, int64_t parts) {
     }
 }
 
-static skg_plan *make_plan(skg_context *context, skg_scene *scene, const settings *set) {
+static skg_plan *make_plan(skg_context *context, skg_scene *scene, const settings *set, long size) {
     skg_plan_options options;
     skg_view view;
     skg_spectrum *beam = thorax_beam();
     skg_plan *plan = NULL;
-    thorax_view(set->size, &view);
+    thorax_view(size, &view);
     skg_plan_options_init(&options);
     options.overlaps = 0;
     options.tolerance = set->tolerance ? 1e-4 : 0;
@@ -113,12 +115,13 @@ static double **make_vertices(const bench_thorax *thorax) {
 }
 
 static void compare(const settings *set, const bench_thorax *thorax, skg_plan *plan, FILE *csv) {
-    static const char *const names[4] = {"image", "image, poses, source, detector",
+    static const char *const names[4] = {"image", "image, poses, source, detector, densities",
                                          "the same and all vertices", "image, along a pose"};
     double *adjoint = bench_alloc((size_t)(set->size * set->size), sizeof *adjoint), view[9];
     double *derivative = bench_alloc((size_t)(set->size * set->size), sizeof *derivative);
     double *twists = bench_alloc((size_t)(6 * thorax->parts), sizeof *twists);
     double **vertices = make_vertices(thorax);
+    double *densities = bench_alloc((size_t)thorax->parts, sizeof *densities);
     contender all[4] = {0};
     bench_times times[4] = {0};
     const bench_frame frames[4] = {frame, frame, frame, frame};
@@ -135,6 +138,7 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
         c->adjoint.channels = 1, c->adjoint.rows = c->adjoint.columns = set->size, c->adjoint.data = adjoint;
         skg_gradient_init(&c->gradient);
         c->gradient.poses = bench_alloc((size_t)(6 * thorax->parts), sizeof(double));
+        c->gradient.densities = densities;
         c->gradient.source = view, c->gradient.detector = view + 3;
         if (k == 2) c->gradient.vertices = vertices;
         skg_direction_init(&c->direction);
@@ -154,7 +158,44 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
     for (int64_t p = 0; p < thorax->parts; p++) free(vertices[p]);
     free(vertices);
     free(twists);
+    free(densities);
     free(derivative);
+    free(adjoint);
+}
+
+enum { SMALL = 200 };
+
+/* Image and gradient of all poses against those through a volume by one pose. */
+static void compare_volume(const settings *set, const bench_thorax *thorax, skg_plan *plan, FILE *csv) {
+    double *adjoint = bench_alloc((size_t)SMALL * SMALL, sizeof *adjoint);
+    float *image = bench_alloc((size_t)SMALL * SMALL, sizeof *image);
+    contender ours = {.plan = plan, .wants = 1};
+    volume_work volume = {.size = 480, .adjoint = adjoint};
+    bench_times times[2] = {0};
+    const bench_frame frames[2] = {frame, volume_frame};
+    void *const who[2] = {&ours, &volume};
+    for (long p = 0; p < SMALL * SMALL; p++) adjoint[p] = 1e-6 * (double)(p % 7 - 3);
+    volume.cells = bench_alloc((size_t)VOLUME_SIDE * VOLUME_SIDE * VOLUME_SIDE, sizeof *volume.cells);
+    volume_fill(&volume);
+    thorax_view(SMALL, &volume.view);
+    skg_output_init(&ours.output);
+    skg_adjoint_init(&ours.adjoint);
+    skg_gradient_init(&ours.gradient);
+    ours.output.data = image;
+    ours.adjoint.channels = 1, ours.adjoint.rows = ours.adjoint.columns = SMALL, ours.adjoint.data = adjoint;
+    ours.gradient.poses = bench_alloc((size_t)(6 * thorax->parts), sizeof(double));
+    bench_interleave(2, frames, who, (int)(set->repeats + 4) / 5, 5, times);
+    const double ratio = bench_least(&times[1]) / bench_least(&times[0]);
+    printf(
+        "\n%d x %d pixels: image and gradient of all poses %.4g ms; of one pose of a volume with %d points a ray %.4g ms, "
+        "%.1f times.\n",
+        SMALL, SMALL, bench_least(&times[0]), VOLUME_POINTS, bench_least(&times[1]), ratio);
+    if (csv)
+        fprintf(csv, "\"volume, 200 x 200\",%.5g,%.5g,%.3f\n", bench_least(&times[1]),
+                bench_median(&times[1]), ratio);
+    free(ours.gradient.poses);
+    free(volume.cells);
+    free(image);
     free(adjoint);
 }
 
@@ -168,11 +209,14 @@ int main(int count, char **words) {
     thorax_make(set.triangles, THORAX_CLOSED, &thorax);
     skg_scene *scene = thorax_scene(context, &thorax);
     set_materials(scene, thorax.parts);
-    skg_plan *plan = make_plan(context, scene, &set);
+    skg_plan *plan = make_plan(context, scene, &set, set.size);
     printf("Thorax of %lld parts, %lld triangles; detector %ld x %ld; tolerance %s.\n\n",
            (long long)thorax.parts, (long long)thorax.triangles, set.size, set.size,
            set.tolerance ? "1e-4" : "0 (every energy)");
     compare(&set, &thorax, plan, csv);
+    skg_plan *small = make_plan(context, scene, &set, SMALL);
+    compare_volume(&set, &thorax, small, csv);
+    skg_plan_release(&small);
     if (csv && fclose(csv) != 0) bench_die("%s could not be written", set.csv);
     skg_plan_release(&plan);
     skg_scene_release(&scene);

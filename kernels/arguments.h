@@ -94,7 +94,10 @@
     X(GRADIENT_FACES, starts) X(GRADIENT_FACES, hits) X(GRADIENT_FACES, slopes) \
     X(GRADIENT_FACES, face_slopes)
 
-#define SKG_ARGUMENTS_GRADIENT_MOST(X) X(GRADIENT_MOST, args) X(GRADIENT_MOST, weights) X(GRADIENT_MOST, most)
+#define SKG_ARGUMENTS_GRADIENT_BATCHES(X) \
+    X(GRADIENT_BATCHES, args) X(GRADIENT_BATCHES, corners) X(GRADIENT_BATCHES, projected) X(GRADIENT_BATCHES, parts) \
+    X(GRADIENT_BATCHES, blocks) X(GRADIENT_BATCHES, contributions) X(GRADIENT_BATCHES, weights) \
+    X(GRADIENT_BATCHES, scales) X(GRADIENT_BATCHES, moments)
 
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
     X(COUNT_BAD_ROWS, layout) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \
@@ -130,7 +133,7 @@
 
 #define SKG_ARGUMENTS_WEIGHTS(X) \
     X(WEIGHTS, args) X(WEIGHTS, copies) X(WEIGHTS, used) X(WEIGHTS, coefficients) X(WEIGHTS, weights_of_nodes) \
-    X(WEIGHTS, lists) X(WEIGHTS, polynomials) X(WEIGHTS, tables) X(WEIGHTS, adjoint) X(WEIGHTS, weights)
+    X(WEIGHTS, lists) X(WEIGHTS, polynomials) X(WEIGHTS, tables) X(WEIGHTS, adjoint) X(WEIGHTS, weights) X(WEIGHTS, most)
 
 #define SKG_ARGUMENTS_LOGARITHM(X) X(LOGARITHM, image) X(LOGARITHM, output)
 
@@ -169,7 +172,7 @@
     X(RASTER_BANDS, skg_raster_bands) X(RASTER_HALF, skg_raster_half) X(SOURCE_PLANE, skg_source_plane) \
     X(HITS_LIST, skg_hits_list) X(HITS_SOURCE_PLANE, skg_hits_source_plane) X(HITS_PLACE, skg_hits_place) \
     X(HITS_SETTLE, skg_hits_settle) X(HITS_SLOPES, skg_hits_slopes) \
-    X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_MOST, skg_gradient_most) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
+    X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_BATCHES, skg_gradient_batches) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \
     X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(WEIGHTS, skg_weights) X(LOGARITHM, skg_logarithm) \
     X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(DETECT, skg_detect) X(SCATTER, skg_scatter) X(SCATTERED, skg_scattered) \

@@ -3,8 +3,9 @@
  * When corner k of a face moves by dv_k, the path parameter of a hit moves by dt = (t / h) n . sum of b_k dv_k, with the face's
  * normal n, the distance h = n . (v_0 - source) and the barycentric coordinates b_k of the hit. In the picture the coordinates
  * are lambda_k, affine in the pixel, and b_k = lambda_k t / t_k. So the derivative by v_k is
- * n / (h t_k) times the sum over hits of (d loss / d t) lambda_k t^2, and three sums for each face are enough: they are made
- * here, as 64-bit integers, whose order does not matter. A parallel beam has b_k = lambda_k and dt = n . sum of b_k dv_k / n . d. */
+ * n / (h t_k) times the sum over hits of (d loss / d t) lambda_k t^2, and three sums for each face are enough, of which the host
+ * makes those with lambda_k: the same with 1, the column and the row. They are 64-bit integers, whose order does not matter. A
+ * parallel beam has b_k = lambda_k and dt = n . sum of b_k dv_k / n . d. */
 
 /* Adds to a 64-bit sum in memory: a pair of 32-bit words, low word first. */
 static void skg_add_moment(__global ulong *place, long value) {
@@ -70,50 +71,56 @@ static skg_real skg_slope_of(const skg_gathering *g, int column, int row, skg_re
 }
 #endif
 
-/* d loss / d q of a hit of a part, q as skg_depth returns it. */
-static skg_real skg_weight_of(const skg_gathering *g, const skg_range *range, int column, int row, skg_real q,
-                              int negative) {
+/* d loss / d q of a hit of a part but for priorities. */
+static skg_real skg_weight_of(const skg_gathering *g, const skg_range *range, int column, int row, int negative) {
+    if (SKG_SLOPES_ALONE) return 0;
     __global const skg_real *at = g->weights + (long)row * g->args->stride + column;
     skg_real weight = 0;
     for (int w = 0; w < (!SKG_LISTED ? 1 : range->contributions); w++) {
         __global const skg_contribution *contribution = &g->contributions[range->first_contribution + w];
         weight = fma(contribution->weight, at[(long)contribution->plane * g->args->plane], weight);
     }
-    weight = negative ? -weight : weight;
-#if SKG_PRIORITY
-    if (g->slot >= 0) weight += skg_slope_of(g, column, row, q, negative != 0);
-#endif
-    return weight;
+    return negative ? -weight : weight;
 }
 
 /* Adds the hits of a row of a face to its moments; with SKG_FORWARD to the sums of their pixels instead. */
 static void skg_gather_row(const skg_gathering *g, const skg_range *range, const skg_face *f, const skg_shares *shares,
                            const skg_box *box, int row, skg_real scale, long *moments) {
     skg_line line;
+    (void)shares, (void)moments; /* of one of the two */
     skg_row(f, (skg_real)row, &line);
     const int negative = skg_negative(f, &line);
     const int2 columns = skg_columns_of(&line, box);
     const skg_real end = SKG_PARALLEL ? range->highest : range->highest / (1 - range->highest);
+#if SKG_FORWARD
     const skg_real above = (skg_real)row - shares->y;
     const skg_real first1 = shares->j1 * above, first2 = shares->j2 * above;
+#endif
     for (int column = columns.x; column < columns.y; column++) {
         if (!skg_hit(&line, (skg_real)column)) continue;
         const skg_real q = skg_depth(f, &line, (skg_real)column);
         if (q >= end) continue; /* the path ends at the pixel, wherever the face is */
-        skg_real weight = skg_weight_of(g, range, range->pixel_i + column, range->pixel_j + row, q, negative);
-        if (!SKG_PARALLEL) weight *= (1 + q) * (1 + q); /* t / reference = 1 + q */
+        /* t / reference = 1 + q. A unit is far below the last bit of a hit, so that it does not matter how it is rounded. */
+        const skg_real deep = SKG_PARALLEL ? 1 : (1 + q) * (1 + q);
+        const skg_real weight = skg_weight_of(g, range, range->pixel_i + column, range->pixel_j + row, negative);
+#if SKG_PRIORITY
+        const skg_real lost =
+            g->slot < 0 ? 0 : skg_slope_of(g, range->pixel_i + column, range->pixel_j + row, q, negative != 0);
+#else
+        const skg_real lost = 0;
+#endif
+#if SKG_FORWARD
         const skg_real past = (skg_real)column - shares->x;
         const skg_real share1 = clamp(fma(shares->i1, past, first1), (skg_real)0, (skg_real)1);
         const skg_real share2 = clamp(fma(shares->i2, past, first2), (skg_real)0, (skg_real)1);
-        weight *= scale; /* a unit is far below the last bit of a hit, so that it does not matter how it is rounded */
-#if SKG_FORWARD
         const skg_real slope = fma(share1, g->slopes_of_face[1], fma(share2, g->slopes_of_face[2], g->slopes_of_face[0]));
         const long pixel = (long)(range->pixel_j + row) * g->args->layout.columns + range->pixel_i + column;
-        skg_add_moment(g->pixels + pixel, (long)(weight * slope));
+        skg_add_moment(g->pixels + pixel, (long)((weight + lost) * deep * scale * slope));
 #else
-        moments[0] += (long)weight;
-        moments[1] += (long)(weight * share1);
-        moments[2] += (long)(weight * share2);
+        const long worth = (long)(weight * deep * scale) + (long)(lost * deep * scale);
+        moments[0] += worth;
+        moments[1] += worth * column;
+        moments[2] += worth * row;
 #endif
     }
 }
@@ -142,7 +149,8 @@ SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_rea
  * weights   [planes][plane] of skg_weights
  * scales    [parts] units of a moment for 1; 0: the part is left out
  * moments   [triangles][3] 0 before: the sum of weights of the hits, times t^2 over the square of the part's reference; and the
- *           same times lambda_1 and lambda_2; SKG_EDGE_ON first of a face that is seen as a line
+ *           same times column and row from the part's own pixel; SKG_EDGE_ON first of a face that is seen as a line.
+ *           With SKG_SLOPES_ALONE they are added to
  *           With SKG_FORWARD: [rows][columns] the sums over the hits of a pixel of weight times the slope of the hit
  * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY
  * face_slopes   [triangles][3] slopes at the corners; SKG_FORWARD */
@@ -164,11 +172,16 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
     if (range.contributions == 0 || scale == 0) return;
     if (skg_is_edge_on(a, b, c)) {
-        if (!SKG_FORWARD && get_global_id(1) == 0) moments[3 * (long)triangle] = SKG_EDGE_ON;
+        if (!SKG_FORWARD && !SKG_SLOPES_ALONE && get_global_id(1) == 0) moments[3 * (long)triangle] = SKG_EDGE_ON;
         return;
     }
-    if (!skg_bounds(a, b, c, skg_window(&range, 0, 0, args.layout.columns, args.layout.rows), range.shift, &box))
-        return;
+#if SKG_SLOPES_ALONE
+    if (slots[range.number] < 0) return;
+    const int4 window = skg_window(&range, args.window[0], args.window[1], args.window[2], args.window[3]);
+#else
+    const int4 window = skg_window(&range, 0, 0, args.layout.columns, args.layout.rows);
+#endif
+    if (!skg_bounds(a, b, c, window, range.shift, &box)) return;
     skg_gathering g;
     g.contributions = contributions;
     g.weights = weights;
@@ -191,20 +204,4 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
 #if !SKG_FORWARD
     for (int k = 0; k < 3; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
 #endif
-}
-
-/* The largest magnitude of each row of each plane of weights: most[plane][row]. */
-__kernel void skg_gradient_most(skg_gradient_args args, __global const skg_real *weights, __global skg_real *most) {
-    const int row = (int)get_global_id(0), plane = (int)get_global_id(1);
-    if (row >= args.layout.rows || plane >= args.planes) return;
-    __global const skg_real *from = weights + (long)plane * args.plane + (long)row * args.stride;
-    skg_realv largest = (skg_realv)(0);
-    for (int column = 0; column < args.stride; column += SKG_WIDE) {
-        const skg_realv here = fabs(SKG_LOAD_GLOBAL_V(realv, from + column));
-        largest = here <= largest ? largest : here; /* NaN stays */
-    }
-    skg_real lanes[SKG_WIDE], result = 0;
-    SKG_STORE_V(realv, largest, lanes);
-    for (int k = 0; k < SKG_WIDE; k++) result = lanes[k] <= result ? result : lanes[k];
-    most[plane * args.layout.rows + row] = result;
 }

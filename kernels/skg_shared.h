@@ -131,7 +131,7 @@ typedef struct {
     SKG_INT parts, part, count, reserved;
 } skg_leaky_args;
 
-/* Of skg_gradient_faces, skg_gradient_most and skg_hits_slopes. Weights have rows of `stride` elements, and planes of `plane`.
+/* Of skg_gradient_faces, skg_gradient_batches and skg_hits_slopes. Weights have rows of `stride` elements, and planes of `plane`.
  * window: as in skg_hits_args. */
 typedef struct {
     skg_raster_layout layout;

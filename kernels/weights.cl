@@ -1,6 +1,13 @@
 /* The transpose of attenuate.cl: from the derivative of a loss by the image to those by the sums. With x_p the mm of plane p,
  * the intensity of a channel is sum over n of weight_n 2^(power_n), and d 2^(power_n) / d x_p = ln 2 coefficient_np 2^(power_n). */
 
+/* Planes of accumulators. */
+#if SKG_SUMS
+#define SKG_WEIGHED SKG_SUMS
+#else
+#define SKG_WEIGHED SKG_SUMMED
+#endif
+
 /* The derivatives of the runs by what their channels show; 0 behind the end of a row. */
 static void skg_read_adjoint(const skg_strip *strip, __global const skg_real *adjoint,
                              skg_realv slope[SKG_CHANNELS][SKG_RUNS]) {
@@ -8,6 +15,10 @@ static void skg_read_adjoint(const skg_strip *strip, __global const skg_real *ad
     SKG_EACH_CHANNEL {
         __global const skg_real *from = adjoint + ((long)c * down + strip->row / SKG_FINE) * across;
         SKG_EACH_RUN {
+            if (SKG_FINE == 1 && strip->column + (r + 1) * SKG_WIDE <= columns) {
+                slope[c][r] = SKG_LOAD_GLOBAL_V(realv, from + strip->column + r * SKG_WIDE);
+                continue;
+            }
             skg_real lanes[SKG_WIDE];
             for (int k = 0; k < SKG_WIDE; k++) {
                 const int column = strip->column + r * SKG_WIDE + k;
@@ -52,24 +63,45 @@ static void skg_unfinish(const skg_strip *strip, const skg_pixels *pixels, skg_r
 #endif
 }
 
-/* Adds up the derivatives by the mm of the planes, and by the logarithm of the intensity. */
-static void skg_add_slopes(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS],
-                           skg_realv total[SKG_SUMMED][SKG_RUNS], skg_realv *shown) {
-    for (int n = 0; n < strip->args.nodes; n++) {
-        __constant const skg_real *coefficient = strip->coefficients + n * SKG_PLANES;
+/* Nodes that are added to the planes together, so that sums of many planes are loaded and stored more seldom. */
+#define SKG_TOGETHER 8
+
+/* The derivatives by the logarithm of the intensity of nodes first to first + count - 1, times ln 2; they are added to `shown`. */
+static void skg_slopes_of_nodes(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS],
+                                int first, int count, skg_realv node[SKG_TOGETHER][SKG_RUNS], skg_realv *shown) {
+    for (int n = 0; n < count; n++) {
         skg_realv power[SKG_RUNS];
-        skg_exponents(coefficient, pixels, power);
+        skg_exponents(strip->coefficients + (first + n) * SKG_PLANES, pixels, power);
         SKG_EACH_RUN {
 #if SKG_SHOW == SKG_SHOW_LOGARITHM
             power[r] -= pixels->highest[r];
 #endif
             skg_realv weight = (skg_realv)(0);
-            SKG_EACH_CHANNEL weight = fma((skg_realv)(strip->weights[n * SKG_CHANNELS + c]), slope[c][r], weight);
+            SKG_EACH_CHANNEL
+            weight = fma((skg_realv)(strip->weights[(first + n) * SKG_CHANNELS + c]), slope[c][r], weight);
             weight *= skg_exp2_v(power[r]);
             shown[r] += weight;
-            power[r] = weight * (skg_real)SKG_LN2;
+            node[n][r] = weight * (skg_real)SKG_LN2;
         }
-        SKG_EACH_SUMMED SKG_EACH_RUN total[p][r] = fma((skg_realv)(coefficient[p]), power[r], total[p][r]);
+    }
+}
+
+/* Adds up the derivatives by the mm of the planes that are needed, and by the logarithm of the intensity. */
+static void skg_add_slopes(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS],
+                           const uchar *needed, skg_realv total[SKG_SUMMED][SKG_RUNS], skg_realv *shown) {
+    for (int first = 0; first < strip->args.nodes; first += SKG_TOGETHER) {
+        const int count = min(SKG_TOGETHER, strip->args.nodes - first);
+        skg_realv node[SKG_TOGETHER][SKG_RUNS];
+        skg_slopes_of_nodes(strip, pixels, slope, first, count, node, shown);
+        SKG_EACH_SUMMED {
+            if (!needed[p]) continue;
+            __constant const skg_real *coefficient = strip->coefficients + first * SKG_PLANES + p;
+            skg_realv sum[SKG_RUNS];
+            SKG_EACH_RUN sum[r] = total[p][r];
+            for (int n = 0; n < count; n++)
+                SKG_EACH_RUN sum[r] = fma((skg_realv)(coefficient[n * SKG_PLANES]), node[n][r], sum[r]);
+            SKG_EACH_RUN total[p][r] = sum[r];
+        }
     }
 }
 #endif
@@ -81,7 +113,41 @@ static void skg_put_weights(const skg_strip *strip, int plane, const skg_realv *
     SKG_EACH_RUN SKG_STORE_GLOBAL_V(realv, values[r], place + r * SKG_WIDE);
 }
 
-static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjoint, __global skg_real *weights, int planes) {
+/* Whether the runs meet the extent of a plane of accumulators. Elsewhere it has no hits, and its weights are not written. */
+static int skg_meets(const skg_strip *strip, int plane) {
+    const int4 extent =
+        vload4(0, strip->used + SKG_EXTENT(strip->args.layout.copies, strip->args.layout.first_plane + plane));
+    return strip->row >= extent.x && strip->row < extent.y && strip->column < extent.w &&
+           strip->column + SKG_RUNS * SKG_WIDE > extent.z;
+}
+
+/* Writes a plane of accumulators, for a unit of which a mm has `values`, and keeps the largest magnitude; NaN stays. */
+static void skg_put_sums(const skg_strip *strip, int plane, const skg_realv *values, const skg_realv *unit,
+                         __global skg_real *weights, skg_realv *most) {
+    skg_realv scaled[SKG_RUNS];
+    SKG_EACH_RUN {
+        scaled[r] = values[r] * unit[r];
+        const skg_realv here = fabs(scaled[r]);
+        most[plane] = here <= most[plane] ? most[plane] : here;
+    }
+    skg_put_weights(strip, plane, scaled, weights);
+}
+
+/* Which planes parts of accumulators make that have hits in the runs. In the others no length changes, but for the world's. */
+static void skg_find_needed(const skg_strip *strip, uchar *needed) {
+    for (int p = 0; p < SKG_SUMMED; p++) needed[p] = SKG_WEIGH_PLANES || (SKG_WORLD && p == strip->args.world_plane);
+#if SKG_SUMS
+    for (int s = 0; s < SKG_SUMS; s++) {
+        if (!skg_meets(strip, s)) continue;
+        for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= strip->lists[s * SKG_SUMMED + p] != 0;
+    }
+#else
+    for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= skg_meets(strip, p);
+#endif
+}
+
+static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjoint, __global skg_real *weights,
+                           skg_realv *most) {
     skg_pixels pixels;
     skg_realv slope[SKG_CHANNELS][SKG_RUNS], total[SKG_SUMMED][SKG_RUNS], unit[SKG_RUNS], path[SKG_RUNS], shown[SKG_RUNS];
     skg_read_planes(strip, &pixels);
@@ -102,7 +168,9 @@ static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjo
     skg_add_nodes(strip, &pixels);
 #endif
     SKG_EACH_RUN skg_unfinish(strip, &pixels, slope, r);
-    skg_add_slopes(strip, &pixels, slope, total, shown);
+    uchar needed[SKG_SUMMED];
+    skg_find_needed(strip, needed);
+    skg_add_slopes(strip, &pixels, slope, needed, total, shown);
 #endif
     SKG_EACH_SUMMED SKG_EACH_RUN path[r] = fma(total[p][r], pixels.x[p][r], path[r]);
 #if SKG_WEIGH_PLANES
@@ -115,44 +183,58 @@ static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjo
     }
 #if SKG_SUMS
     for (int s = 0; s < SKG_SUMS; s++) {
+        if (!skg_meets(strip, s)) continue;
         skg_realv sum[SKG_RUNS];
         SKG_EACH_RUN sum[r] = (skg_realv)(0);
-        SKG_EACH_SUMMED SKG_EACH_RUN sum[r] = fma((skg_realv)(strip->lists[s * SKG_SUMMED + p]), total[p][r], sum[r]);
-        SKG_EACH_RUN sum[r] *= unit[r];
-        skg_put_weights(strip, s, sum, weights);
+        SKG_EACH_SUMMED {
+            const skg_real share = strip->lists[s * SKG_SUMMED + p];
+            if (share == 0) continue; /* true of most */
+            SKG_EACH_RUN sum[r] = fma((skg_realv)(share), total[p][r], sum[r]);
+        }
+        skg_put_sums(strip, s, sum, unit, weights, most);
     }
 #else
-    SKG_EACH_SUMMED {
-        SKG_EACH_RUN total[p][r] *= unit[r];
-        skg_put_weights(strip, p, total[p], weights);
-    }
+    SKG_EACH_SUMMED if (skg_meets(strip, p)) skg_put_sums(strip, p, total[p], unit, weights, most);
 #endif
-    skg_put_weights(strip, planes, path, weights);
-    skg_put_weights(strip, planes + 1, shown, weights);
+    skg_put_weights(strip, SKG_WEIGHED, path, weights);
+    skg_put_weights(strip, SKG_WEIGHED + 1, shown, weights);
 }
 
-SKG_APART void skg_weigh_strip(const skg_strip *whole, __global const skg_real *adjoint, __global skg_real *weights, int planes) {
+/* most: [planes], a plane's being `step` behind that of the plane before */
+SKG_APART void skg_weigh_strip(const skg_strip *whole, __global const skg_real *adjoint, __global skg_real *weights,
+                               __global skg_real *most, int step) {
     skg_strip strip = *whole; /* a copy that stores cannot alias */
+    skg_realv largest[SKG_WEIGHED];
+    for (int p = 0; p < SKG_WEIGHED; p++) largest[p] = (skg_realv)(0);
     const int end = min(strip.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, strip.args.layout.columns);
     for (int row = 0; row < SKG_FINE; row++, strip.row++)
         for (strip.column = whole->column; strip.column < end; strip.column += SKG_RUNS * SKG_WIDE)
-            skg_weigh_runs(&strip, adjoint, weights, planes);
+            skg_weigh_runs(&strip, adjoint, weights, largest);
+    for (int p = 0; p < SKG_WEIGHED && !SKG_WEIGH_PLANES; p++) {
+        skg_real lanes[SKG_WIDE], result = 0;
+        SKG_STORE_V(realv, largest[p], lanes);
+        for (int k = 0; k < SKG_WIDE; k++) result = lanes[k] <= result ? result : lanes[k];
+        most[(long)p * step] = result;
+    }
 }
 
 /* Arguments and work-items as of skg_attenuate, but for the last two buffers; `args.image` is the layout of the weights.
  *
  * adjoint   [channels][rows][columns] of the image: d loss / d what a pixel shows
- * weights   [planes + 2][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators; then the sum over planes
+ * weights   [planes + 2][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators, within its extent; then the sum over planes
  *           of mm times d loss / d mm; then d loss / d logarithm of the intensity. With SKG_WEIGH_PLANES instead: d loss / d mm
- *           of each plane that is mixed from accumulators */
+ *           of each plane that is mixed from accumulators, and nothing else
+ * most      [planes][work-items] the largest magnitudes of the weights of accumulators */
 __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copies, __global const int *used,
                           __constant const skg_real *coefficients, __constant const skg_real *weights_of_nodes,
                           __constant const skg_real *lists, __constant const skg_real *polynomials,
-                          __global const skg_real *tables, __global const skg_real *adjoint, __global skg_real *weights) {
+                          __global const skg_real *tables, __global const skg_real *adjoint, __global skg_real *weights,
+                          __global skg_real *most) {
+    const int strips = (args.layout.columns + SKG_WIDE * SKG_RUNS * SKG_STRIP - 1) / (SKG_WIDE * SKG_RUNS * SKG_STRIP);
     skg_strip strip;
     strip.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
     strip.row = SKG_FINE * (int)get_global_id(1);
-    if (strip.row >= args.layout.rows) return;
+    if (strip.row >= args.layout.rows || (int)get_global_id(0) >= strips) return;
     strip.args = args;
     strip.copies = copies;
     strip.used = used;
@@ -161,5 +243,6 @@ __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copie
     strip.lists = lists;
     strip.polynomials = polynomials;
     strip.tables = tables;
-    skg_weigh_strip(&strip, adjoint, weights, SKG_SUMS ? SKG_SUMS : SKG_SUMMED);
+    skg_weigh_strip(&strip, adjoint, weights, most + (long)get_global_id(1) * strips + get_global_id(0),
+                    strips * (args.layout.rows / SKG_FINE));
 }

@@ -1,6 +1,8 @@
 #include "frame/derivative_pass.h"
 
+#include "core/parallel.h"
 #include "core/vector.h"
+#include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
 #include "geometry/slopes.h"
 #include "spectral/quantity.h"
@@ -57,27 +59,45 @@ static void find_beam(const skg_view *view, const skg_camera *camera, const skg_
     skg_add_scaled(moves, -skg_dot(moves, d) / skg_dot(d, d), d, v->beam);
 }
 
-/* The slopes of the faces of all parts. */
+/* The slopes of the faces of all parts, a part an item. */
+typedef struct {
+    const skg_pass *pass;
+    const skg_velocities *of_view;
+    const skg_direction *direction;
+    skg_face_moments *faces; /* [parts] */
+    double **slopes;         /* [parts] */
+} slopes_work;
+
+static skg_status find_part(void *user, int64_t part) {
+    const slopes_work *w = user;
+    const skg_direction *direction = w->direction;
+    const double reference = w->pass->parts[part].reference;
+    skg_velocities v = *w->of_view;
+    if (direction->poses) memcpy(v.pose, direction->poses + 6 * part, sizeof v.pose);
+    if (direction->vertices) v.vertices = direction->vertices[part];
+    skg_slopes_find(&w->faces[part], &v, w->pass->camera.parallel || !(reference > 0) ? 1 : reference,
+                    w->slopes[part]);
+    return SKG_OK;
+}
+
 static skg_status find_slopes(skg_job *job, const skg_pass *pass, const skg_velocities *of_view,
                               double *slopes) {
     const skg_geometry *geometry = &job->machine->geometry;
-    const skg_direction *direction = &job->gradient->direction;
-    for (int64_t p = 0, first = 0; p < pass->scene->count; p++) {
-        const int64_t mesh = geometry->mesh_of_part[p];
-        const double reference = pass->parts[p].reference;
-        skg_velocities v = *of_view;
-        skg_face_moments faces = {.camera = &pass->camera,
-                                  .mesh = job->recipe->meshes.meshes[mesh],
-                                  .pose = pass->parts[p].pose,
-                                  .source = geometry->layouts[mesh].source};
-        if (direction->poses) memcpy(v.pose, direction->poses + 6 * p, sizeof v.pose);
-        if (direction->vertices) v.vertices = direction->vertices[p];
-        SKG_TRY(skg_gradient_find_corners(job, mesh, &faces.corners));
-        skg_slopes_find(&faces, &v, pass->camera.parallel || !(reference > 0) ? 1 : reference,
-                        slopes + 3 * first);
-        first += geometry->layouts[mesh].triangles;
+    const int64_t parts = pass->scene->count;
+    slopes_work w = {.pass = pass, .of_view = of_view, .direction = &job->gradient->direction};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.faces, "derivative", &w.faces));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.slopes, "derivative", &w.slopes));
+    for (int64_t p = 0; p < parts; p++) {
+        w.slopes[p] = slopes;
+        slopes += 3 * geometry->layouts[geometry->mesh_of_part[p]].triangles;
+        SKG_TRY_CLEANUP(skg_gradient_place_faces(job, pass, p, &w.faces[p]));
     }
-    return SKG_OK;
+    status = skg_parallel(parts, find_part, &w);
+cleanup:
+    skg_free(&w.faces);
+    skg_free(&w.slopes);
+    return status;
 }
 
 /* What changes besides the lengths: those of whole rays, the falloff, and the photons of an absolute beam. */

@@ -139,10 +139,11 @@ static skg_status update_meshes(skg_job *job) {
 }
 
 /* Enqueues the raster of all parts, and what priorities and leaky parts change in its sums. */
-static skg_status enqueue_sums(skg_job *job, const skg_pass *pass) {
+static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const skg_pass *pass) {
     skg_machine *machine = job->machine;
     const skg_recipe *recipe = job->recipe;
     skg_stage_log *log = &job->staging.log;
+    const int is_image = work->lengths_of < 0;
     const skg_leaky_parts leaky = {.count = recipe->leaky_count,
                                    .parts = recipe->leaky,
                                    .repair = recipe->options.repair,
@@ -153,12 +154,17 @@ static skg_status enqueue_sums(skg_job *job, const skg_pass *pass) {
     SKG_TRY(skg_geometry_project(machine->context, &machine->geometry,
                                  skg_raster_projection(pass->main.raster), &pass->camera, pass->parts,
                                  pass->scale.scale, log));
+    /* The gradient of a frame that was rendered last needs its vertices, but no sums besides those that stand there. */
+    if (job->gradient && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
     SKG_TRY(skg_staging_take(&job->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
     skg_pass_extents(pass, extents);
     SKG_TRY(skg_raster_run(pass->main.raster, &machine->geometry, extents, log));
     if (pass->priority.count) SKG_TRY(skg_hits_run(pass, &machine->geometry, &machine->hits, &job->staging));
-    if (leaky.count == 0) return SKG_OK;
+    if (leaky.count == 0) {
+        if (is_image) skg_raster_keep(pass->main.raster, &machine->geometry);
+        return SKG_OK;
+    }
     return skg_leaky_run(&leaky, pass, &machine->geometry, &machine->rasters, &machine->leaky,
                          &job->results.leaky, &job->staging);
 }
@@ -237,7 +243,7 @@ static skg_status add_density(skg_job *job, const skg_frame_work *work, int64_t 
     lengths.kind = SKG_LENGTHS_NET;
     SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, &lengths, number, &job->machine->pass, &pass));
     SKG_TRY_CLEANUP(pin_raster(job->recipe, job->machine, number, &pass, 1, job->outcome));
-    SKG_TRY_CLEANUP(enqueue_sums(job, &pass));
+    SKG_TRY_CLEANUP(enqueue_sums(job, &lengths, &pass));
     SKG_TRY_CLEANUP(skg_gradient_place_lengths(job, &pass, &lengths.place));
     pass.fine = 1; /* every ray is shown */
     SKG_TRY_CLEANUP(enqueue_image(job, &lengths, 0, &pass, 0));
@@ -306,14 +312,13 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
         SKG_TRY_CLEANUP(gather(job, &pass, number, g));
         return SKG_OK;
     }
-    SKG_TRY_CLEANUP(enqueue_sums(job, &pass));
+    SKG_TRY_CLEANUP(enqueue_sums(job, work, &pass));
     status =
         job->gradient ? add_gradient(job, work, number, &pass) : enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
-    for (int64_t p = 0; job->gradient && job->gradient->wanted.densities && p < job->recipe->scene->count;
-         p++)
-        if (status == SKG_OK) status = add_density(job, work, number, p);
+    for (int64_t p = 0; job->gradient && job->gradient->needs_lengths && p < job->recipe->scene->count; p++)
+        if (status == SKG_OK && job->gradient->needs_lengths[p]) status = add_density(job, work, number, p);
     return status;
 }
 

@@ -1,4 +1,5 @@
 #include "core/plain.h"
+#include "device/self_tests.h"
 #include "frame/adjoint.h"
 #include "frame/gradient_work.h"
 #include "frame/submission.h"
@@ -197,6 +198,7 @@ static skg_status make_derivative(skg_plan *plan, const skg_frame *frame, const 
     SKG_TRY(skg_plan_renew(plan));
     const skg_recipe *recipe = plan->recipe;
     const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
+    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
     if (work.direction.source || work.direction.detector) work.wanted.source = any; /* for the checks */
     const skg_status status = derive(call, plan, frame, &work);
     if (status == SKG_OK) memcpy(derivative, work.derivative, (size_t)count * sizeof *derivative);
@@ -229,8 +231,10 @@ static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const sk
     SKG_TRY(skg_plan_renew(plan));
     const skg_scene *scene = plan->recipe->scene;
     SKG_TRY(check_wanted(call, plan->recipe, &plan->machine, &work.wanted));
+    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
     SKG_TRY_CLEANUP(skg_alloc(6 * scene->count, sizeof *work.poses, "gradient", &work.poses));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.densities, "gradient", &work.densities));
+    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.needs_lengths, "gradient", &work.needs_lengths));
     SKG_TRY_CLEANUP(find_adjoint(call, plan, frame, adjoint, &work.wanted, &work.adjoint));
     clear_vertices(scene, &work.wanted);
     SKG_TRY_CLEANUP(run(plan, frame, &work));
@@ -239,6 +243,7 @@ cleanup:
     skg_free(&work.adjoint);
     skg_free(&work.poses);
     skg_free(&work.densities);
+    skg_free(&work.needs_lengths);
     skg_free(&work.planes);
     return status;
 }

@@ -4,6 +4,14 @@
 
 #include "frame/gradient_work.h"
 
+/* Adds the densities of a pass that take no path lengths, and marks the others in gradient->needs_lengths. sums: [parts] of the
+ * gather of the pass */
+skg_status skg_gradient_add_densities(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
+                                      const skg_force_sums *sums);
+
+/* Whether any density takes path lengths. */
+int skg_gradient_needs_lengths(const struct skg_gradient_work *gradient, int64_t parts);
+
 /* Reads the derivatives by the mm of the planes, which machine->gradient.weights holds. */
 skg_status skg_gradient_keep_planes(skg_job *job, const skg_pass *pass);
 

@@ -1,7 +1,9 @@
 #include "frame/gradient_pass.h"
 
+#include "core/parallel.h"
 #include "core/vector.h"
 #include "frame/gradient_density.h"
+#include "frame/gradient_faces.h"
 #include "spectral/quantity.h"
 
 #include <string.h>
@@ -21,98 +23,16 @@ static skg_status send_adjoint(skg_job *job, const struct skg_gradient_work *wor
                             rounded, "adjoint");
 }
 
-/* --- parts */
-
-skg_status skg_gradient_find_corners(skg_job *job, int64_t mesh, const int32_t **corners) {
-    struct skg_gradient_work *gradient = job->gradient;
-    if (!gradient->corners)
-        SKG_TRY(skg_staging_take(&job->staging, job->recipe->meshes.count, sizeof *gradient->corners,
-                                 "gradient", &gradient->corners));
-    if (!gradient->corners[mesh])
-        SKG_TRY(skg_gradient_read_corners(&job->machine->geometry, mesh, &job->staging,
-                                          &gradient->corners[mesh]));
-    *corners = gradient->corners[mesh];
-    return SKG_OK;
-}
-
-/* The weights of a pass on the host, for faces that are seen as lines, and the part that they are asked for. */
-typedef struct {
-    const skg_pass *pass;
-    skg_weight_layout layout;
-    double **planes; /* [layout.planes] NULL: not read */
-    int64_t part;
-} pixel_weights;
-
-/* d loss / d t of a ray: what parts that compete take off is left out. */
-static double weigh_pixel(const void *user, int64_t column, int64_t row) {
-    const pixel_weights *w = user;
-    const skg_geometry_part *part = &w->pass->parts[w->part];
-    double sum = 0;
-    for (int32_t c = 0; c < part->contributions; c++)
-        sum += part->contribution[c].weight *
-               w->planes[part->contribution[c].plane][row * w->layout.stride + column];
-    return part->depth > 0 ? sum * w->pass->scale.scale : 0;
-}
-
-/* Reads the weights of a part if any of its faces is seen as a line. */
-static skg_status read_weights(skg_job *job, const int64_t *moments, int64_t triangles, pixel_weights *w) {
-    const skg_gradient_memory *memory = &job->machine->gradient;
-    const skg_geometry_part *part = &w->pass->parts[w->part];
-    int64_t count = 0;
-    for (int64_t t = 0; t < triangles; t++) count += moments[3 * t] == SKG_EDGE_ON;
-    for (int32_t c = 0; c < part->contributions && count > 0; c++) {
-        const int64_t plane = part->contribution[c].plane;
-        if (w->planes[plane]) continue;
-        SKG_TRY(skg_alloc(w->layout.plane, sizeof **w->planes, "gradient", &w->planes[plane]));
-        SKG_TRY(skg_gradient_read(w->pass, memory->weights.memory, plane * w->layout.plane, w->layout.plane,
-                                  w->planes[plane]));
-    }
-    return SKG_OK;
-}
-
-/* Adds the faces of a part to its twist and vertices, and to the sums of all parts. */
-static skg_status add_part(skg_job *job, const skg_pass *pass, int64_t part, const skg_gathered *gathered,
-                           int64_t first, pixel_weights *weights, skg_force_sums *all) {
-    struct skg_gradient_work *gradient = job->gradient;
-    const skg_geometry *geometry = &job->machine->geometry;
-    const int64_t mesh = geometry->mesh_of_part[part];
-    const skg_gradient *wanted = &gradient->wanted;
-    skg_force_sums sums = {0};
-    skg_face_moments faces = {.camera = &pass->camera,
-                              .mesh = job->recipe->meshes.meshes[mesh],
-                              .pose = pass->parts[part].pose,
-                              .source = geometry->layouts[mesh].source,
-                              .moments = gathered->moments + 3 * first,
-                              .unit = gathered->units[part],
-                              .weight = weigh_pixel,
-                              .weight_user = weights};
-    weights->part = part;
-    SKG_TRY(read_weights(job, faces.moments, geometry->layouts[mesh].triangles, weights));
-    SKG_TRY(skg_gradient_find_corners(job, mesh, &faces.corners));
-    SKG_TRY(skg_forces_add(&faces, &sums, wanted->vertices ? wanted->vertices[part] : NULL));
-    for (int k = 0; k < 3; k++) {
-        gradient->poses[6 * part + k] += sums.force[k];
-        gradient->poses[6 * part + 3 + k] += sums.torque[k];
-        all->force[k] += sums.force[k];
-        all->along[k] += sums.along[k];
-        all->pixel_torque[k] += sums.pixel_torque[k];
-    }
-    return SKG_OK;
-}
-
-static skg_status add_parts(skg_job *job, const skg_pass *pass, const skg_gathered *gathered,
-                            skg_force_sums *all) {
-    const skg_geometry *geometry = &job->machine->geometry;
-    pixel_weights weights = {.pass = pass, .layout = gathered->layout};
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(weights.layout.planes, sizeof *weights.planes, "gradient", &weights.planes));
-    for (int64_t p = 0, first = 0; p < pass->scene->count && status == SKG_OK; p++) {
-        if (gathered->units[p] != 0) status = add_part(job, pass, p, gathered, first, &weights, all);
-        first += geometry->layouts[geometry->mesh_of_part[p]].triangles;
-    }
-    for (int64_t k = 0; k < weights.layout.planes; k++) skg_free(&weights.planes[k]);
-    skg_free(&weights.planes);
-    return status;
+/* Adds the sums of every part to its twist, and to those of all parts. */
+static void add_sums(int64_t parts, const skg_force_sums *sums, double *poses, skg_force_sums *all) {
+    for (int64_t p = 0; p < parts; p++)
+        for (int k = 0; k < 3; k++) {
+            poses[6 * p + k] += sums[p].force[k];
+            poses[6 * p + 3 + k] += sums[p].torque[k];
+            all->force[k] += sums[p].force[k];
+            all->along[k] += sums[p].along[k];
+            all->pixel_torque[k] += sums[p].pixel_torque[k];
+        }
 }
 
 /* --- source and detector */
@@ -138,22 +58,47 @@ static void add_parallel(const skg_view *view, const skg_camera *camera, const s
     }
 }
 
-/* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3.
- *
- * values   of each ray: sum over planes of mm times derivative by mm; derivative by the logarithm of the intensity
- * falls    power of 1 / |D| in the intensities */
-static void add_ray_lengths(const skg_camera *camera, const skg_weight_layout *layout, const double *values,
-                            double falls, ends *e) {
+/* The rays of a pass. values: of each the sum over planes of mm times derivative by mm; derivative by the logarithm of the
+ * intensity. falls: power of 1 / |D| in the intensities. Result of each row: the sums over its rays of what changes with |D|, over
+ * |D|^2; of that times the column; of the derivatives by logarithms. */
+typedef struct {
+    const skg_camera *camera;
+    const skg_weight_layout *layout;
+    const double *values;
+    double falls;
+    double (*rows)[3];
+} ray_sums;
+
+enum { LANES = 4 }; /* sums that do not wait for each other */
+
+static skg_status add_row(void *user, int64_t row) {
+    const ray_sums *s = user;
+    const double *of_paths = s->values + row * s->layout->stride,
+                 *of_intensities = of_paths + s->layout->plane;
+    double first[3], sums[3][LANES] = {{0}};
+    skg_add_scaled(s->camera->first, (double)row, s->camera->row, first);
+    const double square = skg_dot(first, first), twice = 2 * skg_dot(first, s->camera->column),
+                 step = skg_dot(s->camera->column, s->camera->column);
+    for (int64_t c = 0; c < s->camera->columns; c++) {
+        const double column = (double)c, value = of_paths[c] - s->falls * of_intensities[c];
+        const double share = value / (square + column * (twice + column * step));
+        sums[0][c % LANES] += share;
+        sums[1][c % LANES] += share * column;
+        sums[2][c % LANES] += of_intensities[c];
+    }
+    for (int k = 0; k < 3; k++) s->rows[row][k] = sums[k][0] + sums[k][1] + sums[k][2] + sums[k][3];
+    return SKG_OK;
+}
+
+/* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3. */
+static void add_ray_lengths(const ray_sums *s, ends *e, double *intensity) {
+    const skg_camera *camera = s->camera;
     double all[3] = {0}, turn[3];
     for (int64_t r = 0; r < camera->rows; r++) {
-        const double *of_paths = values + r * layout->stride, *of_intensities = of_paths + layout->plane;
-        for (int64_t c = 0; c < camera->columns; c++) {
-            const double value = of_paths[c] - falls * of_intensities[c];
-            double ray[3];
-            for (int k = 0; k < 3; k++)
-                ray[k] = camera->first[k] + (double)c * camera->column[k] + (double)r * camera->row[k];
-            skg_add_scaled(all, value / skg_dot(ray, ray), ray, all);
-        }
+        const double *sums = s->rows[r];
+        for (int k = 0; k < 3; k++)
+            all[k] += sums[0] * (camera->first[k] + (double)r * camera->row[k]) + sums[1] * camera->column[k];
+        *intensity += sums[2];
     }
     /* The pixel is source + ray, so that its lever is that of the source. */
     skg_cross(camera->origin, all, turn);
@@ -226,20 +171,24 @@ static skg_status add_point(skg_job *job, const skg_pass *pass, const skg_force_
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     const int falls = job->machine->images.falloff;
     double *values = NULL;
+    ray_sums sums = {.camera = camera, .layout = &layout, .falls = falls ? 3 : 0};
     skg_status status = SKG_OK;
     for (int k = 0; k < 3; k++) {
         e->source[k] -= all->force[k] - all->along[k];
         e->detector[k] -= all->along[k];
         e->detector[3 + k] -= all->pixel_torque[k];
     }
-    SKG_TRY(skg_alloc(2 * layout.plane, sizeof *values, "gradient", &values));
+    SKG_TRY_CLEANUP(skg_alloc(2 * layout.plane, sizeof *values, "gradient", &values));
+    SKG_TRY_CLEANUP(skg_alloc(camera->rows, sizeof *sums.rows, "gradient", &sums.rows));
     SKG_TRY_CLEANUP(skg_gradient_read(pass, job->machine->gradient.weights.memory,
                                       layout.planes * layout.plane, 2 * layout.plane, values));
-    add_ray_lengths(camera, &layout, values, falls ? 3 : 0, e);
-    for (int64_t p = 0; p < layout.plane; p++) *intensity += values[layout.plane + p];
+    sums.values = values;
+    SKG_TRY_CLEANUP(skg_parallel(camera->rows, add_row, &sums));
+    add_ray_lengths(&sums, e, intensity);
     if (falls) add_distance(camera, camera->origin, camera->first, 3 * *intensity, e);
 cleanup:
     skg_free(&values);
+    skg_free(&sums.rows);
     return status;
 }
 
@@ -285,22 +234,37 @@ skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums
     SKG_TRY(send_adjoint(job, job->gradient));
     SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
     return skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, of_planes,
-                                   memory->adjoint.memory, memory->weights.memory, &job->staging.log);
+                                   memory->adjoint.memory, memory->weights.memory, memory->most.memory,
+                                   &job->staging.log);
+}
+
+/* Everything but the densities that need path lengths. */
+static skg_status add_gathered(skg_job *job, const skg_frame_work *work, int64_t number, const skg_pass *pass,
+                               skg_force_sums *of_parts) {
+    struct skg_gradient_work *gradient = job->gradient;
+    skg_machine *machine = job->machine;
+    skg_gathered gathered;
+    skg_force_sums all = {0};
+    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
+                                &gathered));
+    SKG_TRY(skg_gradient_add_faces(job, pass, &gathered, gradient->wanted.vertices, of_parts));
+    add_sums(pass->scene->count, of_parts, gradient->poses, &all);
+    if (gradient->wanted.source || gradient->wanted.detector)
+        SKG_TRY(add_view(job, work, number, pass, &all));
+    return gradient->wanted.densities ? skg_gradient_add_densities(job, work, pass, of_parts) : SKG_OK;
 }
 
 skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
                                  const skg_pass *pass, const skg_sums *sums, double factor) {
     struct skg_gradient_work *gradient = job->gradient;
-    skg_machine *machine = job->machine;
-    skg_gathered gathered;
-    skg_force_sums all = {0};
+    skg_force_sums *of_parts = NULL;
     SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 0));
-    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
-                                &gathered));
-    SKG_TRY(add_parts(job, pass, &gathered, &all));
-    if (gradient->wanted.source || gradient->wanted.detector)
-        SKG_TRY(add_view(job, work, number, pass, &all));
-    if (!gradient->wanted.densities) return SKG_OK;
+    SKG_TRY(skg_alloc(pass->scene->count, sizeof *of_parts, "gradient", &of_parts));
+    const skg_status status = add_gathered(job, work, number, pass, of_parts);
+    skg_free(&of_parts);
+    SKG_TRY(status);
+    if (!gradient->wanted.densities || !skg_gradient_needs_lengths(gradient, pass->scene->count))
+        return SKG_OK;
     SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
     return skg_gradient_keep_planes(job, pass);
 }

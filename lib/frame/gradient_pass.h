@@ -17,7 +17,4 @@ skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64
 skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
                               int32_t of_planes);
 
-/* The corners of a mesh as the device has them, [triangles][3]; read once for a job. */
-skg_status skg_gradient_find_corners(skg_job *job, int64_t mesh, const int32_t **corners);
-
 #endif

@@ -12,9 +12,10 @@ struct skg_gradient_work {
     skg_gradient wanted;
     /* [layers][channels][rows][columns] by the intensities that the stage `attenuate` shows */
     double *adjoint;
-    double *poses;     /* [parts][6] */
-    double *densities; /* [parts] */
-    double view[9];    /* by the source and by the twist of the detector */
+    double *poses;          /* [parts][6] */
+    double *densities;      /* [parts] */
+    uint8_t *needs_lengths; /* [parts] 1: its density takes the path lengths through it */
+    double view[9];         /* by the source and by the twist of the detector */
     /* [planes of the model][rows][row_stride] by the mm of a pass, if densities are wanted; freed by the caller */
     double *planes;
     int32_t forward; /* 1: the derivative of the image along `direction` instead */
@@ -22,7 +23,6 @@ struct skg_gradient_work {
     skg_direction direction;
     double *derivative; /* [channels][rows][columns] of the intensities */
     int64_t saturated;  /* faces whose slopes were cut off */
-    int32_t **corners;  /* [meshes] as the device has them, read once; NULL: not read */
 };
 
 #endif

@@ -6,13 +6,36 @@
 #include <string.h>
 
 /* Faces that are added up together. The sums of chunks are added in their order, so that the number of threads changes no bit. */
-enum { CHUNK = 4096, FEW_CHUNKS = 8 }; /* threads take as long to start as a few chunks */
+enum { CHUNK = 4096 };
+
+/* Camera and beam in the axes of a mesh. The places of corners are taken from `origin`. */
+typedef struct {
+    double inverse[3][3]; /* of the linear part of the pose */
+    double origin[3], first[3], column[3], row[3];
+    double beam[3]; /* parallel: d */
+} local_camera;
+
+/* Sums over faces in the axes of a mesh, of which those of the world follow: with V the sum of weight t^2 D, and n over h. */
+typedef struct {
+    double length, force[3], along[3];
+    double turn[3][3];         /* of the place of a hit times what pushes it */
+    skg_force_sums of_edge_on; /* in the world's axes */
+} local_sums;
+
+/* Consecutive faces of one part. */
+typedef struct {
+    int64_t part, first, end;
+    local_sums sums;
+} face_chunk;
 
 typedef struct {
-    const skg_face_moments *faces;
-    skg_force_sums *chunks;
-    double *vertices;
+    const skg_face_moments *parts;
+    double *const *vertices;
+    local_camera *cameras;
+    face_chunk *chunks;
 } forces_run;
+
+/* --- faces that rays contain */
 
 /* A corner of a face: its vertex, its place in the world, and (t i, t j, t) or (i, j, t - 1). */
 typedef struct {
@@ -20,10 +43,15 @@ typedef struct {
     double at[3], seen[3];
 } face_corner;
 
-static void find_corner(const skg_face_moments *faces, int32_t number, face_corner *corner) {
+static int64_t vertex_of(const skg_face_moments *faces, int64_t face, int corner) {
+    const int32_t number = faces->corners[3 * face + corner];
+    return faces->source ? faces->source[number] : number;
+}
+
+static void find_corner(const skg_face_moments *faces, int64_t vertex, face_corner *corner) {
     double local[3];
-    corner->vertex = faces->source ? faces->source[number] : number;
-    skg_mesh_vertex(faces->mesh, corner->vertex, local);
+    corner->vertex = vertex;
+    skg_mesh_vertex(faces->mesh, vertex, local);
     for (int r = 0; r < 3; r++) corner->at[r] = skg_dot(faces->pose + 4 * r, local) + faces->pose[4 * r + 3];
     skg_camera_see(faces->camera, corner->at, corner->seen);
 }
@@ -31,21 +59,12 @@ static void find_corner(const skg_face_moments *faces, int32_t number, face_corn
 /* Adds the force at one corner. */
 static void add_force(const skg_face_moments *faces, const face_corner *corner, const double force[3],
                       skg_force_sums *sums, double *vertices) {
-    const skg_camera *camera = faces->camera;
-    double torque[3], pixel[3];
-    const double along = corner->seen[2];
+    double torque[3];
     skg_cross(corner->at, force, torque);
-    /* x = s + t (p - s), so t p = x - (1 - t) s; with a parallel beam p = x - (t - 1) d. */
-    for (int k = 0; k < 3; k++)
-        pixel[k] =
-            corner->at[k] - (camera->parallel ? along * camera->first[k] : (1 - along) * camera->origin[k]);
-    double turned[3];
-    skg_cross(pixel, force, turned);
     for (int k = 0; k < 3; k++) {
         sums->force[k] += force[k];
         sums->torque[k] += torque[k];
-        sums->along[k] += along * force[k];
-        sums->pixel_torque[k] += turned[k];
+        sums->along[k] += corner->seen[2] * force[k];
     }
     for (int k = 0; vertices && k < 3; k++)
         vertices[3 * corner->vertex + k] +=
@@ -53,10 +72,15 @@ static void add_force(const skg_face_moments *faces, const face_corner *corner, 
 }
 
 /* A face that contains rays. Its normal is turned outward: the mesh grows where it moves along it. */
-static void add_edge_on(const skg_face_moments *faces, const face_corner corners[3], const double normal[3],
-                        skg_force_sums *sums, double *vertices) {
-    double seen[3][3], moments[3] = {0}, across[3], force[3];
-    for (int k = 0; k < 3; k++) memcpy(seen[k], corners[k].seen, sizeof seen[k]);
+static void add_edge_on(const skg_face_moments *faces, int64_t face, skg_force_sums *sums, double *vertices) {
+    face_corner corners[3];
+    double seen[3][3], moments[3] = {0}, across[3], force[3], side[2][3], normal[3];
+    for (int k = 0; k < 3; k++) {
+        find_corner(faces, vertex_of(faces, face, k), &corners[k]);
+        memcpy(seen[k], corners[k].seen, sizeof seen[k]);
+    }
+    for (int k = 0; k < 2; k++) skg_add_scaled(corners[k + 1].at, -1, corners[0].at, side[k]);
+    skg_cross(side[0], side[1], normal);
     const double *pose = faces->pose;
     const double x[3] = {pose[0], pose[4], pose[8]}, y[3] = {pose[1], pose[5], pose[9]},
                  z[3] = {pose[2], pose[6], pose[10]};
@@ -69,58 +93,189 @@ static void add_edge_on(const skg_face_moments *faces, const face_corner corners
     }
 }
 
-static void add_face(const skg_face_moments *faces, int64_t face, skg_force_sums *sums, double *vertices) {
-    const int64_t *moments = faces->moments + 3 * face;
-    const int parallel = faces->camera->parallel;
-    face_corner corners[3];
-    double side[2][3], normal[3], from[3];
-    if (!moments[0] && !moments[1] && !moments[2]) return;
-    for (int k = 0; k < 3; k++) find_corner(faces, faces->corners[3 * face + k], &corners[k]);
-    for (int k = 0; k < 2; k++) skg_add_scaled(corners[k + 1].at, -1, corners[0].at, side[k]);
-    skg_cross(side[0], side[1], normal);
-    if (moments[0] == SKG_EDGE_ON) {
-        add_edge_on(faces, corners, normal, sums, vertices);
-        return;
+/* --- all others */
+
+static void multiply(const double matrix[3][3], const double *vector, double *product) {
+    for (int r = 0; r < 3; r++) product[r] = skg_dot(matrix[r], vector);
+}
+
+static void find_camera(const skg_face_moments *faces, local_camera *local) {
+    const skg_camera *camera = faces->camera;
+    const double *pose = faces->pose;
+    const double x[3] = {pose[0], pose[4], pose[8]}, y[3] = {pose[1], pose[5], pose[9]},
+                 z[3] = {pose[2], pose[6], pose[10]};
+    double from[3], first[3];
+    skg_cross(y, z, local->inverse[0]);
+    skg_cross(z, x, local->inverse[1]);
+    skg_cross(x, y, local->inverse[2]);
+    const double determinant = skg_dot(x, local->inverse[0]);
+    for (int r = 0; r < 3; r++) {
+        skg_scale_vector(1 / determinant, local->inverse[r], local->inverse[r]);
+        from[r] = camera->origin[r] - pose[4 * r + 3];
+        first[r] = (camera->parallel ? 0 : camera->first[r]) + (double)faces->pixel[0] * camera->column[r] +
+                   (double)faces->pixel[1] * camera->row[r];
     }
-    skg_add_scaled(corners[0].at, -1, faces->camera->origin, from);
-    const double height = skg_dot(normal, parallel ? faces->camera->first : from);
-    const double share[3] = {(double)(moments[0] - moments[1] - moments[2]), (double)moments[1],
-                             (double)moments[2]};
+    multiply(local->inverse, from, local->origin);
+    multiply(local->inverse, first, local->first);
+    multiply(local->inverse, camera->column, local->column);
+    multiply(local->inverse, camera->row, local->row);
+    multiply(local->inverse, camera->first, local->beam);
+}
+
+/* A face seen from the camera's origin. push: its normal over h, which is n . v_0, or n . d with a parallel beam. */
+typedef struct {
+    double corner[3][3], push[3], inverse;
+    double moment,
+        place
+            [3]; /* sums of weight t^2, and of that times D; parallel: of weight and of that times the pixel */
+} seen_face;
+
+static int see_face(const skg_face_moments *faces, const local_camera *camera, int64_t face, seen_face *f) {
+    const int64_t *moments = faces->moments + 3 * face;
+    double side[2][3], normal[3];
     for (int k = 0; k < 3; k++) {
-        double force[3];
-        const double size = share[k] * faces->unit / (parallel ? height : height * corners[k].seen[2]);
-        skg_scale_vector(size, normal, force);
-        if (isfinite(size)) add_force(faces, &corners[k], force, sums, vertices);
+        skg_mesh_vertex(faces->mesh, vertex_of(faces, face, k), f->corner[k]);
+        for (int c = 0; c < 3; c++) f->corner[k][c] -= camera->origin[c];
+    }
+    for (int k = 0; k < 2; k++)
+        for (int c = 0; c < 3; c++) side[k][c] = f->corner[k + 1][c] - f->corner[0][c];
+    skg_cross(side[0], side[1], normal);
+    f->inverse = 1 / skg_dot(normal, faces->camera->parallel ? camera->beam : f->corner[0]);
+    f->moment = (double)moments[0] * faces->unit;
+    const double columns = (double)moments[1] * faces->unit, rows = (double)moments[2] * faces->unit;
+    for (int c = 0; c < 3; c++) {
+        f->push[c] = normal[c] * f->inverse;
+        f->place[c] = f->moment * camera->first[c] + columns * camera->column[c] + rows * camera->row[c];
+    }
+    return isfinite(f->inverse);
+}
+
+/* The derivative by corner k is push times the sum of weight lambda_k t^2 / t_k. lambda_k / t_k is D . (v_i x v_j) over h, with a
+ * parallel beam it is ((v_i - p) x (v_j - p)) . d over h; i and j are the other corners. */
+static void add_vertices(const skg_face_moments *faces, const local_camera *camera, int64_t face,
+                         const seen_face *f, double *vertices) {
+    for (int k = 0; k < 3; k++) {
+        const double *a = f->corner[(k + 1) % 3], *b = f->corner[(k + 2) % 3];
+        double across[3], side[3], turned[3];
+        skg_cross(a, b, across);
+        double share = skg_dot(f->place, across);
+        if (faces->camera->parallel) {
+            skg_add_scaled(b, -1, a, side);
+            skg_cross(side, camera->beam, turned);
+            share = skg_dot(across, camera->beam) * f->moment - skg_dot(f->place, turned);
+        }
+        double *at = vertices + 3 * vertex_of(faces, face, k);
+        for (int c = 0; c < 3; c++) at[c] += f->push[c] * share * f->inverse;
     }
 }
 
-static skg_status add_chunk(void *user, int64_t chunk) {
+static void add_face(const skg_face_moments *faces, const local_camera *camera, int64_t face,
+                     local_sums *sums, double *vertices) {
+    const int64_t *moments = faces->moments + 3 * face;
+    seen_face f;
+    if (!moments[0] && !moments[1] && !moments[2]) return;
+    if (moments[0] == SKG_EDGE_ON) {
+        add_edge_on(faces, face, &sums->of_edge_on, vertices);
+        return;
+    }
+    if (!see_face(faces, camera, face, &f)) return;
+    if (vertices) add_vertices(faces, camera, face, &f, vertices);
+    /* 1 / t = push . D; with a parallel beam t - 1 = push . (v_0 - p), and hits lie behind their pixels by as much. */
+    const double depth = skg_dot(f.push, f.place);
+    const int parallel = faces->camera->parallel;
+    const double behind = parallel ? f.moment * skg_dot(f.push, f.corner[0]) - depth : 0;
+    const double force = parallel ? f.moment : depth, along = parallel ? behind : f.moment;
+    if (parallel) skg_add_scaled(f.place, behind, camera->beam, f.place);
+    sums->length += parallel ? behind : depth;
+    for (int c = 0; c < 3; c++) {
+        sums->force[c] += force * f.push[c];
+        sums->along[c] += along * f.push[c];
+        for (int r = 0; r < 3; r++) sums->turn[r][c] += f.place[r] * f.push[c];
+    }
+}
+
+static skg_status add_chunk(void *user, int64_t number) {
     const forces_run *run = user;
-    const int64_t end = (chunk + 1) * CHUNK, triangles = run->faces->mesh->triangles;
-    for (int64_t f = chunk * CHUNK; f < end && f < triangles; f++)
-        add_face(run->faces, f, &run->chunks[chunk], run->vertices);
+    face_chunk *chunk = &run->chunks[number];
+    double *vertices = run->vertices ? run->vertices[chunk->part] : NULL;
+    for (int64_t f = chunk->first; f < chunk->end; f++)
+        add_face(&run->parts[chunk->part], &run->cameras[chunk->part], f, &chunk->sums, vertices);
     return SKG_OK;
 }
 
-static void add_sums(const skg_force_sums *more, skg_force_sums *sums) {
+/* --- the parts */
+
+/* Divides the faces of the parts into chunks, which may be NULL. Those of a part whose vertices are wanted are one, since they
+ * share vertices. Returns their number. */
+static int64_t divide(int64_t count, const forces_run *run, face_chunk *chunks) {
+    int64_t made = 0;
+    for (int64_t p = 0; p < count; p++) {
+        const int64_t triangles = run->parts[p].moments ? run->parts[p].mesh->triangles : 0;
+        const int64_t size = run->vertices && run->vertices[p] ? triangles : CHUNK;
+        for (int64_t first = 0; first < triangles; first += size, made++)
+            if (chunks)
+                chunks[made] = (face_chunk){
+                    .part = p, .first = first, .end = first + size < triangles ? first + size : triangles};
+    }
+    return made;
+}
+
+/* Adds the sums of a chunk to those of its part, in the world's axes. */
+static void add_sums(const local_sums *more, const skg_face_moments *faces, const local_camera *camera,
+                     skg_force_sums *sums) {
+    double world[3][3], turn[3][3], torque[3], force[3], along[3];
+    for (int r = 0; r < 3; r++) {
+        force[r] = along[r] = 0;
+        for (int k = 0; k < 3; k++) {
+            force[r] += camera->inverse[k][r] * more->force[k];
+            along[r] += camera->inverse[k][r] * more->along[k];
+            turn[r][k] = faces->pose[4 * r] * more->turn[0][k] + faces->pose[4 * r + 1] * more->turn[1][k] +
+                         faces->pose[4 * r + 2] * more->turn[2][k];
+        }
+    }
+    for (int r = 0; r < 3; r++)
+        for (int c = 0; c < 3; c++)
+            world[r][c] = turn[r][0] * camera->inverse[0][c] + turn[r][1] * camera->inverse[1][c] +
+                          turn[r][2] * camera->inverse[2][c];
+    skg_cross(faces->camera->origin, force, torque);
+    sums->length += more->length;
     for (int k = 0; k < 3; k++) {
-        sums->force[k] += more->force[k];
-        sums->torque[k] += more->torque[k];
-        sums->along[k] += more->along[k];
-        sums->pixel_torque[k] += more->pixel_torque[k];
+        const int i = (k + 1) % 3, j = (k + 2) % 3;
+        sums->force[k] += force[k] + more->of_edge_on.force[k];
+        sums->along[k] += along[k] + more->of_edge_on.along[k];
+        sums->torque[k] += torque[k] + world[i][j] - world[j][i] + more->of_edge_on.torque[k];
     }
 }
 
-skg_status skg_forces_add(const skg_face_moments *faces, skg_force_sums *sums, double *vertices) {
-    const int64_t count = (faces->mesh->triangles + CHUNK - 1) / CHUNK;
-    forces_run run = {.faces = faces, .vertices = vertices};
+/* x = s + t (p - s), so t p = x - (1 - t) s; with a parallel beam p = x - (t - 1) d. */
+static void find_pixel_torque(const skg_camera *camera, skg_force_sums *sums) {
+    double lever[3], turned[3];
+    for (int k = 0; k < 3; k++)
+        lever[k] = camera->parallel ? sums->along[k] : sums->force[k] - sums->along[k];
+    skg_cross(camera->parallel ? camera->first : camera->origin, lever, turned);
+    for (int k = 0; k < 3; k++) sums->pixel_torque[k] = sums->torque[k] - turned[k];
+}
+
+skg_status skg_forces_find(int64_t count, const skg_face_moments *parts, double *const *vertices,
+                           skg_force_sums *sums) {
+    forces_run run = {.parts = parts, .vertices = vertices};
     skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(count, sizeof *run.chunks, "gradient", &run.chunks));
-    if (vertices || count < FEW_CHUNKS) /* faces of two chunks share vertices */
-        for (int64_t c = 0; c < count; c++) (void)add_chunk(&run, c);
-    else
-        status = skg_parallel(count, add_chunk, &run);
-    for (int64_t c = 0; c < count && status == SKG_OK; c++) add_sums(&run.chunks[c], sums);
+    const int64_t chunks = divide(count, &run, NULL);
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *run.cameras, "gradient", &run.cameras));
+    SKG_TRY_CLEANUP(skg_alloc(chunks, sizeof *run.chunks, "gradient", &run.chunks));
+    for (int64_t p = 0; p < count; p++)
+        if (parts[p].moments) find_camera(&parts[p], &run.cameras[p]);
+    (void)divide(count, &run, run.chunks);
+    SKG_TRY_CLEANUP(skg_parallel(chunks, add_chunk, &run));
+    for (int64_t p = 0; p < count; p++) sums[p] = (skg_force_sums){.force = {0}};
+    for (int64_t c = 0; c < chunks; c++) {
+        const int64_t part = run.chunks[c].part;
+        add_sums(&run.chunks[c].sums, &parts[part], &run.cameras[part], &sums[part]);
+    }
+    for (int64_t p = 0; p < count; p++)
+        if (parts[p].moments) find_pixel_torque(parts[p].camera, &sums[p]);
+cleanup:
+    skg_free(&run.cameras);
     skg_free(&run.chunks);
     return status;
 }

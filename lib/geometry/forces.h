@@ -9,15 +9,17 @@
 #include "geometry/steep.h"
 #include "mesh/mesh.h"
 
-/* The faces of a part. */
+/* The faces of a part. For slopes (geometry/slopes.h) what follows `source` is not used. */
 typedef struct {
     const skg_camera *camera;
     const skg_mesh *mesh;
-    const double *pose;      /* 4x4 */
-    const int32_t *corners;  /* [triangles][3] in the device's numbering of vertices */
-    const int32_t *source;   /* the mesh's number of each; NULL: the same */
-    const int64_t *moments;  /* [triangles][3] */
+    const double *pose;     /* 4x4 */
+    const int32_t *corners; /* [triangles][3] in the device's numbering of vertices */
+    const int32_t *source;  /* the mesh's number of each; NULL: the same */
+    /* [triangles][3] sums over hits of weight t^2, of that times the column, and times the row; NULL: none are added */
+    const int64_t *moments;
     double unit;             /* of a moment */
+    int32_t pixel[2];        /* from which columns and rows count */
     skg_steep_weight weight; /* of faces whose first moment is SKG_EDGE_ON; may be NULL if there are none */
     const void *weight_user;
 } skg_face_moments;
@@ -25,13 +27,15 @@ typedef struct {
 /* Sums over faces, about the world's origin. t: the path parameter of a corner. */
 typedef struct {
     double force[3], torque[3]; /* of F, of x x F */
-    double along[3];            /* of t F; with a parallel beam of (t - 1) F */
+    double length; /* of weight t; with a parallel beam of weight (t - 1). Faces that contain rays add none */
+    double along[3];        /* of t F; with a parallel beam of (t - 1) F */
     double pixel_torque[3]; /* of t p x F, p the pixel that sees the corner; with a parallel beam of p x F */
 } skg_force_sums;
 
-/* Adds the faces of a part to the sums. vertices: [mesh->vertices][3] the derivatives by the positions of the mesh, which are added
- * to; all of those at one place go to the first of them. NULL: not wanted. */
-skg_status skg_forces_add(const skg_face_moments *faces, skg_force_sums *sums, double *vertices);
+/* Adds up the faces of parts. vertices: [count] NULL or [mesh->vertices][3] the derivatives by the positions of the mesh, which are
+ * added to; all of those at one place go to the first of them. NULL: of no part. sums: [count] result */
+skg_status skg_forces_find(int64_t count, const skg_face_moments *parts, double *const *vertices,
+                           skg_force_sums *sums);
 
 /* Divides the derivative of vertices at one place evenly among them. */
 skg_status skg_forces_share(const skg_mesh *mesh, double *vertices);

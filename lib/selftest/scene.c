@@ -25,8 +25,12 @@ skg_tolerance skg_self_test_tolerance(skg_self_test number) {
     }
 }
 
+static int has_priority(const skg_self_test_scene *scene) {
+    return scene->number == SKG_SELF_TEST_PRIORITY || scene->number == SKG_SELF_TEST_GRADIENT;
+}
+
 static int has_two_parts(const skg_self_test_scene *scene) {
-    return scene->number == SKG_SELF_TEST_ENERGIES || scene->number == SKG_SELF_TEST_PRIORITY;
+    return scene->number == SKG_SELF_TEST_ENERGIES || has_priority(scene);
 }
 
 static int has_energies(const skg_self_test_scene *scene) {
@@ -78,7 +82,7 @@ static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int
         first = elsewhere;
     }
     given.label = part == 0 ? "boxes" : "box";
-    given.priority = scene->number == SKG_SELF_TEST_PRIORITY ? part : 0;
+    given.priority = has_priority(scene) ? part : 0;
     skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_SELF_TEST_BOXES : 1,
                                        part == 0 && scene->number == SKG_SELF_TEST_LEAKY, &given.mesh);
     if (status == SKG_OK)
@@ -112,6 +116,9 @@ static void choose_options(skg_self_test_scene *scene) {
         break;
     case SKG_SELF_TEST_LEAKY:
         options->repair = SKG_REPAIR_NEIGHBOURS;
+        break;
+    case SKG_SELF_TEST_GRADIENT:
+        options->quantity = SKG_QUANTITY_ATTENUATION;
         break;
     case SKG_SELF_TEST_NOISE:
         options->noise = 1;
@@ -184,7 +191,7 @@ void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double 
         if (!skg_box_crossed(&scene->boxes[b], view->source, pixel, &enters, &leaves)) continue;
         *surface += (leaves - enters) * distance;
         net[0] += (leaves - enters) * distance;
-        if (other && scene->number == SKG_SELF_TEST_PRIORITY) /* part 1 displaces part 0 */
+        if (other && has_priority(scene)) /* part 1 displaces part 0 */
             net[0] -= fmax(0, fmin(leaves, to) - fmax(enters, from)) * distance;
     }
 }

@@ -150,4 +150,8 @@ skg_status skg_self_test_picture(skg_context *context, skg_verdict *verdict);
 /* Compares the scatter of a small cube with a formula, and that of a slab with another program's (scatter.c). */
 skg_status skg_self_test_scatter(skg_context *context, skg_verdict *verdict);
 
+/* Compares the gradient of a sum of attenuations by two parts, of which one displaces the other, and by the source with differences
+ * of the formula, and the derivative along a direction with the gradient (gradient.c). */
+skg_status skg_self_test_gradient(skg_context *context, skg_verdict *verdict);
+
 #endif

@@ -304,13 +304,17 @@ skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t 
     const int64_t run = shape_of(raster->context, fine).runs *
                         skg_kernel_lanes(raster->context, raster->options.kernels.precision);
     const int64_t stride = skg_round_up(raster->layout.columns, run);
-    return (skg_weight_layout){
-        .planes = raster->layout.planes, .stride = stride, .plane = stride * raster->layout.rows};
+    const skg_work_size work =
+        work_of(&(skg_sums){.raster = raster, .fine = fine}, raster->options.kernels.precision);
+    return (skg_weight_layout){.planes = raster->layout.planes,
+                               .stride = stride,
+                               .plane = stride * raster->layout.rows,
+                               .items = work.items[0] * work.items[1]};
 }
 
 skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                                    const skg_attenuation *attenuation, double factor, int32_t of_planes,
-                                   cl_mem adjoint, cl_mem weights, skg_stage_log *log) {
+                                   cl_mem adjoint, cl_mem weights, cl_mem most, skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
     const skg_weight_layout layout = skg_attenuate_weight_layout(raster, sums->fine);
     const skg_image_place place = {.row_stride = layout.stride, .channel_stride = layout.plane};
@@ -337,6 +341,7 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
         SKG_ARGUMENT(WEIGHTS, tables, mean.tables.memory),
         SKG_ARGUMENT(WEIGHTS, adjoint, adjoint),
         SKG_ARGUMENT(WEIGHTS, weights, weights),
+        SKG_ARGUMENT(WEIGHTS, most, most),
     };
     const skg_work_size work = work_of(sums, key.options.precision);
     return SKG_LAUNCH_ONCE(raster->context, program, "skg_weights", "weights", &work, arguments, log);

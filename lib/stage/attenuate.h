@@ -100,6 +100,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
  * accumulators, then two of the rays. */
 typedef struct {
     int64_t planes, stride, plane; /* planes of accumulators; elements of a row, of a plane */
+    int64_t items;                 /* work-items, each of which has a largest weight of each plane */
 } skg_weight_layout;
 skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t fine);
 
@@ -109,10 +110,11 @@ skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t 
  * of_planes   1: the weights are derivatives by the mm of the planes that exponents are made of, and nothing else
  * adjoint     [channels][rows][columns] of the image, in the precision of the raster
  * weights     of the layout; the last two planes are, for each ray, the sum over planes of mm times derivative by mm, and
- *           the derivative by the logarithm of the intensity */
+ *             the derivative by the logarithm of the intensity
+ * most        [planes][items] the largest magnitudes of the weights of accumulators */
 skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                                    const skg_attenuation *attenuation, double factor, int32_t of_planes,
-                                   cl_mem adjoint, cl_mem weights, skg_stage_log *log);
+                                   cl_mem adjoint, cl_mem weights, cl_mem most, skg_stage_log *log);
 
 /* Expects the program of skg_attenuate (skg_expected_begin) with sums of a raster with these options. sums: without a
  * raster; attenuation: its shape; ranged: 1: it will have a range. */

@@ -5,16 +5,17 @@
 
 #include <skiagraph/plan.h>
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
-enum { GROUP = 64, SLICES = 32 };
+enum { GROUP = 64, SLICES = 32, CLAIM = 1024 }; /* CLAIM: triangles of a work-item of a processor */
 
 void skg_gradient_memory_release(skg_gradient_memory *memory) {
     skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,    &memory->scales,
                                    &memory->moments, &memory->slopes,  &memory->lengths, &memory->faces};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
+    skg_free(&memory->gathered);
+    skg_free(&memory->corners);
 }
 
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
@@ -61,13 +62,30 @@ static skg_weight_layout layout_of(const skg_pass *pass) {
 skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory) {
     const skg_weight_layout layout = layout_of(pass);
     const int64_t most = planes > layout.planes + 2 ? planes : layout.planes + 2;
+    /* Lanes without a hit read behind their rows. */
+    const int64_t behind = SKG_SPARE_ROWS * layout.stride + SKG_SPARE_COLUMNS;
+    SKG_TRY(skg_buffer_reserve(pass->main.raster->context, &memory->most,
+                               layout.planes * layout.items * (int64_t)real_size(pass->main.raster),
+                               CL_MEM_READ_WRITE, "weights of a gradient"));
     return skg_buffer_reserve(pass->main.raster->context, &memory->weights,
-                              most * layout.plane * (int64_t)real_size(pass->main.raster), CL_MEM_READ_WRITE,
-                              "weights of a gradient");
+                              (most * layout.plane + behind) * (int64_t)real_size(pass->main.raster),
+                              CL_MEM_READ_WRITE, "weights of a gradient");
 }
 
 static skg_status reserve(const gather_run *run, skg_buffer *buffer, int64_t bytes) {
     return skg_buffer_reserve(run->context, buffer, bytes, CL_MEM_READ_WRITE, "gradient");
+}
+
+/* Whether faces are gathered in batches; what priorities add is then added by itself. */
+static int in_batches(const gather_run *run) {
+    return !run->forward && !run->context->device->info.is_gpu;
+}
+
+static skg_status get_batches(const gather_run *run, cl_program *program) {
+    static const char *const files[] = {"batch.clh", "gather.clh", "draw.clh", "collect.clh",
+                                        "gradient_batches.cl"};
+    static const skg_define defines[] = {{"SKG_GATHER", 1}};
+    return skg_kernels_get(run->context, &run->pass->kernels, 5, files, SKG_DEFINES(defines), program);
 }
 
 static skg_status begin(gather_run *run) {
@@ -76,6 +94,7 @@ static skg_status begin(gather_run *run) {
     const skg_weight_layout layout = layout_of(run->pass);
     const skg_define defines[] = {{"SKG_SLOTS", priority->count ? skg_priority_slots(priority) : 32},
                                   {"SKG_PRIORITY", priority->count > 0},
+                                  {"SKG_SLOPES_ALONE", in_batches(run)},
                                   {"SKG_FORWARD", run->forward}};
     run->args = (skg_gradient_args){
         .layout = run->raster->layout,
@@ -83,8 +102,7 @@ static skg_status begin(gather_run *run) {
         .stride = (SKG_INT)layout.stride,
         .plane = (SKG_INT)layout.plane,
         .planes = (SKG_INT)layout.planes};
-    return skg_kernels_get(run->context, &run->raster->options.kernels, 4, files, SKG_DEFINES(defines),
-                           &run->program);
+    return skg_kernels_get(run->context, &run->pass->kernels, 4, files, SKG_DEFINES(defines), &run->program);
 }
 
 /* Reads reals of the device as doubles, and waits. Floats are read into the end of the doubles' memory. */
@@ -104,27 +122,15 @@ static skg_status read_reals(const skg_raster *raster, cl_mem memory, int64_t fi
 
 /* The largest weight of each plane. */
 static skg_status find_most(const gather_run *run, double *most) {
-    const int64_t rows = run->raster->layout.rows, planes = run->args.planes;
-    const skg_work_size work = {2, {rows, planes}, {16, 1}};
-    double *of_rows = NULL;
-    SKG_TRY(skg_staging_take(run->staging, planes * rows, sizeof *of_rows, "gradient", &of_rows));
-    SKG_TRY(reserve(run, &run->memory->most, planes * rows * (int64_t)real_size(run->raster)));
-    const skg_argument arguments[] = {
-        SKG_ARGUMENT(GRADIENT_MOST, args, run->args),
-        SKG_ARGUMENT(GRADIENT_MOST, weights, run->memory->weights.memory),
-        SKG_ARGUMENT(GRADIENT_MOST, most, run->memory->most.memory),
-    };
-    SKG_TRY(SKG_LAUNCH_ONCE(run->context, run->program, "skg_gradient_most", "gradient", &work, arguments,
-                            &run->staging->log));
-    SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * rows, of_rows));
-    for (int64_t i = 0; i < planes * rows; i++) {
-        if (!isfinite(of_rows[i]))
-            return skg_fail(
-                SKG_RANGE,
-                "gradient: the derivative of the loss by a path length is not finite in row %" PRId64
-                "; give a smaller derivative by the image, or take precision double",
-                i % rows);
-        most[i / rows] = fmax(most[i / rows], of_rows[i]);
+    const int64_t planes = run->args.planes, items = layout_of(run->pass).items;
+    double *of_items = NULL;
+    SKG_TRY(skg_staging_take(run->staging, planes * items, sizeof *of_items, "gradient", &of_items));
+    SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * items, of_items));
+    for (int64_t i = 0; i < planes * items; i++) {
+        if (!isfinite(of_items[i]))
+            return skg_fail(SKG_RANGE, "gradient: the derivative of the loss by a path length is not finite; "
+                                       "give a smaller derivative by the image, or take precision double");
+        most[i / items] = fmax(most[i / items], of_items[i]);
     }
     return SKG_OK;
 }
@@ -185,11 +191,13 @@ static double scale_for(double bound) {
     return ldexp(1, exponent > 62 + 120 ? -120 : exponent < 62 - 120 ? 120 : 62 - exponent);
 }
 
-/* Powers of two by which weights become integers: the sum over a face stays below 2^62. */
+/* Powers of two by which weights become integers: the sum over a face, times columns or rows, stays below 2^62. */
 static void find_scales(const gather_run *run, const double *most, double *scales, double *units) {
     const double competing = competing_of(run, most);
+    const skg_raster_layout *layout = &run->raster->layout;
+    const double far = layout->columns > layout->rows ? layout->columns : layout->rows;
     for (int64_t p = 0; p < run->pass->scene->count; p++) {
-        const double bound = hit_bound(run, p, most, competing) * pixels_of(run, p);
+        const double bound = hit_bound(run, p, most, competing) * pixels_of(run, p) * far;
         if (run->pass->parts[p].contributions == 0 || !(bound > 0)) continue;
         scales[p] = scale_for(bound);
         units[p] = reference_of(run, p) / scales[p];
@@ -230,16 +238,46 @@ static skg_status run_slopes(const gather_run *run) {
                            &run->staging->log);
 }
 
+/* On a processor: the moments but for what priorities add. */
+static skg_status run_batches(const gather_run *run) {
+    const skg_geometry *geometry = run->geometry;
+    const skg_gradient_memory *m = run->memory;
+    const skg_work_size work = {1, {(geometry->triangles + CLAIM - 1) / CLAIM}, {1}};
+    skg_gradient_args args = run->args;
+    cl_program program = NULL;
+    args.layout.claim = CLAIM;
+    SKG_TRY(get_batches(run, &program));
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(GRADIENT_BATCHES, args, args),
+        SKG_TRIANGLE_BUFFERS(GRADIENT_BATCHES, geometry),
+        SKG_ARGUMENT(GRADIENT_BATCHES, contributions, geometry->contribution_table.memory),
+        SKG_ARGUMENT(GRADIENT_BATCHES, weights, m->weights.memory),
+        SKG_ARGUMENT(GRADIENT_BATCHES, scales, m->scales.memory),
+        SKG_ARGUMENT(GRADIENT_BATCHES, moments, m->moments.memory),
+    };
+    return SKG_LAUNCH_ONCE(run->context, program, "skg_gradient_batches", "gradient", &work, arguments,
+                           &run->staging->log);
+}
+
+/* Makes sure of the sums, which are 0 if they are added to. */
+static skg_status reserve_sums(const gather_run *run) {
+    const int64_t pixels = (int64_t)run->raster->layout.rows * run->raster->layout.columns;
+    const int64_t bytes = (run->forward ? pixels : 3 * run->geometry->triangles) * (int64_t)sizeof(int64_t);
+    const cl_int none = 0;
+    SKG_TRY(reserve(run, &run->memory->moments, bytes));
+    if (!in_batches(run))
+        SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
+                                       sizeof none, 0, (size_t)bytes, 0, NULL, NULL));
+    return SKG_OK;
+}
+
 static skg_status run_faces(const gather_run *run) {
     const skg_geometry *geometry = run->geometry;
     const skg_hits_memory *h = run->hits;
     const skg_gradient_memory *m = run->memory;
-    const int64_t pixels = (int64_t)run->raster->layout.rows * run->raster->layout.columns;
-    const int64_t bytes = (run->forward ? pixels : 3 * geometry->triangles) * (int64_t)sizeof(int64_t);
-    const cl_int none = 0;
-    SKG_TRY(reserve(run, &run->memory->moments, bytes));
-    SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, m->moments.memory, &none, sizeof none, 0,
-                                   (size_t)bytes, 0, NULL, NULL));
+    SKG_TRY(reserve_sums(run));
+    if (in_batches(run)) SKG_TRY(run_batches(run));
+    if (in_batches(run) && run->pass->priority.count == 0) return SKG_OK;
     const skg_work_size work = {
         2, {geometry->triangles, run->context->device->info.is_gpu ? SLICES : 1}, {GROUP, 1}};
     const skg_argument arguments[] = {
@@ -266,21 +304,21 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
                                skg_gathered *gathered) {
     gather_run run = run_of(pass, geometry, hits, memory, staging, 0);
     double *most = NULL, *scales = NULL, *units = NULL;
-    int64_t *moments = NULL;
     SKG_TRY(begin(&run));
     SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "gradient", &most));
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "gradient", &scales));
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *units, "gradient", &units));
-    SKG_TRY(skg_staging_take(staging, 3 * geometry->triangles, sizeof *moments, "gradient", &moments));
+    if (!memory->gathered)
+        SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *memory->gathered, "gradient", &memory->gathered));
     SKG_TRY(find_most(&run, most));
     find_scales(&run, most, scales, units);
     SKG_TRY(upload_reals(&run, pass->scene->count, scales, &memory->scales));
     SKG_TRY(run_slopes(&run));
     SKG_TRY(run_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
-                                   3 * (size_t)geometry->triangles * sizeof *moments, moments, 0, NULL,
-                                   NULL));
-    *gathered = (skg_gathered){.moments = moments, .units = units, .layout = layout_of(pass)};
+                                   3 * (size_t)geometry->triangles * sizeof *memory->gathered,
+                                   memory->gathered, 0, NULL, NULL));
+    *gathered = (skg_gathered){.moments = memory->gathered, .units = units, .layout = layout_of(pass)};
     return SKG_OK;
 }
 
@@ -339,13 +377,15 @@ skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first,
     return read_reals(pass->main.raster, memory, first, count, numbers);
 }
 
-skg_status skg_gradient_read_corners(const skg_geometry *geometry, int64_t mesh, skg_staging *staging,
-                                     int32_t **corners) {
-    const int64_t first = 3 * geometry->mesh_triangle[mesh], count = 3 * geometry->layouts[mesh].triangles;
-    SKG_TRY(skg_staging_take(staging, count, sizeof **corners, "gradient", corners));
-    if (count == 0) return SKG_OK;
-    SKG_CL_TRY(clEnqueueReadBuffer(staging->context->device->queue, geometry->corners.memory, CL_TRUE,
-                                   (size_t)first * sizeof **corners, (size_t)count * sizeof **corners,
-                                   *corners, 0, NULL, NULL));
+skg_status skg_gradient_find_corners(skg_context *context, const skg_geometry *geometry, int64_t mesh,
+                                     skg_gradient_memory *memory, const int32_t **corners) {
+    const int64_t count = 3 * geometry->mesh_triangle[geometry->meshes];
+    if (!memory->corners) {
+        SKG_TRY(skg_alloc(count, sizeof *memory->corners, "gradient", &memory->corners));
+        SKG_CL_TRY(clEnqueueReadBuffer(context->device->queue, geometry->corners.memory, CL_TRUE, 0,
+                                       (size_t)count * sizeof *memory->corners, memory->corners, 0, NULL,
+                                       NULL));
+    }
+    *corners = memory->corners + 3 * geometry->mesh_triangle[mesh];
     return SKG_OK;
 }

@@ -8,16 +8,18 @@
 #include "stage/attenuate.h"
 #include "stage/hits.h"
 
-/* Device memory, kept from call to call. All zero: nothing is allocated. */
+/* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
     skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces;
+    int64_t *gathered; /* [triangles][3] the moments on the host */
+    int32_t *corners;  /* [triangles of all meshes][3] as the device has them */
 } skg_gradient_memory;
 void skg_gradient_memory_release(skg_gradient_memory *memory);
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
 
 /* What the gather of a pass leaves. */
 typedef struct {
-    const int64_t *moments; /* [triangles][3] staged, in the device's order of triangles */
+    const int64_t *moments; /* [triangles][3] of the memory, in the device's order of triangles */
     const double *units;    /* [parts] staged: what a moment of 1 is worth; 0: the part has none */
     skg_weight_layout layout;
 } skg_gathered;
@@ -44,8 +46,8 @@ skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geomet
 skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
                              double *numbers);
 
-/* Reads the corners of a mesh's triangles, [triangles][3] in the device's order and numbering of vertices. */
-skg_status skg_gradient_read_corners(const skg_geometry *geometry, int64_t mesh, skg_staging *staging,
-                                     int32_t **corners);
+/* The corners of a mesh's triangles, [triangles][3] in the device's order and numbering of vertices; read once. */
+skg_status skg_gradient_find_corners(skg_context *context, const skg_geometry *geometry, int64_t mesh,
+                                     skg_gradient_memory *memory, const int32_t **corners);
 
 #endif

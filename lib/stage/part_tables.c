@@ -141,6 +141,7 @@ static skg_status upload_tables(skg_context *context, skg_geometry *geometry, co
     cl_command_queue queue = context->device->queue;
     const int64_t bytes = tables->passes * tables->contribution_count * (int64_t)contribution_size(geometry);
     const int64_t table = tables->passes * geometry->parts * (int64_t)skg_geometry_entry_size(geometry);
+    geometry->state++;
     geometry->uploaded = 0; /* if one of the two writes fails, the device has neither table */
     SKG_TRY(skg_buffer_reserve(context, &geometry->contribution_table, bytes, CL_MEM_READ_ONLY,
                                "contribution table"));

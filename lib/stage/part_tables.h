@@ -46,6 +46,7 @@ typedef struct {
     int64_t *first_vertex;       /* [parts + 1] in the numbering over all parts */
     int32_t slot;                /* that holds the tables as the device has them */
     int32_t uploaded;            /* 1: the device has tables */
+    int64_t state; /* changes with the tables and vertices on the device; never 0 once they are there */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
     skg_buffer projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/fine.clh) */

@@ -83,6 +83,7 @@ skg_status skg_placement_place(skg_placement *placement, skg_context *context, s
     SKG_TRY(clear_lost(context, geometry, index));
     /* If the copy fails half way, the next frame uploads the positions of the host. */
     geometry->versions[index] = placed->version = 0;
+    geometry->state++;
     if (mesh->vertices > 0) SKG_TRY(run(placement, context, geometry, index, source));
     for (int k = 0; k < 3; k++)
         placed->lowest[k] = source->lowest[k], placed->highest[k] = source->highest[k];

@@ -48,6 +48,10 @@ void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera);
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *extents,
                           skg_stage_log *log);
 
+/* Says that the sums of the geometry as it stands are enqueued, with all that is changed in them; whether they still stand. */
+void skg_raster_keep(skg_raster *raster, const skg_geometry *geometry);
+int skg_raster_keeps(const skg_raster *raster, const skg_geometry *geometry);
+
 /* How many passes a raster draws together: at least 1. */
 int32_t skg_raster_passes(const skg_raster *raster);
 

@@ -51,6 +51,8 @@ struct skg_raster {
     cl_kernel source;                        /* for the source's plane; NULL: no triangle reaches it */
     cl_kernel bad_rows, bad;                 /* made on demand */
     int32_t expected;                        /* 1: its programs are only expected */
+    int32_t reserved;
+    int64_t state; /* of the geometry whose sums it holds, all of them; 0: not known */
 };
 
 /* How many passes a worker draws side by side: SKG_SIDE of the kernels. */

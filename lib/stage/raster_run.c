@@ -64,14 +64,24 @@ static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stag
 
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *extents,
                           skg_stage_log *log) {
+    raster->state = 0;
     SKG_TRY(set_counts(raster, geometry));
     SKG_TRY(skg_raster_place_pass(raster, 0, extents, log));
     SKG_TRY(raster->strategy->run(raster, geometry, log));
     return raster->source ? run_source(raster, geometry, log) : SKG_OK;
 }
 
+void skg_raster_keep(skg_raster *raster, const skg_geometry *geometry) {
+    raster->state = geometry->state;
+}
+
+int skg_raster_keeps(const skg_raster *raster, const skg_geometry *geometry) {
+    return raster->state != 0 && raster->state == geometry->state;
+}
+
 skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *geometry, int32_t passes,
                                  skg_stage_log *log) {
+    raster->state = 0;
     SKG_TRY(set_counts(raster, geometry));
     raster->layout.passes = passes;
     return raster->strategy->run(raster, geometry, log);

@@ -16,6 +16,7 @@ skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int
     const skg_mesh_layout *layout = &geometry->layouts[mesh];
     const int64_t row = 3 * (int64_t)real_size(geometry), count = (1 + layout->fine) * layout->vertices;
     if (count == 0) return SKG_OK;
+    geometry->state++;
     return skg_stage_write(context, "upload", geometry->offsets.memory, geometry->mesh_vertex[mesh] * row,
                            count * row, offsets, log);
 }

@@ -116,6 +116,94 @@ START_TEST(a_whole_that_moves_changes_nothing) {
 }
 END_TEST
 
+/* --- sums that stand */
+
+/* What happens between an image and the gradient of the plan's scene. */
+enum { NOTHING, A_POSE, VERTICES, LENGTHS, A_VIEW, DENSITIES, CHANGES };
+
+static void submit_and_wait(skg_plan *plan, const skg_frame *frame, const skg_output *output) {
+    skg_job *job = NULL;
+    ck_skg(skg_plan_submit(plan, 1, frame, output, &job));
+    ck_skg(skg_job_wait(&job));
+}
+
+static void change(int what, skg_plan *plan, const skg_view *view) {
+    static float image[PIXELS];
+    const int64_t body = 0;
+    const double ratio = 0.5;
+    skg_view other = *view;
+    skg_frame frame;
+    skg_output output;
+    skg_part part;
+    double *positions = NULL;
+    int64_t count, triangles;
+    skg_frame_init(&frame);
+    skg_output_init(&output);
+    skg_part_init(&part);
+    output.data = image;
+    switch (what) {
+    case A_POSE:
+        ck_skg(skg_scene_part_get(scene, 0, &part));
+        part.pose[3] += 1;
+        ck_skg(skg_scene_part_pose_set(scene, 0, part.pose));
+        return;
+    case VERTICES:
+        ck_skg(skg_mesh_count(meshes[1], &count, &triangles));
+        positions = calloc((size_t)(3 * count), sizeof *positions);
+        ck_skg(skg_mesh_positions_get(meshes[1], positions, 3));
+        for (int64_t k = 0; k < 3 * count; k++) positions[k] *= 1.01;
+        ck_skg(skg_mesh_positions_set(meshes[1], positions, 3));
+        free(positions);
+        return;
+    case LENGTHS:
+        output.kind = SKG_OUTPUT_LENGTHS, output.lengths = SKG_LENGTHS_NET;
+        submit_and_wait(plan, NULL, &output);
+        return;
+    case A_VIEW:
+        other.source[0] += 5;
+        frame.view = &other;
+        submit_and_wait(plan, &frame, &output);
+        return;
+    case DENSITIES:
+        frame.override_count = 1, frame.override_parts = &body, frame.density_ratios = &ratio;
+        submit_and_wait(plan, &frame, &output);
+        return;
+    default:
+        return;
+    }
+}
+
+/* A gradient of the frame that was rendered last uses its sums; of any other it makes them. */
+START_TEST(sums_that_stand_are_those_of_the_frame) {
+    static double adjoint[CHANNELS_MAX * PIXELS];
+    static float image[PIXELS];
+    const setting set = {.nested = _i % 2, .priority = 1 - _i % 2, .colours = 1};
+    skg_output output;
+    result r[2];
+    make_scene(&set);
+    allocate(&r[0]);
+    r[1] = r[0];
+    skg_output_init(&output);
+    output.data = image;
+    const skg_view view = make_view(&set);
+    fill_adjoint(PIXELS, adjoint);
+    skg_plan *plan = make_plan(&set, &view, SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
+    for (int turn = 0; turn < 2; turn++) {
+        submit_and_wait(plan, NULL, &output);
+        change(_i / 2, plan, &view);
+        make_gradient(plan, &set, adjoint, &r[0]);
+        skg_plan *fresh = make_plan(&set, &view, SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
+        make_gradient(fresh, &set, adjoint, &r[1]);
+        skg_plan_release(&fresh);
+        ck_assert_mem_eq(r[0].poses, r[1].poses, sizeof r[0].poses);
+        ck_assert_mem_eq(r[0].source, r[1].source, sizeof r[0].source);
+        ck_assert_mem_eq(r[0].densities, r[1].densities, sizeof r[0].densities);
+    }
+    skg_plan_release(&plan);
+    release(&r[0]);
+}
+END_TEST
+
 /* --- what is refused */
 
 START_TEST(bad_adjoints_are_refused) {
@@ -243,6 +331,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, single_precision_agrees_with_double);
     tcase_add_test(tests, noise_is_constant);
     tcase_add_loop_test(tests, a_whole_that_moves_changes_nothing, 0, 3);
+    tcase_add_loop_test(tests, sums_that_stand_are_those_of_the_frame, 0, 2 * CHANGES);
     tcase_add_test(tests, bad_adjoints_are_refused);
     tcase_add_test(tests, what_has_no_gradient_is_refused_by_name);
     tcase_add_test(tests, leaky_meshes_are_refused_by_name);

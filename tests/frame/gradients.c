@@ -30,6 +30,7 @@ void make_scene(const setting *set) {
     if (set->nested) {
         add_part("bone", solid_blob(14, 10, 7, 3), "Bone, Cortical (ICRU-44)", 1.1, left, 0, 0);
         add_part("marrow", solid_blob(6, 8, 5, 5), "Water", 0.2, left, 1, 0);
+        if (set->nested > 1) add_part("core", solid_blob(3, 7, 5, 9), "Al", 0.4, left, 2, 0);
     } else {
         add_part("bone", solid_blob(17, 12, 7, 3), "Bone, Cortical (ICRU-44)", 1.1, aside, -1, set->priority);
     }
@@ -243,4 +244,26 @@ void make_derivative(skg_plan *plan, const direction *d, double *derivative) {
     ck_skg(skg_plan_derivative(plan, NULL, &given, derivative, &saturated));
     ck_assert_int_eq(saturated, 0);
     for (int64_t p = 0; p < parts; p++) free(moves[p]);
+}
+
+void differentiate(skg_plan *plan, const skg_view *view, const direction *d, int64_t count, double *slope) {
+    static double ahead[2][CHANNELS_MAX * PIXELS], behind[2][CHANNELS_MAX * PIXELS];
+    static double here[CHANNELS_MAX * PIXELS];
+    const double h = 1e-3;
+    double largest = 0;
+    render(plan, view, d, 0, here);
+    for (int s = 0; s < 2; s++) {
+        render(plan, view, d, s ? h / 2 : h, ahead[s]);
+        render(plan, view, d, s ? -h / 2 : -h, behind[s]);
+    }
+    for (int64_t p = 0; p < count; p++) largest = fmax(largest, fabs(ahead[0][p] - behind[0][p]) / (2 * h));
+    for (int64_t p = 0; p < count; p++) {
+        const double whole = (ahead[0][p] - behind[0][p]) / (2 * h), half = (ahead[1][p] - behind[1][p]) / h;
+        const double bend = (ahead[0][p] - 2 * here[p] + behind[0][p]) / h;
+        const double half_bend = 2 * (ahead[1][p] - 2 * here[p] + behind[1][p]) / h;
+        /* Rounding is 1e-9 of a slope, a bend's share h^2 of it; hits that change do so by much more. */
+        const int is_smooth =
+            fabs(half - whole) <= 3e-6 * largest && fabs(bend - 2 * half_bend) <= 3e-6 * largest;
+        slope[p] = is_smooth ? (4 * half - whole) / 3 : (double)NAN;
+    }
 }

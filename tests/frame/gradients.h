@@ -42,6 +42,10 @@ void release(result *r);
 /* The image with everything moved by a step along a direction. */
 void render(skg_plan *plan, const skg_view *view, const direction *d, double step, double *image);
 
+/* The derivative of every pixel along a direction, by differences; NAN where hits change within the step: there the differences
+ * at two steps disagree, or those to both sides are not nearer to each other at half the step. */
+void differentiate(skg_plan *plan, const skg_view *view, const direction *d, int64_t count, double *slope);
+
 /* The gradient of the scene as it stands, and its derivative along a direction. */
 void make_gradient(skg_plan *plan, const setting *set, const double *adjoint, result *r);
 double along(const result *r, const direction *d);

@@ -120,6 +120,7 @@ static skg_status plan_it(run *r) {
     options.band_kev = edges;
     options.clip = r->with->clip;
     options.falloff = r->with->falloff;
+    if (r->with->ratio) options.quantity = SKG_QUANTITY_ATTENUATION;
     skg_spot_init(&spot);
     if (r->with->spot.shape) {
         spot.shape = r->with->spot.shape;

@@ -75,8 +75,8 @@ typedef struct {
      * they are not wanted. NULL: of no part. The derivative of a place is divided evenly among the vertices that stand there.
      * Parts that share a mesh each have their own; the sum is that of the mesh. */
     double *const *vertices;
-    /** [parts] by the density of each part over that of its material; NULL: not wanted. It costs the path lengths through every
-     * part, an image of lengths a part. */
+    /** [parts] by the density of each part over that of its material; NULL: not wanted. In a world, for frames with densities of
+     * their own, and for parts that compete by priority it costs an image of path lengths a part. */
     double *densities;
 } skg_gradient;
 

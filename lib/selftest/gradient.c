@@ -1,0 +1,113 @@
+/* Gradients against the formula of the boxes: what it changes when a part or the source moves by a small step, in double precision. */
+#include "selftest/selftest.h"
+
+#include <skiagraph/gradient.h>
+
+#include <math.h>
+#include <stdio.h>
+
+enum { N = SKG_SELF_TEST_PIXELS / 2, PIXELS = N * N, WAYS = 9 };
+
+/* Hits of single precision may belong to the face beside theirs; a kernel that is wrong is so by far more. */
+static const double TOLERANCE = 1e-3;
+
+typedef struct {
+    skg_self_test_scene scene;
+    skg_plan *plan;
+    double adjoint[PIXELS], derivative[PIXELS];
+    double poses[2][6], source[3];
+} gradient_run;
+
+/* Moves part 0 or 1, or the source, along an axis. */
+static void move(skg_self_test_scene *scene, int way, double step) {
+    const int axis = way % 3, end = SKG_SELF_TEST_BOXES;
+    if (way >= 6) scene->view.source[axis] += step;
+    for (int b = 0; b < end && way < 3; b++) scene->boxes[b].centre[axis] += step;
+    if (way >= 3 && way < 6) scene->boxes[end].centre[axis] += step;
+}
+
+/* The attenuation that a pixel shows. */
+static double attenuation_of(const skg_self_test_scene *scene, int pixel) {
+    const double shares[SKG_SELF_TEST_ENERGIES_MAX] = {1, 1, 1};
+    double surface, net[2], open;
+    skg_self_test_lengths(scene, pixel / N, pixel % N, &surface, net);
+    const double shown = skg_self_test_intensity(scene, shares, net, &open);
+    return -log(shown / open);
+}
+
+/* What the loss changes by, and the sum of the magnitudes over the pixels. */
+static double differentiate(gradient_run *run, int way, double *size) {
+    const double step = 1e-5;
+    double sum = 0;
+    *size = 0;
+    for (int p = 0; p < PIXELS; p++) {
+        move(&run->scene, way, step);
+        double change = attenuation_of(&run->scene, p);
+        move(&run->scene, way, -2 * step);
+        change = run->adjoint[p] * (change - attenuation_of(&run->scene, p)) / (2 * step);
+        move(&run->scene, way, step);
+        sum += change;
+        *size += fabs(change);
+    }
+    return sum;
+}
+
+static void note(skg_verdict *verdict, const char *what, int way, double got, double wanted) {
+    static const char *const moves[3] = {"boxes", "box", "source"};
+    static const char axes[] = "xyz";
+    verdict->good = 0;
+    snprintf(verdict->reason, sizeof verdict->reason,
+             "%s of %d x %d pixels by the %s of the %s is %.7g instead of %.7g per mm", what, N, N,
+             (const char[]){axes[way % 3], 0}, moves[way / 3], got, wanted);
+}
+
+/* Along the way of part 1 that is the gradient's entry. */
+static skg_status compare_forward(gradient_run *run, int way, double size, skg_verdict *verdict) {
+    double twists[2][6] = {{0}}, sum = 0;
+    skg_direction direction;
+    twists[1][way - 3] = 1;
+    skg_direction_init(&direction);
+    direction.poses = twists[0];
+    SKG_TRY(skg_plan_derivative(run->plan, NULL, &direction, run->derivative, NULL));
+    for (int p = 0; p < PIXELS; p++) sum += run->adjoint[p] * run->derivative[p];
+    if (!(fabs(sum - run->poses[1][way - 3]) <= TOLERANCE * size))
+        note(verdict, "the sum of the derivatives", way, sum, run->poses[1][way - 3]);
+    return SKG_OK;
+}
+
+static skg_status compare(gradient_run *run, skg_verdict *verdict) {
+    for (int way = 0; way < WAYS && verdict->good; way++) {
+        double size;
+        const double wanted = differentiate(run, way, &size);
+        const double got = way < 6 ? run->poses[way / 3][way % 3] : run->source[way % 3];
+        if (!(fabs(got - wanted) <= TOLERANCE * size)) note(verdict, "the gradient", way, got, wanted);
+        if (verdict->good && way >= 3 && way < 6) SKG_TRY(compare_forward(run, way, size, verdict));
+    }
+    return SKG_OK;
+}
+
+static skg_status find_gradient(skg_context *context, gradient_run *run) {
+    skg_self_test_scene *scene = &run->scene;
+    skg_adjoint adjoint;
+    skg_gradient gradient;
+    skg_adjoint_init(&adjoint);
+    skg_gradient_init(&gradient);
+    for (int p = 0; p < PIXELS; p++) run->adjoint[p] = (double)(p * 7 % 13) - 6;
+    adjoint.channels = 1, adjoint.rows = adjoint.columns = N, adjoint.data = run->adjoint;
+    gradient.poses = run->poses[0], gradient.source = run->source;
+    SKG_TRY(skg_self_test_scene_create(context, SKG_SELF_TEST_GRADIENT, N, scene));
+    SKG_TRY(skg_plan_create(context, scene->scene, &scene->view, scene->beam, &scene->options, &run->plan));
+    return skg_plan_gradient(run->plan, NULL, &adjoint, &gradient);
+}
+
+skg_status skg_self_test_gradient(skg_context *context, skg_verdict *verdict) {
+    gradient_run *run = NULL;
+    *verdict = (skg_verdict){.good = 1};
+    SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
+    skg_status status = find_gradient(context, run);
+    if (status == SKG_OK) status = compare(run, verdict);
+    skg_plan_release(&run->plan);
+    skg_self_test_scene_release(&run->scene);
+    skg_free(&run);
+    return status;
+}
