@@ -245,7 +245,7 @@ static const struct {
     {"weights.cl", "values[r] * unit[r]", "values[r]", SKG_SELF_TEST_GRADIENT},
     {"slopes.cl", "off - before", "off", SKG_SELF_TEST_GRADIENT},
     {"gradient.cl", "(weight + lost) * deep", "weight * deep", SKG_SELF_TEST_GRADIENT},
-    {"scattered.cl", "args.add ? image[k] : (skg_real)(0)", "(skg_real)(0)", SKG_SELF_TEST_SCATTER},
+    {"scattered.cl", "args->add ? image[k] : (skg_real)(0)", "(skg_real)(0)", SKG_SELF_TEST_SCATTER},
     {"show.cl", "colour >> (uint)shift & 0xffu", "colour & 0xffu", SKG_SELF_TEST_PICTURE},
 };
 
