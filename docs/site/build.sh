@@ -37,7 +37,7 @@ mkdir -p "$site/doxygen" "$site/extra"
 } | doxygen - >"$site/doxygen.log" 2>&1 || { cat "$site/doxygen.log"; exit 1; }
 
 # What the first page shows.
-(cd "$source/examples/scenes" && skiagraph cost step-wedge.json --within 30 -o "$site/extra/cost.html" --quiet >"$site/cost.log")
+(cd "$source/examples/scenes" && skiagraph cost step-wedge.json --within 15 -o "$site/extra/cost.html" --quiet >"$site/cost.log")
 
 SKG_SITE_VERSION=$(skiagraph --version | awk '{ print $2; exit }') SKG_SITE_XML=$site/doxygen/xml SKG_SITE_CACHE=$site/notebooks \
     SKG_SITE_EXTRA=$site/extra \
