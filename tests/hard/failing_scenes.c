@@ -83,7 +83,6 @@ const effects failing_runs[] = {
                   "World=Vacuum", "Tolerance=0",
                   "Scatter={\"Histories\":32,\"Detector\":[4,4],\"Voxel\":[5,\"mm\"]}", "Noise=true"},
      .strategy = SKG_STRATEGY_COPIES,
-     .bands = 2,
      .series = 1},
     /* scattered photons of a beam that differs over its directions, over the open beam, in an oblique scintillator */
     {.file = "scene.json",

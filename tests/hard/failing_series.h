@@ -4,7 +4,7 @@
 
 #include <skiagraph/skiagraph.h>
 
-/* image: [row][column] a frame with the scatter of the series. components: [row][column] the photons with two Compton scatterings. */
+/* image: [row][column] a frame with the scatter of the series. components: [row][column] the photons with two Compton scatterings, of the first channel. */
 skg_status failing_series(skg_plan *plan, const skg_view *view, float *image, float *components);
 
 #endif
