@@ -96,20 +96,20 @@ const effects failing_runs[] = {
           "Detector.Scintillator={\"Material\":\"CsI\",\"Thickness\":600,\"Unit\":\"um\",\"Oblique\":true}"},
      .strategy = SKG_STRATEGY_COPIES,
      .ratio = 1},
-    /* derivatives: priorities, compression, a world, blur, -ln of sums */
+    /* derivatives: priorities, compression, a world, blur */
     {.file = "scene.json",
      .settings = {"Samples.sheet.Path=bone.obj", "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]",
                   "Samples.bone.Priority=2", "Detector.LSF=[[0.2,1,0.2],[1,2,1]]"},
      .strategy = SKG_STRATEGY_COPIES,
      .shared = 1,
-     .ratio = 1,
      .derives = 1},
-    /* and of a parallel beam, along which faces lie; densities of nested parts without priorities */
+    /* and of a parallel beam, along which faces lie; densities of nested parts without priorities; -ln */
     {.file = "scene.json",
      .settings = {"Samples.sheet.Path=bone.obj", "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]",
                   "World=Vacuum", "Source.Shape=ParallelBeam"},
      .strategy = SKG_STRATEGY_COPIES,
      .shared = 1,
+     .ratio = 1,
      .derives = 1},
     {.file = "body.json", .breathes = 1},
     {.file = "scene.json",

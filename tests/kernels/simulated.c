@@ -34,6 +34,7 @@ typedef struct {
     int32_t picture;  /* draws the 3D view instead of an image */
     int32_t scatter;  /* histories */
     int32_t gradient; /* makes the gradient of an image, too */
+    int32_t cpu;      /* with the kernels of processors; the simulator calls itself a GPU */
     int32_t placed;   /* the positions of the ball are taken from device memory */
 } group;
 
@@ -81,6 +82,7 @@ static const group groups[] = {
     {.name = "scatter_world", .scatter = 32, .colours = 1, .noise = 1, .world = 1, .dqe = 1},
     {.name = "double_scatter", .precision = SKG_PRECISION_DOUBLE, .scatter = 32, .parallel = 1},
     {.name = "gradient", .priority = 2, .colours = 1, .gradient = 1},
+    {.name = "gradient_batches", .priority = 2, .colours = 1, .gradient = 1, .cpu = 1},
     {.name = "double_gradient",
      .precision = SKG_PRECISION_DOUBLE,
      .gradient = 1,
@@ -284,6 +286,7 @@ int main(int count, char **words) {
     skg_context *context = NULL;
     skg_output output;
     TRY(skg_context_create(NULL, &context));
+    if (g->cpu) context->device->info.is_gpu = 0;
     skg_scene *scene = make_scene(context, g);
     const skg_view view = make_view(g);
     if (g->picture) {
