@@ -132,10 +132,8 @@ static skg_status run(skg_plan *plan, const skg_frame *frame, struct skg_gradien
     SKG_TRY(skg_job_create("skg_plan_gradient", plan->recipe, &plan->machine, &plan->outcome, 1, 1, &nowhere,
                            &job));
     job->gradient = work;
-    skg_status status = skg_submission_enqueue(&job, frame, 1);
-    if (status == SKG_OK) status = skg_job_complete(&job);
-    if (status < 0) plan->machine.geometry.state++; /* what stands in the sums is not known */
-    return status;
+    SKG_TRY(skg_submission_enqueue(&job, frame, 1));
+    return skg_job_complete(&job);
 }
 
 /* Clears what is wanted of vertices, which is added to. */
