@@ -377,15 +377,21 @@ skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first,
     return read_reals(pass->main.raster, memory, first, count, numbers);
 }
 
+/* corners: NULL after a failure, so that the next call reads them again */
+static skg_status read_corners(skg_context *context, const skg_geometry *geometry, int32_t **corners) {
+    const int64_t count = 3 * geometry->mesh_triangle[geometry->meshes];
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(count, sizeof **corners, "gradient", corners));
+    SKG_CL_CLEANUP(clEnqueueReadBuffer(context->device->queue, geometry->corners.memory, CL_TRUE, 0,
+                                       (size_t)count * sizeof **corners, *corners, 0, NULL, NULL));
+cleanup:
+    if (status != SKG_OK) skg_free(corners);
+    return status;
+}
+
 skg_status skg_gradient_find_corners(skg_context *context, const skg_geometry *geometry, int64_t mesh,
                                      skg_gradient_memory *memory, const int32_t **corners) {
-    const int64_t count = 3 * geometry->mesh_triangle[geometry->meshes];
-    if (!memory->corners) {
-        SKG_TRY(skg_alloc(count, sizeof *memory->corners, "gradient", &memory->corners));
-        SKG_CL_TRY(clEnqueueReadBuffer(context->device->queue, geometry->corners.memory, CL_TRUE, 0,
-                                       (size_t)count * sizeof *memory->corners, memory->corners, 0, NULL,
-                                       NULL));
-    }
+    if (!memory->corners) SKG_TRY(read_corners(context, geometry, &memory->corners));
     *corners = memory->corners + 3 * geometry->mesh_triangle[mesh];
     return SKG_OK;
 }
