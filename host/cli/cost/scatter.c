@@ -80,7 +80,7 @@ static int measure_price(cost_study *study, int number, float *data, double *spe
     scatter.histories = 0;
     const skg_status status = render(study, &scatter, data, &report);
     if (status < SKG_OK) {
-        snprintf(s->refusal, sizeof s->refusal, "%.180s", skg_last_error());
+        snprintf(s->refusal, sizeof s->refusal, "%.319s", skg_last_error());
         return CLI_DONE;
     }
     price->seconds = report.seconds;
@@ -130,7 +130,7 @@ void cost_take_scatter(const cost_study *study, cost_source *source) {
     const cost_scattering *s = &study->scattering;
     const cost_coarse *coarse = &study->coarse[COST_SOURCE_SCATTER];
     source->state = coarse->state;
-    snprintf(source->reason, sizeof source->reason, "%.190s", s->prediction.reason);
+    snprintf(source->reason, sizeof source->reason, "%.319s", s->prediction.reason);
     if (!s->prediction.is_known) return;
     source->error = coarse->error;
     source->max = coarse->max;

@@ -155,7 +155,7 @@ typedef struct {
     int own, halving;  /* points: of today's setting and of the fastest with half of its error; -1: none */
     double halving_ms, halving_spread_ms; /* what `halving` adds to the time of an image; NaN: no price */
     char buys[96];                        /* the dial's value that halves it: "84000 triangles" */
-    char reason[192]; /* why something is not known or not measured, or why the error is 0 */
+    char reason[320]; /* why something is not known or not measured, or why the error is 0 */
     char *command;    /* NULL: none */
 } cost_source;
 
@@ -188,7 +188,7 @@ typedef struct {
 typedef struct {
     cli_prediction prediction;
     cost_scatter_price prices[COST_SCATTER_PRICES];
-    char refusal[192]; /* why the scene's images cannot have scatter; empty: they can */
+    char refusal[320]; /* why the scene's images cannot have scatter; empty: they can */
 } cost_scattering;
 
 typedef struct {
