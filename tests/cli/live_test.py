@@ -188,8 +188,10 @@ def malformed(path, seconds=4):
 
 def second_page(path):
     with Server(command, path) as server:
-        first, second = Page(server), Page(server)
-        assert first.text("role")["role"] == "owner" and second.text("role")["role"] == "reader"
+        first = Page(server)
+        assert first.text("role")["role"] == "owner"  # greeted, before the second page comes
+        second = Page(server)
+        assert second.text("role")["role"] == "reader"
         second.frame()
         second.wish(settings={"Source.Position": [8, -400, 0, "mm"]})
         assert "another page" in second.text("refused")["refused"]
@@ -200,6 +202,20 @@ def second_page(path):
         assert second.text("role")["role"] == "owner"
         second.wishes = wish
         assert second.frame(second.wish()).wish == wish + 1
+
+
+def one_owner(path):
+    """Pages that come at the same time, in whatever order they are greeted."""
+    for _ in range(5):
+        with Server(command, path) as server:
+            pages = [None] * 4
+            comers = [threading.Thread(target=lambda i: pages.__setitem__(i, Page(server)), args=[i]) for i in range(len(pages))]
+            for comer in comers:
+                comer.start()
+            for comer in comers:
+                comer.join()
+            roles = [page.text("role")["role"] for page in pages]
+            assert sorted(roles) == ["owner", "reader", "reader", "reader"], roles
 
 
 def lost_pages(path):
@@ -294,7 +310,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, wishes, answers, errors, malformed, second_page, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, wishes, answers, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

@@ -17,7 +17,7 @@ struct live_client {
     void *connection;
     pthread_t sender;
     int sends, leaves; /* leaves: the sender ends */
-    int64_t order;     /* the page that came first may change the scene */
+    int64_t order;     /* the page that was greeted first may change the scene */
     int64_t sent[UNTAKEN_MAX];
     int untaken;
     live_packet *frame;
@@ -29,7 +29,7 @@ struct live_hub {
     pthread_cond_t asked, sent; /* a page asked for something; something is to be sent */
     live_send send;
     live_client *clients[LIVE_PAGES_MAX];
-    int64_t joined;
+    int64_t greeted;
     live_asked waiting;
     double active_ms;
     char *page, *greeting;
@@ -137,10 +137,7 @@ live_client *live_hub_join(live_hub *hub, void *connection) {
     *client = (live_client){.hub = hub, .connection = connection};
     pthread_mutex_lock(&hub->lock);
     while (place < LIVE_PAGES_MAX && hub->clients[place]) place++;
-    if (place < LIVE_PAGES_MAX) {
-        client->order = hub->joined++;
-        hub->clients[place] = client;
-    }
+    if (place < LIVE_PAGES_MAX) hub->clients[place] = client;
     pthread_mutex_unlock(&hub->lock);
     if (place < LIVE_PAGES_MAX) return client;
     free(client);
@@ -151,6 +148,7 @@ int live_hub_greet(live_client *client) {
     live_hub *hub = client->hub;
     pthread_mutex_lock(&hub->lock);
     client->sends = 1;
+    client->order = hub->greeted++;
     tell_role(client, find_owner(hub) == client);
     if (hub->greeting) tell(client, hub->greeting);
     client->frame = live_packet_retain(hub->last);
