@@ -1,4 +1,5 @@
-# Doxygen's input filter. Gives each field of `double a, b;` the comment above the line, which Doxygen gives to a only.
+# Doxygen's input filter. Gives each field of `double a, b;` the comment above the line, which Doxygen gives to a only, and
+# writes out what SKG_INIT declares.
 /^ *\/\*\*/ { comment = ""; inside = 1 }
 inside {
     # Rows of a table, `    name    what it is`, become a list: Doxygen would run them together, or show them as code.
@@ -21,6 +22,12 @@ inside {
     sub(/;$/, "", field[n])
     print field[1] ";"
     for (i = 2; i <= n; i++) printf "%s%s%s;\n", comment, type, field[i]
+    next
+}
+/^SKG_INIT\(/ {
+    gsub(/^SKG_INIT\(|\)$/, "")
+    print "/** Prepares a struct of `size` bytes (export.h). */\nSKG_API void " $0 "_init_sized(void *object, int32_t size);\n"
+    print "/** Prepares a struct with its defaults. */\nstatic inline void " $0 "_init(" $0 " *object);"
     next
 }
 { print }

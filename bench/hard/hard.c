@@ -182,7 +182,7 @@ int main(int count, char **words) {
     bench_try(skg_context_log_set(t.context, NULL, NULL), "log");
     skg_device_info_init(&info);
     bench_try(skg_context_device_get(t.context, &info), "device");
-    if (!info.has_double)
+    if (!info.double_precision)
         bench_die("the device has no double precision, by which the pixels are chosen that need a judge");
     if (set.faces || set.drawn) {
         int64_t out = 0;

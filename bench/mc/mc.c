@@ -159,7 +159,7 @@ static int run(const settings *set, const job *j, FILE *csv) {
     skg_device_info_init(&info);
     bench_try(skg_context_device_get(j->context, &info), "device");
     printf("| image | NCC | mean rel. error | largest | bar |\n|---|---|---|---|---|\n");
-    for (int32_t precision = 0; precision <= info.has_double; precision++) {
+    for (int32_t precision = 0; precision <= info.double_precision; precision++) {
         double *ours = take(j, precision, SKG_QUANTITY_TRANSMISSION, 0, set->rays);
         missed |=
             compare(precision ? "I/I0, double, against the primary" : "I/I0, single, against the primary",

@@ -234,7 +234,7 @@ int main(int count, char **words) {
     skg_device_info_init(&s.info);
     bench_try(skg_context_device_get(context, &s.info), "device");
     printf("Device: %s, %d compute units.\n", s.info.name, (int)s.info.compute_units);
-    if (!s.info.is_gpu) {
+    if (!s.info.gpu) {
         prices = fit(context, &s);
         printf(
             "One worker needs, in ns: %.2f for a vertex, %.2f to sort a triangle into bands, %.2f to set one up, %.3f for a "
@@ -248,12 +248,12 @@ int main(int count, char **words) {
     printf("\n");
     if (s.scene) {
         scene_open(context, s.scene, s.size, &scene);
-        show(context, &s, s.scene, &scene, s.info.is_gpu ? NULL : &prices);
+        show(context, &s, s.scene, &scene, s.info.gpu ? NULL : &prices);
     } else {
         open_thorax(context, s.size, &scene);
-        show(context, &s, "thorax", &scene, s.info.is_gpu ? NULL : &prices);
+        show(context, &s, "thorax", &scene, s.info.gpu ? NULL : &prices);
         scene_open(context, "sphere:1000000", 2 * s.size, &scene);
-        show(context, &s, "sphere", &scene, s.info.is_gpu ? NULL : &prices);
+        show(context, &s, "sphere", &scene, s.info.gpu ? NULL : &prices);
     }
     if (s.out && fclose(s.out) != 0) bench_die("%s could not be written", s.csv);
     skg_context_release(&context);

@@ -141,7 +141,7 @@ static int has_double(skg_context *context) {
     skg_device_info info;
     skg_device_info_init(&info);
     bench_try(skg_context_device_get(context, &info), "device");
-    return info.has_double;
+    return info.double_precision;
 }
 
 void soak_case_make(const soak *s, int64_t number, skg_context *context, soak_case *out) {

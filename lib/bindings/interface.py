@@ -20,6 +20,7 @@ NO_STATUS = ["skg_last_cl_error", "skg_last_error", "skg_lung_hounsfield", "skg_
 DOXYFILE = """
 INPUT = {folders}
 FILE_PATTERNS = *.h
+INCLUDE_PATH = {includes}
 GENERATE_HTML = NO
 GENERATE_LATEX = NO
 GENERATE_XML = YES
@@ -181,7 +182,8 @@ def main():
     source, build, output = sys.argv[1:]
     includes = [f"{source}/lib/include", f"{source}/host/include", f"{build}/include"]
     with tempfile.TemporaryDirectory() as folder:
-        doxyfile = DOXYFILE.format(folders=" ".join(f"{path}/skiagraph" for path in includes), output=folder)
+        doxyfile = DOXYFILE.format(folders=" ".join(f"{path}/skiagraph" for path in includes), output=folder,
+                                   includes=" ".join(includes))
         subprocess.run(["doxygen", "-"], input=doxyfile, check=True, text=True, stdout=subprocess.DEVNULL)
         found = read_xml(f"{folder}/xml")
         measure(found, includes, folder)

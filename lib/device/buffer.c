@@ -29,7 +29,7 @@ static skg_status create(skg_device *device, int64_t bytes, cl_mem_flags flags, 
 void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
     skg_device *device = context->device;
     skg_pages_drop(&device->pages);
-    if (device->info.is_cpu && !device->simulates) skg_pages_expect(bytes, count, ranges, &device->pages);
+    if (device->info.cpu && !device->simulates) skg_pages_expect(bytes, count, ranges, &device->pages);
 }
 
 void skg_buffer_forget(skg_context *context) {

@@ -90,11 +90,11 @@ skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_
     if (clGetDeviceInfo(device, CL_DEVICE_DOUBLE_FP_CONFIG, sizeof twice, &twice, NULL) != CL_SUCCESS)
         twice = 0;
     info->known = skg_platform_is_known(platform);
-    info->is_gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
-    info->is_cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
+    info->gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
+    info->cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
     info->compute_units = (int32_t)units;
     info->float_width = (int32_t)width;
-    info->has_double = twice != 0;
+    info->double_precision = twice != 0;
     info->correct_division = (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
     info->memory = (int64_t)memory;
     info->max_allocation = (int64_t)allocation;
@@ -154,8 +154,8 @@ static int is_open(const char *wanted) {
  * case. */
 static int fits(const char *wanted, const skg_device_info *info) {
     if (!wanted || skg_same_name(wanted, "auto")) return 1;
-    if (skg_same_name(wanted, "gpu")) return info->is_gpu;
-    if (skg_same_name(wanted, "cpu")) return info->is_cpu;
+    if (skg_same_name(wanted, "gpu")) return info->gpu;
+    if (skg_same_name(wanted, "cpu")) return info->cpu;
     int platform = 0, device = 0;
     if (is_number(wanted, &platform, &device)) return platform == info->platform && device == info->device;
     for (const char *at = info->name; *at; at++) {
@@ -187,7 +187,7 @@ static int is_untested(const candidate *one) {
 static int better(const candidate *a, const candidate *b) {
     if (failed(a) != failed(b)) return failed(b);
     if (is_untested(a) != is_untested(b)) return is_untested(b);
-    if (a->info.is_gpu != b->info.is_gpu) return a->info.is_gpu > b->info.is_gpu;
+    if (a->info.gpu != b->info.gpu) return a->info.gpu > b->info.gpu;
     if (a->tested && b->tested && a->verdict.score > 0 && b->verdict.score > 0)
         return a->verdict.score > b->verdict.score;
     return a->info.compute_units > b->info.compute_units;

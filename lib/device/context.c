@@ -138,7 +138,7 @@ static void fit_to_cpus(skg_context *context) {
     enum { MANY_WORKERS = 8 };
     skg_device_info *info = &context->device->info;
     const int32_t cpus = skg_opencl_cpu_count();
-    if (!info->is_cpu || cpus == 0 || cpus >= info->compute_units) return;
+    if (!info->cpu || cpus == 0 || cpus >= info->compute_units) return;
     if (info->compute_units >= MANY_WORKERS * cpus) warn_of_workers(context, cpus);
     info->compute_units = cpus;
 }

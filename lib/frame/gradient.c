@@ -81,7 +81,7 @@ static skg_status make_image(skg_plan *plan, const skg_frame *frame, double **im
     SKG_TRY(skg_alloc(count, sizeof **image, "gradient", image));
     skg_output_init(&output);
     output.data = *image;
-    if (plan->context->device->info.has_double) output.type = SKG_TYPE_FLOAT64;
+    if (plan->context->device->info.double_precision) output.type = SKG_TYPE_FLOAT64;
     SKG_TRY_CLEANUP(skg_plan_submit(plan, 1, frame, &output, &job));
     status = skg_job_wait(&job);
     if (status == SKG_RANGE) status = SKG_OK; /* the image is in place */

@@ -79,7 +79,7 @@ static skg_status check_type(const skg_machine *machine, const skg_output *to) {
     if (to->type != SKG_TYPE_FLOAT32 && to->type != SKG_TYPE_FLOAT64)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "output type %" PRId32 " is unknown; SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64", to->type);
-    if (to->type == SKG_TYPE_FLOAT64 && !device->has_double)
+    if (to->type == SKG_TYPE_FLOAT64 && !device->double_precision)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "%s has no fp64, so it cannot write doubles; take SKG_TYPE_FLOAT32", device->name);
     if (!to->buffer && !to->data)

@@ -80,7 +80,7 @@ static int64_t frames_ahead(const skg_job *job) {
     const double rays = (double)(recipe->view.rows * recipe->view.columns) * fine * fine;
     const double pass_s = RAY_S * rays + TRIANGLE_S * (double)skg_scene_triangles(recipe->scene);
     const double passes = (double)(skg_samples_passes(&recipe->samples) * job->output_count);
-    const double units = (double)device->compute_units * (device->is_cpu ? 1 : GPU_UNIT);
+    const double units = (double)device->compute_units * (device->cpu ? 1 : GPU_UNIT);
     const double frames = AHEAD_S * units / (passes * pass_s);
     return frames > 2 ? (frames < (double)job->count ? (int64_t)frames : job->count) : 2;
 }

@@ -24,7 +24,7 @@ enum {
 };
 
 int32_t skg_strategy_choose(const skg_strategy_facts *facts, const char **why) {
-    if (facts->is_gpu) {
+    if (facts->gpu) {
         *why = "a GPU adds integers in global memory without sorting first";
         return SKG_STRATEGY_ATOMICS;
     }
@@ -101,7 +101,7 @@ skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *str
     if (*strategy != SKG_STRATEGY_AUTO) return SKG_OK;
     SKG_TRY(reached_pixels(request, &camera, last_bit, &pixels));
     const skg_strategy_facts facts = {
-        .is_gpu = request->device->is_gpu,
+        .gpu = request->device->gpu,
         .workers = request->device->compute_units,
         .image_bytes = pixels * (request->precision == SKG_PRECISION_DOUBLE ? 8 : 4),
         .triangles = skg_scene_triangles(request->scene),

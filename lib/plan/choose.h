@@ -9,7 +9,7 @@
 
 /* What a strategy is chosen by. */
 typedef struct {
-    int32_t is_gpu;
+    int32_t gpu;
     int32_t workers;        /* compute units */
     int64_t image_bytes;    /* of all accumulators, within the rectangles that their parts reach */
     int64_t triangles;      /* of a frame */

@@ -25,7 +25,7 @@ skg_status skg_check_choice(const char *name, int32_t choice, int32_t last, cons
 skg_status skg_plan_options_check(const skg_plan_options *options, const skg_device_info *device) {
     SKG_TRY(skg_check_choice("precision", options->precision, SKG_PRECISION_HALF,
                              "SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE or SKG_PRECISION_HALF"));
-    if (options->precision == SKG_PRECISION_DOUBLE && !device->has_double)
+    if (options->precision == SKG_PRECISION_DOUBLE && !device->double_precision)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "%s has no fp64, so precision double does not work there; take single", device->name);
     SKG_TRY(skg_check_choice("strategy", options->strategy, SKG_STRATEGY_ATOMICS,

@@ -192,8 +192,8 @@ static skg_status get_program(skg_context *context, const skg_tracing *t, cl_pro
 /* Enqueues histories args.first to args.end of all batches. */
 static skg_status launch(skg_context *context, cl_program program, skg_tracing *t) {
     const skg_device_info *device = &context->device->info;
-    const int64_t histories = t->args.end - t->args.first, group = device->is_gpu ? 32 : 1;
-    const int64_t items = (int64_t)device->compute_units * (device->is_gpu ? 256 : 8);
+    const int64_t histories = t->args.end - t->args.first, group = device->gpu ? 32 : 1;
+    const int64_t items = (int64_t)device->compute_units * (device->gpu ? 256 : 8);
     int64_t each = histories * SKG_SCATTER_BATCHES / items;
     each = each < 64 ? 64 : each > 1024 ? 1024 : each;
     t->args.each = (SKG_INT)each;

@@ -122,7 +122,7 @@ static skg_status draw_lists(skg_context *context, const skg_show_args *args, sc
     const int64_t strips = SKG_SHOW_TILE / skg_kernel_lanes(context, SKG_PRECISION_SINGLE);
     const skg_work_size triangles = {1, {args->triangles}, {GROUP}};
     const skg_work_size tiles = {
-        1, {(int64_t)args->across * args->down * strips}, {context->device->info.is_cpu ? 1 : GROUP}};
+        1, {(int64_t)args->across * args->down * strips}, {context->device->info.cpu ? 1 : GROUP}};
     const skg_argument fill[] = {SKG_ARGUMENT(SHOW_FILL, args, *args),
                                  SKG_ARGUMENT(SHOW_FILL, faces, s->faces.memory),
                                  SKG_ARGUMENT(SHOW_FILL, cursors, s->counts.memory),

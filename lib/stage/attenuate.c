@@ -19,7 +19,7 @@ typedef struct {
 
 static work_shape shape_of(const skg_context *context, int32_t fine) {
     static const work_shape gpu = {4, 1, {8, 16}}, cpu = {SKG_CPU_RUNS, SKG_CPU_STRIP, {1, 16}};
-    work_shape shape = context->device->info.is_gpu ? gpu : cpu;
+    work_shape shape = context->device->info.gpu ? gpu : cpu;
     if (fine > 2) shape.runs = fine;
     return shape;
 }

@@ -78,7 +78,7 @@ static skg_status reserve(const gather_run *run, skg_buffer *buffer, int64_t byt
 
 /* Whether faces are gathered in batches; what priorities add is then added by itself. */
 static int in_batches(const gather_run *run) {
-    return !run->forward && !run->context->device->info.is_gpu;
+    return !run->forward && !run->context->device->info.gpu;
 }
 
 static skg_status get_batches(const gather_run *run, cl_program *program) {
@@ -279,7 +279,7 @@ static skg_status run_faces(const gather_run *run) {
     if (in_batches(run)) SKG_TRY(run_batches(run));
     if (in_batches(run) && run->pass->priority.count == 0) return SKG_OK;
     const skg_work_size work = {
-        2, {geometry->triangles, run->context->device->info.is_gpu ? SLICES : 1}, {GROUP, 1}};
+        2, {geometry->triangles, run->context->device->info.gpu ? SLICES : 1}, {GROUP, 1}};
     const skg_argument arguments[] = {
         SKG_ARGUMENT(GRADIENT_FACES, args, run->args),
         SKG_TRIANGLE_BUFFERS(GRADIENT_FACES, geometry),

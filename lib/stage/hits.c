@@ -129,7 +129,7 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
     const SKG_INT winners = (SKG_INT)(priority->count - priority->others), all = (SKG_INT)priority->count;
     const int others = (task & SKG_HITS_OF_OTHERS) != 0;
     const skg_work_size work = {
-        2, {run->triangles[others], run->context->device->info.is_gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
+        2, {run->triangles[others], run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
     skg_hits_args args = scalars_of(run, task);
     args.chosen[0] = others ? winners : 0;
     args.chosen[1] = others ? all : winners;

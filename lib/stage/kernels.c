@@ -44,7 +44,7 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
         {"SKG_SEAMS", options->seams != 0},
         {"SKG_LISTED", options->listed != 0},
         {"SKG_HALF", options->half != 0},
-        {"SKG_CPU", !context->device->info.is_gpu},
+        {"SKG_CPU", !context->device->info.gpu},
     };
     const char *all[HEADERS + LIMIT];
     char of_options[TEXT], of_program[TEXT], text[2 * TEXT + 64];
@@ -61,7 +61,7 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
 static const skg_kernel_options first_options = {.precision = SKG_PRECISION_SINGLE, .bits = 32};
 
 int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *options) {
-    return !context->device->info.is_gpu && memcmp(options, &first_options, sizeof first_options) == 0;
+    return !context->device->info.gpu && memcmp(options, &first_options, sizeof first_options) == 0;
 }
 
 skg_status skg_kernels_get_first(skg_context *context, cl_program *program) {

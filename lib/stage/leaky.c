@@ -93,7 +93,7 @@ static skg_status add_sums(const skg_leaky_batch *batch) {
     const skg_raster_layout *layout = &batch->raster->layout;
     const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_context *context = batch->raster->context;
-    const int on_gpu = context->device->info.is_gpu;
+    const int on_gpu = context->device->info.gpu;
     const int64_t lanes = skg_kernel_lanes(context, batch->raster->options.kernels.precision);
     /* On a CPU one work-item takes a whole row. */
     const skg_work_size work = {

@@ -66,7 +66,7 @@ static skg_status run(skg_placement *placement, skg_context *context, const skg_
         SKG_ARGUMENT(PLACE, vertices, geometry->offsets.memory),
         SKG_ARGUMENT(PLACE, outside, placement->outside.memory),
     };
-    const skg_work_size work = {1, {vertices}, {context->device->info.is_gpu ? 64 : 16}};
+    const skg_work_size work = {1, {vertices}, {context->device->info.gpu ? 64 : 16}};
     SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, placement->outside.memory, &none, sizeof none,
                                    (size_t)index * sizeof none, sizeof none, 0, NULL, NULL));
     return SKG_LAUNCH(context, placement->kernel, "place", &work, arguments, NULL);

@@ -193,7 +193,7 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl
         SKG_ARGUMENT(PROJECT, projected, geometry->projected.memory),
         SKG_ARGUMENT(PROJECT, bad_vertex, geometry->bad.memory),
     };
-    const int on_gpu = context->device->info.is_gpu;
+    const int on_gpu = context->device->info.gpu;
     const int64_t run = on_gpu ? 1 : SKG_CPU_RUN;
     const skg_work_size work = {1, {(geometry->vertices + run - 1) / run}, {on_gpu ? 64 : 1}};
     return SKG_LAUNCH(context, kernel, "project", &work, arguments, log);

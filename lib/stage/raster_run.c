@@ -47,7 +47,7 @@ size_t skg_raster_source_bands(const skg_raster *raster) {
     const skg_device_info *device = &raster->context->device->info;
     const size_t most = ((size_t)raster->layout.rows + SKG_SOURCE_ROWS - 1) / SKG_SOURCE_ROWS;
     const size_t enough = 2 * (size_t)device->compute_units;
-    return device->is_gpu || most < enough ? most : enough;
+    return device->gpu || most < enough ? most : enough;
 }
 
 static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stage_log *log) {

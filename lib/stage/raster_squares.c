@@ -9,7 +9,7 @@ enum { SQUARE = 32 /* side of a tile */ };
 static int takes(const skg_context *context, const skg_raster_options *options) {
     if (options->strategy != SKG_STRATEGY_TILES) return 0;
     return options->shape == SKG_TILE_SQUARES ||
-           (options->shape == SKG_TILE_AUTO && context->device->info.is_gpu);
+           (options->shape == SKG_TILE_AUTO && context->device->info.gpu);
 }
 
 static skg_status square_side(const skg_raster *raster, SKG_INT *side) {

@@ -32,7 +32,7 @@ static skg_status take_neighbours(const skg_leaky_batch *batch) {
     const skg_raster_layout *layout = &batch->raster->layout;
     const skg_leaky_args args = skg_leaky_scalars(batch);
     skg_context *context = batch->raster->context;
-    const int on_gpu = context->device->info.is_gpu;
+    const int on_gpu = context->device->info.gpu;
     const skg_work_size work = {2, {on_gpu ? layout->columns : 1, layout->rows}, {on_gpu ? 16 : 1, 8}};
     const skg_argument arguments[] = {
         SKG_LEAKY_ARGUMENTS(LEAKY_REPAIR, args, batch),

@@ -73,7 +73,7 @@ class Device:
     several threads at once. A device does not survive os.fork(): start processes with multiprocessing's "spawn".
 
     >>> with Device("device=cpu") as device:
-    ...     device.info["is_cpu"]
+    ...     device.info["cpu"]
     1
     """
 

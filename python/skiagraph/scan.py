@@ -24,7 +24,7 @@ class Scan(Sequence[View]):
     view: source and detector at angle 0. projections: their number. step: degrees from one projection to the next, by
     default a full turn in all. start: degrees. axis: "x", "y", "z" or a direction, through the point `centre`, mm. Angles
     are those of samples that turn counter-clockwise as seen from the tip of the axis.
-    fields: others of the library's skg_scan_options: pitch_mm, source_travel_mm, is_detector_fixed, detector_offset_mm,
+    fields: others of the library's skg_scan_options: pitch_mm, source_travel_mm, detector_fixed, detector_offset_mm,
     detector_tilt and detector_skew (degrees), source_drift_mm, detector_drift_mm, source_jitter_mm, detector_jitter_mm,
     angle_jitter (degrees), jitter_seed, start_s, interval_s, exposure_s.
 

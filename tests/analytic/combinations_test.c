@@ -112,7 +112,7 @@ static void open_all(void) {
     skg_device_info_init(&info);
     ck_skg(skg_context_device_get(context, &info));
     /* Lengths carry 1e-11 and 3e-6 of themselves, exponents are up to 100. */
-    bar = info.has_double ? 1e-8 : 2e-3;
+    bar = info.double_precision ? 1e-8 : 2e-3;
 }
 
 static void close_all(void) {
@@ -129,7 +129,7 @@ static skg_plan_options plain_options(const int *on) {
     ck_skg(skg_context_device_get(context, &info));
     skg_plan_options_init(&options);
     options.overlaps = 0;
-    options.precision = info.has_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
+    options.precision = info.double_precision ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
     options.clip = on[CLIP];
     return options;
 }

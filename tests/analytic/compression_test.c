@@ -159,7 +159,7 @@ static int has_double(void) {
     skg_device_info info;
     skg_device_info_init(&info);
     ck_skg(skg_context_device_get(context, &info));
-    return info.has_double;
+    return info.double_precision;
 }
 
 /* Most show intensities of one channel, so that they share kernels. */

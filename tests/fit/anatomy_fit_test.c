@@ -186,9 +186,9 @@ START_TEST(what_is_not_determined) {
     skg_fit_parameter_init(&one);
     ck_skg(skg_fit_parameter_get(fit, BODY_RIB_ANGLE, &one));
     ck_assert_double_eq_tol(one.sigma, 20 / sqrt(12), 256 * DBL_EPSILON);
-    ck_assert_int_eq(one.is_determined, 0);
+    ck_assert_int_eq(one.determined, 0);
     ck_skg(skg_fit_parameter_get(fit, BODY_TENDON + 2, &one));
-    ck_assert_int_eq(one.is_determined, 1);
+    ck_assert_int_eq(one.determined, 1);
     skg_fit_release(&fit);
     skg_setup_release(&setup);
 }

@@ -77,7 +77,7 @@ START_TEST(a_fit_is_cancelled) {
         ck_skg(skg_fit_parameters_choose(fit, "tendon"));
         ck_skg(skg_fit_target_add(fit, part_of(setup, "diaphragm"), 0, mesh));
         skg_mesh_release(&mesh);
-        while (status == SKG_OK && !state.is_done) status = skg_fit_step(fit, &state);
+        while (status == SKG_OK && !state.done) status = skg_fit_step(fit, &state);
         ck_assert_int_eq(status, limit < 1000 ? SKG_ERR_CANCELLED : SKG_OK);
         ck_assert_int_ge(state.evaluations, limit < 1000 ? limit : 100);
         if (state.evaluations > 0) ck_skg(skg_fit_finish(fit));
@@ -185,7 +185,7 @@ START_TEST(noise_and_what_is_not_determined) {
         skg_fit_parameter_init(&one);
         ck_skg(skg_fit_parameter_get(fit, p, &one));
         ck_assert_msg(fabs(one.value - truth[p]) < 2.5, "%s %g", one.name, one.value); /* tissues differ */
-        ck_assert_int_eq(one.is_determined, 1);
+        ck_assert_int_eq(one.determined, 1);
     }
     for (int64_t t = 0; t < 2; t++) /* 0.5 sqrt 3 mm from each vertex, less from a surface */
         ck_assert_msg(target_of(fit, t).after_mean_mm < 1, "%g mm", target_of(fit, t).after_mean_mm);
@@ -214,7 +214,7 @@ START_TEST(noise_and_what_is_not_determined) {
     skg_fit_parameter_init(&beta);
     ck_skg(skg_fit_parameter_get(fit, BODY_LIVER + 2, &beta));
     ck_assert_double_eq_tol(beta.sigma, 0.5 / sqrt(12), 64 * DBL_EPSILON);
-    ck_assert_int_eq(beta.is_determined, 0);
+    ck_assert_int_eq(beta.determined, 0);
     skg_fit_release(&fit);
     skg_setup_release(&setup);
 }
@@ -255,7 +255,7 @@ START_TEST(the_scene_chooses) {
     for (int p = 0; p < BODY_DOMES; p++) {
         skg_fit_parameter_init(&one);
         ck_skg(skg_fit_parameter_get(fit, p, &one));
-        ck_assert_int_eq(one.is_chosen, p == 2 || p == BODY_RIBS || p == BODY_REACH);
+        ck_assert_int_eq(one.chosen, p == 2 || p == BODY_RIBS || p == BODY_REACH);
         if (p == 2) ck_assert(one.low == -30 && one.high == -10);
         if (p == BODY_ELEVATION) ck_assert(one.low == 30 && one.high == 80);
     }
@@ -263,7 +263,7 @@ START_TEST(the_scene_chooses) {
     ck_skg(skg_fit_bounds_set(fit, "tendon-z", -20, 0));
     skg_fit_parameter_init(&one);
     ck_skg(skg_fit_parameter_get(fit, 2, &one));
-    ck_assert(one.is_chosen == 0 && one.low == -20);
+    ck_assert(one.chosen == 0 && one.low == -20);
     skg_fit_release(&fit);
     skg_setup_release(&setup);
     static const char *const wrong[][2] = {

@@ -136,7 +136,7 @@ static inline skg_fit_state run(skg_fit *fit) {
     skg_fit_state state;
     skg_fit_state_init(&state);
     do ck_skg(skg_fit_step(fit, &state));
-    while (!state.is_done);
+    while (!state.done);
     return state;
 }
 

@@ -50,7 +50,7 @@ static void open_plan(void) {
     ck_skg(skg_plan_image(plan, &output));
     skg_device_info_init(&device);
     ck_skg(skg_context_device_get(run_context, &device));
-    frames = FRAMES_PER_CORE * (device.is_cpu ? device.compute_units : 1);
+    frames = FRAMES_PER_CORE * (device.cpu ? device.compute_units : 1);
     pixels = malloc((size_t)(frames * PIXELS) * sizeof *pixels);
     for (int64_t i = 0; i < frames * PIXELS; i++) pixels[i] = UNTOUCHED;
 }
@@ -94,7 +94,7 @@ static int holds_frames(void) {
     skg_device_info device;
     skg_device_info_init(&device);
     ck_skg(skg_context_device_get(run_context, &device));
-    return device.is_cpu; /* a GPU is given more frames at once than a test can wait for */
+    return device.cpu; /* a GPU is given more frames at once than a test can wait for */
 }
 
 START_TEST(cancelled_at_once) {

@@ -115,7 +115,7 @@ START_TEST(so_it_is_in_double_precision) {
     close_caller(&c);
     skg_plan_options_init(&options);
     options.precision = SKG_PRECISION_DOUBLE;
-    for (int leaky = 0; leaky < 2 && info.has_double; leaky++) compare(leaky, &options);
+    for (int leaky = 0; leaky < 2 && info.double_precision; leaky++) compare(leaky, &options);
 }
 END_TEST
 

@@ -134,7 +134,7 @@ START_TEST(double_precision_takes_floats) {
     open_caller(&c, sizeof ball.xyz, NULL);
     ck_skg(skg_context_device_get(c.context, &info));
     close_caller(&c);
-    if (!info.has_double) return;
+    if (!info.double_precision) return;
     open_caller(&c, sizeof ball.xyz, &options);
     bend(&c, BALL, 0.25F, &ball);
     expect(NULL, &ball, &options, expected);

@@ -75,7 +75,7 @@ static skg_status pack(const char *folder, float *image) {
     char from[128], to[128];
     skg_scan_pack_options options;
     skg_scan_pack_options_init(&options);
-    options.is_grey16 = 1;
+    options.grey16 = 1;
     snprintf(from, sizeof from, "%s/scan.h5", folder);
     snprintf(to, sizeof to, "%s/packed.h5", folder);
     const skg_status status = skg_scan_file_pack(from, to, &options);

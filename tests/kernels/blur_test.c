@@ -138,7 +138,7 @@ START_TEST(line_spread_single) {
 END_TEST
 
 START_TEST(line_spread_double) {
-    if (!context->device->info.has_double) return;
+    if (!context->device->info.double_precision) return;
     check_lines(COLUMNS, ROWS, 1);
 }
 END_TEST
@@ -151,7 +151,7 @@ START_TEST(point_spread) {
     shape.columns = 9, shape.rows = 5, shape.point = samples;
     check_against_sum(&shape, COLUMNS, ROWS, 0);
     check_against_sum(&shape, 3, 40, 0);
-    if (context->device->info.has_double) check_against_sum(&shape, COLUMNS, ROWS, 1);
+    if (context->device->info.double_precision) check_against_sum(&shape, COLUMNS, ROWS, 1);
 }
 END_TEST
 

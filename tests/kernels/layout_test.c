@@ -104,7 +104,7 @@ START_TEST(structs_are_laid_out_alike) {
     int32_t out[PLACES];
     device_layout("-cl-std=CL1.2", out);
     ck_assert_mem_eq(out, single, sizeof out);
-    if (!context->device->info.has_double) return;
+    if (!context->device->info.double_precision) return;
     device_layout("-cl-std=CL1.2 -D SKG_DOUBLE=1 -D SKG_BITS=64 -D SKG_WIDE=4", out);
     ck_assert_mem_eq(out, twice, sizeof out);
 }

@@ -250,7 +250,7 @@ static skg_status read_sums(skg_context *context, const skg_raster *raster, int3
 static skg_status read_lengths(skg_context *context, skg_raster *raster, const skg_camera *camera,
                                double scale, picture *result) {
     const int64_t size = result->rows * result->columns;
-    const int wide = context->device->info.has_double;
+    const int wide = context->device->info.double_precision;
     skg_buffer output = {0}, negative = {0};
     skg_attenuator *attenuator = NULL;
     float *narrow = calloc((size_t)size, sizeof *narrow);

@@ -96,7 +96,7 @@ START_TEST(strategies_give_the_same_bits) {
         options.kernels.source_plane = n >= 3;
         view.projection = n == 3 ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         if (n == 3 || n == 4) view.source[0] = 5, view.source[2] = 10; /* inside the sphere */
-        if (options.kernels.precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
+        if (options.kernels.precision == SKG_PRECISION_DOUBLE && !context->device->info.double_precision) continue;
         check_variants(&options, &view, THREE, bodies);
     }
     shape_free(&sphere);
@@ -163,7 +163,7 @@ END_TEST
 static void check_cancels(const char *what, const skg_view *view, const shape *s, const double *pose,
                           int32_t source) {
     for (int32_t precision = SKG_PRECISION_SINGLE; precision <= SKG_PRECISION_DOUBLE; precision++) {
-        if (precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
+        if (precision == SKG_PRECISION_DOUBLE && !context->device->info.double_precision) continue;
         for (int v = 0; v < 4; v++) {
             skg_raster_options options = options_of(precision, 0);
             options.kernels.listed = 1;
@@ -317,7 +317,7 @@ START_TEST(lengths_are_those_of_the_referee) {
         view.row_step[2] = n == 1 || n == 4 ? 0.4 : 0; /* tilted */
         double *truth = referee(&view, THREE, bodies);
         for (int32_t precision = SKG_PRECISION_SINGLE; precision <= SKG_PRECISION_DOUBLE; precision++) {
-            if (precision == SKG_PRECISION_DOUBLE && !context->device->info.has_double) continue;
+            if (precision == SKG_PRECISION_DOUBLE && !context->device->info.double_precision) continue;
             skg_raster_options options = options_of(precision, SKG_STRATEGY_COPIES);
             options.kernels.parallel = n % 3 != SKG_PROJECTION_POINT;
             options.kernels.source_plane = n >= 3;

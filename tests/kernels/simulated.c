@@ -286,7 +286,7 @@ int main(int count, char **words) {
     skg_context *context = NULL;
     skg_output output;
     TRY(skg_context_create(NULL, &context));
-    if (g->cpu) context->device->info.is_gpu = 0;
+    if (g->cpu) context->device->info.gpu = 0;
     skg_scene *scene = make_scene(context, g);
     const skg_view view = make_view(g);
     if (g->picture) {

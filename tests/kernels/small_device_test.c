@@ -74,9 +74,9 @@ START_TEST(a_small_gpu_gets_what_it_can_do) {
     device = context->device->id;
     info->local_memory = (int64_t)local_bytes[_i];
     info->float_width = 1;
-    info->has_double = 0;
-    info->is_gpu = 1;
-    info->is_cpu = 0;
+    info->double_precision = 0;
+    info->gpu = 1;
+    info->cpu = 0;
     for (int test = 0; test < SKG_SELF_TESTS; test++) {
         if (test == SKG_SELF_TEST_DOUBLE) {
             ck_skg_fails(skg_self_test_run(context, (skg_self_test)test, &verdict), SKG_ERR_UNSUPPORTED,

@@ -16,7 +16,7 @@ START_TEST(strategy_follows_from_the_facts) {
     ck_assert_int_eq(skg_strategy_choose(&facts, &why), SKG_STRATEGY_TILES);
     facts.triangle_pixels = 10;
     ck_assert_int_eq(skg_strategy_choose(&facts, &why), SKG_STRATEGY_COPIES);
-    facts.is_gpu = 1;
+    facts.gpu = 1;
     ck_assert_int_eq(skg_strategy_choose(&facts, &why), SKG_STRATEGY_ATOMICS);
     ck_assert_ptr_nonnull(why);
 }

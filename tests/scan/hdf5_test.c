@@ -225,7 +225,7 @@ START_TEST(a_packed_copy_in_grey_values) {
     skg_scan_pack_options_init(&options);
     snprintf(packed, sizeof packed, "%s/packed.h5", folder);
     make_file(0);
-    options.is_grey16 = 1;
+    options.grey16 = 1;
     ck_skg(skg_scan_file_pack(path, packed, &options));
     read_all(path, images[0]);
     read_all(packed, copies[0]);

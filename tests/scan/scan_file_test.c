@@ -196,7 +196,7 @@ START_TEST(one_writer_at_a_time) {
     }
     ck_assert_int_eq(waitpid(child, &status, 0), child);
     ck_assert(WIFEXITED(status) && WEXITSTATUS(status) == 0);
-    options.is_helper = 1; /* who only helps needs no lock */
+    options.helper = 1; /* who only helps needs no lock */
     skg_scan_file *helper = NULL;
     ck_skg(skg_scan_file_open(path, &options, &helper));
     const int64_t one = 1;
@@ -381,9 +381,9 @@ START_TEST(what_is_missing_is_refused) {
     options.type = 5;
     ck_skg_fails(skg_scan_file_open(in_folder("scan.mha"), &options, &file), SKG_ERR_ARGUMENT, "type 5");
     options.type = SKG_TYPE_FLOAT32;
-    options.is_helper = 1;
+    options.helper = 1;
     ck_skg_fails(skg_scan_file_open(in_folder("scan.mha"), &options, &file), SKG_ERR_OUTPUT, "not laid out");
-    options.is_helper = 0;
+    options.helper = 0;
     ck_skg(skg_scan_file_open(in_folder("scan.mha"), &options, &file));
     const int64_t beyond = COUNT;
     ck_skg_fails(skg_scan_file_write(file, 1, &beyond, images, NULL), SKG_ERR_ARGUMENT, "no projection 9");

@@ -94,16 +94,16 @@ START_TEST(a_right_device_passes) {
     skg_context *context = open_first("");
     for (int test = 0; test < SKG_SELF_TESTS; test++) {
         skg_verdict verdict;
-        if (test == SKG_SELF_TEST_DOUBLE && !context->device->info.has_double) continue;
+        if (test == SKG_SELF_TEST_DOUBLE && !context->device->info.double_precision) continue;
         ck_skg(skg_self_test_repeat(context, (skg_self_test)test, &verdict));
         ck_assert_msg(verdict.good, "%s: %s", skg_self_test_name((skg_self_test)test), verdict.reason);
         ck_assert_int_eq(context->device->self_testing, 0); /* calls of the caller are tested again */
         ck_assert(test == SKG_SELF_TEST_CORE ? verdict.score > 0 : verdict.score == 0);
         if (test != SKG_SELF_TEST_TILES) continue;
-        context->device->info.is_gpu = 1;
+        context->device->info.gpu = 1;
         ck_skg(skg_self_test_repeat(context, SKG_SELF_TEST_TILES, &verdict));
         ck_assert_msg(verdict.good, "squares: %s", verdict.reason);
-        context->device->info.is_gpu = 0;
+        context->device->info.gpu = 0;
     }
     skg_context_release(&context);
 }
@@ -263,7 +263,7 @@ START_TEST(wrong_kernels_are_found) {
     snprintf(more, sizeof more, "kernels=%s", kernels);
     skg_context *context = open_first(more);
     /* Squares are the tiles of GPUs. */
-    context->device->info.is_gpu |= strstr("raster_squares.cl tiles.cl", errors[_i].file) != NULL;
+    context->device->info.gpu |= strstr("raster_squares.cl tiles.cl", errors[_i].file) != NULL;
     ck_skg(skg_self_test_repeat(context, errors[_i].test, &verdict));
     if (is_reached(_i, &context->device->info)) {
         ck_assert_int_eq(verdict.good, 0);

@@ -18,7 +18,7 @@ int run_has_double(void) {
     skg_device_info info;
     skg_device_info_init(&info);
     ck_skg(skg_context_device_get(run_context, &info));
-    return info.has_double;
+    return info.double_precision;
 }
 
 skg_view run_view(int64_t n, double pitch) {

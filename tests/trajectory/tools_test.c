@@ -178,7 +178,7 @@ END_TEST
 START_TEST(a_fixed_detector_for_tigre) {
     options.projections = 12;
     options.step_rad = PI / 6;
-    options.is_detector_fixed = 1;
+    options.detector_fixed = 1;
     view.centre[1] = 200;
     ck_assert_int_eq(write_for("scan.tigre.py", 9), 12);
     for (int k = 0; k < 12; k++) ck_tigre(k);

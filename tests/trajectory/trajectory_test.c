@@ -130,7 +130,7 @@ START_TEST(tomosynthesis_on_a_line_and_on_an_arc) {
     ck_vector(view_of(4).centre, 0, 500, 0);
     skg_scan_release(&scan);
     options.source_travel_mm[0] = 0;
-    options.is_detector_fixed = 1;
+    options.detector_fixed = 1;
     options.start_rad = -PI / 4;
     options.step_rad = PI / 8;
     ck_skg(skg_scan_create(&view, &options, &scan));

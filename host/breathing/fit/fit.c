@@ -220,7 +220,7 @@ skg_status skg_fit_parameter_get(const skg_fit *fit, int64_t index, skg_fit_para
                         BODY_PARAMETERS - 1);
     memcpy(values, fit->start, sizeof values);
     if (fit->began) skg_fit_values_at(fit, fit->search.best, values);
-    skg_fit_parameter ours = {.is_chosen = fit->chosen[index],
+    skg_fit_parameter ours = {.chosen = fit->chosen[index],
                               .name = skg_parameter_kinds[index].name,
                               .unit = skg_parameter_kinds[index].unit,
                               .start = fit->start[index],
@@ -228,7 +228,7 @@ skg_status skg_fit_parameter_get(const skg_fit *fit, int64_t index, skg_fit_para
                               .high = fit->high[index],
                               .value = values[index],
                               .sigma = fit->sigma[index]};
-    ours.is_determined = fit->finished && ours.is_chosen && ours.sigma <= 0.2 * (ours.high - ours.low);
+    ours.determined = fit->finished && ours.chosen && ours.sigma <= 0.2 * (ours.high - ours.low);
     return skg_struct_write(&ours, sizeof ours, "skg_fit_parameter", parameter);
 }
 

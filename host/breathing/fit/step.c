@@ -122,7 +122,7 @@ skg_status skg_fit_step(skg_fit *fit, skg_fit_state *state) {
     if (!is_done(fit)) SKG_TRY(step(fit));
     if (is_done(fit)) (void)say_progress(fit);
     const int64_t *counters = fit->search.counters;
-    const skg_fit_state ours = {.is_done = is_done(fit),
+    const skg_fit_state ours = {.done = is_done(fit),
                                 .evaluations = counters[SEARCH_EVALUATIONS],
                                 .generation = counters[SEARCH_GENERATION],
                                 .restarts = counters[SEARCH_RESTARTS],

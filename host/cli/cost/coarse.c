@@ -33,7 +33,7 @@ static int choose_pair(const cost_study *study, int source, cost_setting *from, 
         return to->meshing >= 0;
     case COST_SOURCE_PRECISION:
         to->precision = SKG_PRECISION_DOUBLE;
-        return study->session.device.has_double;
+        return study->session.device.double_precision;
     case COST_SOURCE_BINS:
         to->bins = study->finest;
         return 1;

@@ -33,7 +33,7 @@ static void add_precision(cost_study *study) {
     cost_setting its = study->own;
     its.tolerance = 0;
     its.bins = study->finest;
-    for (int i = 0; i < 2 + study->session.device.has_double; i++) {
+    for (int i = 0; i < 2 + study->session.device.double_precision; i++) {
         its.precision = precisions[i];
         cost_add_point(study, COST_PRECISION, COST_OF_RAYS, i ? NEXT : LATER, its);
     }

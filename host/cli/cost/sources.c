@@ -123,7 +123,7 @@ const char *cost_why_not(const cost_study *study, int source) {
     if (source == COST_SOURCE_TRIANGLES && *study->triangles_reason) return study->triangles_reason;
     if (source == COST_SOURCE_TRIANGLES && !study->has_round)
         return "the body that the triangles stand for is not known, so that no finer mesh can be made";
-    if (source == COST_SOURCE_PRECISION && !study->session.device.has_double)
+    if (source == COST_SOURCE_PRECISION && !study->session.device.double_precision)
         return "not measured: the device has no double precision";
     if (source == COST_SOURCE_SAMPLES && spot && spot->shape != SKG_SPOT_POINT && spot->grid > 0)
         return "not measured: the scene fixes the samples by a grid";

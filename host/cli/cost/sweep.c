@@ -120,7 +120,7 @@ static int make_first_references(cost_study *study, const double *own) {
     cost_setting best = study->own;
     best.tolerance = 0;
     best.bins = study->finest;
-    best.precision = study->session.device.has_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
+    best.precision = study->session.device.double_precision ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
     study->references[COST_OF_RAYS].setting = best;
     const int exit_status = cost_make_reference(study, COST_OF_RAYS);
     return exit_status == CLI_DONE ? make_best(study, own) : exit_status;
@@ -151,7 +151,7 @@ int cost_sweep(cost_study *study) {
     double *image = calloc((size_t)study->pixels, sizeof *image);
     study->batch = calloc((size_t)(study->frames * study->pixels), sizeof *study->batch);
     const int enough = image && study->batch;
-    if (!study->session.device.has_double)
+    if (!study->session.device.double_precision)
         cost_note(study, "the device has no fp64: single precision is compared with itself");
     if (study->session.options.spot && study->session.options.spot->grid > 0)
         cost_note(study, "source samples are not swept: the scene fixes them by a grid");

@@ -30,7 +30,7 @@ static int search(fit_work *work) {
     skg_status status = SKG_OK;
     skg_fit_state_init(&work->state);
     cli_progress_follow("evaluations");
-    while (status == SKG_OK && !work->state.is_done) {
+    while (status == SKG_OK && !work->state.done) {
         status = skg_fit_step(work->fit, &work->state);
         if (status == SKG_OK && checkpoint) status = skg_fit_checkpoint_save(work->fit, checkpoint);
     }

@@ -45,10 +45,10 @@ static void put_parameters(FILE *page, const fit_work *work) {
     for (int64_t p = 0; p < count; p++) {
         skg_fit_parameter one;
         skg_fit_parameter_init(&one);
-        if (skg_fit_parameter_get(work->fit, p, &one) != SKG_OK || !one.is_chosen) continue;
+        if (skg_fit_parameter_get(work->fit, p, &one) != SKG_OK || !one.chosen) continue;
         fprintf(page, "<tr%s><td>%s<td>%s<td>%.4g<td>%.4g to %.4g<td>%.4g<td>%.2g%s</tr>\n",
-                one.is_determined ? "" : " class=\"open\"", one.name, one.unit, one.start, one.low, one.high,
-                one.value, one.sigma, one.is_determined ? "" : " (not determined)");
+                one.determined ? "" : " class=\"open\"", one.name, one.unit, one.start, one.low, one.high,
+                one.value, one.sigma, one.determined ? "" : " (not determined)");
     }
     fputs(
         "</table>\n<p>sigma says how far a value may go, the others following, before the errors grow by what is left of "

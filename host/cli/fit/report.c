@@ -17,7 +17,7 @@ static json_t *parameters_json(const fit_work *work, int64_t *chosen) {
     for (int64_t p = 0; p < count; p++) {
         skg_fit_parameter one;
         skg_fit_parameter_init(&one);
-        if (skg_fit_parameter_get(work->fit, p, &one) != SKG_OK || !one.is_chosen) continue;
+        if (skg_fit_parameter_get(work->fit, p, &one) != SKG_OK || !one.chosen) continue;
         json_t *object = json_object();
         json_object_set_new(object, "name", json_string(one.name));
         json_object_set_new(object, "value", cli_json_number(one.value));
@@ -26,7 +26,7 @@ static json_t *parameters_json(const fit_work *work, int64_t *chosen) {
         json_object_set_new(object, "start", cli_json_number(one.start));
         json_object_set_new(object, "low", cli_json_number(one.low));
         json_object_set_new(object, "high", cli_json_number(one.high));
-        json_object_set_new(object, "determined", json_boolean(one.is_determined));
+        json_object_set_new(object, "determined", json_boolean(one.determined));
         json_array_append_new(list, object);
         ++*chosen;
     }
@@ -87,9 +87,9 @@ static void print_parameters(const fit_work *work) {
     for (int64_t p = 0; p < count; p++) {
         skg_fit_parameter one;
         skg_fit_parameter_init(&one);
-        if (skg_fit_parameter_get(work->fit, p, &one) != SKG_OK || !one.is_chosen) continue;
+        if (skg_fit_parameter_get(work->fit, p, &one) != SKG_OK || !one.chosen) continue;
         printf("%-20s %10.4g %10.4g %10.2g  %s%s\n", one.name, one.start, one.value, one.sigma, one.unit,
-               one.is_determined ? "" : "  not determined by the targets");
+               one.determined ? "" : "  not determined by the targets");
     }
 }
 

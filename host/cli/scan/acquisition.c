@@ -130,7 +130,7 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.from = a->part_from;
     options.count = a->part_count;
     options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
-    options.is_helper = a->ranks.rank > 0;
+    options.helper = a->ranks.rank > 0;
     a->file_options = options;
     if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
     if (status != SKG_OK) return cli_fail(status);

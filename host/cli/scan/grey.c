@@ -26,11 +26,11 @@ int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
     skg_status status = skg_setup_record_get(a->session.setup, &a->record);
     if (status == SKG_OK) status = skg_setup_readout_get(a->session.setup, &a->readout);
     if (status != SKG_OK) return cli_fail(status);
-    a->is_grey = asked || (a->record.has_grey_values && !has_quantity);
+    a->is_grey = asked || (a->record.grey_values && !has_quantity);
     if (asked) a->readout.bits = 16;
     if (a->is_grey) mark_hash(a->hash);
-    if (a->record.has_fields && !cli_given(arguments, &cli_flag_scan_flats)) a->flats = a->record.flats;
-    if (a->record.has_fields && !cli_given(arguments, &cli_flag_scan_darks)) a->darks = a->record.darks;
+    if (a->record.fields && !cli_given(arguments, &cli_flag_scan_flats)) a->flats = a->record.flats;
+    if (a->record.fields && !cli_given(arguments, &cli_flag_scan_darks)) a->darks = a->record.darks;
     a->options.moving_count = a->record.moving_count;
     a->options.moving_parts = a->record.moving_parts;
     a->options.moving_poses = a->record.moving_poses;
@@ -38,7 +38,7 @@ int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
         cli_log(SKG_LOG_WARNING,
                 "the intensity of the beam changes in grey values only; this scan has another quantity",
                 NULL);
-    if (!a->record.is_ctsimu || !a->is_grey) return CLI_DONE;
+    if (!a->record.ctsimu || !a->is_grey) return CLI_DONE;
     a->stem = make_stem(a->session.path);
     return a->stem ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
 }

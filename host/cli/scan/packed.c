@@ -25,7 +25,7 @@ int packed_write(const cli_arguments *arguments, const cli_acquisition *a) {
     skg_scan_pack_options options;
     int64_t done = 0;
     skg_scan_pack_options_init(&options);
-    options.is_grey16 = cli_given(arguments, &cli_flag_scan_packed_grey16);
+    options.grey16 = cli_given(arguments, &cli_flag_scan_packed_grey16);
     if (!to) return CLI_DONE;
     skg_status status = skg_scan_file_done_count(a->file, &done);
     if (status == SKG_OK && done < a->projections) {

@@ -12,7 +12,7 @@
 #include <string.h>
 
 static const char *kind_of(const skg_device_info *device) {
-    return device->is_gpu ? "gpu" : device->is_cpu ? "cpu" : "other";
+    return device->gpu ? "gpu" : device->cpu ? "cpu" : "other";
 }
 
 /* refused: why this device cannot be used; "" if it can be, or was not asked for. */
@@ -29,7 +29,7 @@ static json_t *device_json(const skg_device_info *device, int chosen, const char
     json_object_set_new(object, "refused", refused[0] ? cli_json_text(refused) : json_null());
     json_object_set_new(object, "compute_units", json_integer(device->compute_units));
     json_object_set_new(object, "float_width", json_integer(device->float_width));
-    json_object_set_new(object, "has_double", json_boolean(device->has_double));
+    json_object_set_new(object, "has_double", json_boolean(device->double_precision));
     json_object_set_new(object, "correct_division", json_boolean(device->correct_division));
     json_object_set_new(object, "memory_bytes", json_integer(device->memory));
     json_object_set_new(object, "max_allocation_bytes", json_integer(device->max_allocation));
@@ -47,7 +47,7 @@ static void print_device(const skg_device_info *device, int chosen, const char *
            device->compute_units, device->float_width, (double)device->memory / gib,
            (double)device->max_allocation / gib, (double)device->local_memory / 1024);
     printf("       precision double: %s; division correctly rounded: %s\n",
-           device->has_double ? "yes" : "no (no fp64)",
+           device->double_precision ? "yes" : "no (no fp64)",
            device->correct_division ? "yes (same bits as other such devices)"
                                     : "not promised by the driver (bits may differ from other devices)");
     printf("       %s, driver %s\n", device->version, device->driver);

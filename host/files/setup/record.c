@@ -186,9 +186,9 @@ skg_status skg_setup_read_record(skg_setup_reader *reader, const skg_json_object
     int64_t choice = 0, projections = 0;
     SKG_TRY(read_fields(scan, "Flats", &section->flats, &section->flat_frames, &section->flat_noise));
     SKG_TRY(read_fields(scan, "Darks", &section->darks, &section->dark_frames, &section->dark_noise));
-    section->has_fields = skg_json_member(scan, "Flats").value || skg_json_member(scan, "Darks").value;
+    section->fields = skg_json_member(scan, "Flats").value || skg_json_member(scan, "Darks").value;
     if (layout.value) SKG_TRY(skg_json_choice(&layout, "layout of files", layouts, 1, &choice));
-    section->is_ctsimu = layout.value != NULL;
+    section->ctsimu = layout.value != NULL;
     if (!intensity.value) return SKG_OK;
     SKG_TRY(skg_scan_projection_count(section->scan, &projections));
     SKG_TRY(skg_alloc(projections, sizeof(double), "intensities", &section->intensities));
@@ -247,9 +247,9 @@ void skg_scan_record_init_sized(void *record, int32_t size) {
 skg_status skg_setup_record_get(const skg_setup *setup, skg_scan_record *record) {
     SKG_NEEDS(setup);
     const skg_scan_section *s = &setup->scan;
-    const skg_scan_record ours = {.is_ctsimu = s->is_ctsimu,
-                                  .has_grey_values = setup->grey.is_given,
-                                  .has_fields = s->has_fields,
+    const skg_scan_record ours = {.ctsimu = s->ctsimu,
+                                  .grey_values = setup->grey.is_given,
+                                  .fields = s->fields,
                                   .flats = s->flats,
                                   .flat_frames = s->flat_frames,
                                   .flat_noise = s->flat_noise,

@@ -282,7 +282,7 @@ skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *no
     SKG_TRY(read_angles(&object, &a, &options));
     SKG_TRY(read_lengths(&object, "Pitch", "[20, \"mm\"]", 1, &options.pitch_mm));
     SKG_TRY(read_lengths(&object, "SourceTravel", "[200, 0, 0, \"mm\"]", 3, options.source_travel_mm));
-    SKG_TRY(read_flag(&object, "FixedDetector", &options.is_detector_fixed));
+    SKG_TRY(read_flag(&object, "FixedDetector", &options.detector_fixed));
     SKG_TRY(read_detector(&object, &options));
     SKG_TRY(read_errors(&object, &options));
     SKG_TRY(read_number(&object, "StartTime", 1, &options.start_s, NULL));

@@ -21,7 +21,7 @@ typedef struct {
     skg_scan *known;     /* KnownTable, or NULL */
     double *intensities; /* [projections], or NULL */
     int64_t flats, flat_frames, darks, dark_frames;
-    int32_t flat_noise, dark_noise, has_fields, is_ctsimu;
+    int32_t flat_noise, dark_noise, fields, ctsimu;
     int64_t moving_count; /* samples with Poses */
     int64_t *moving;      /* [moving_count] their parts */
     double *poses;        /* [projections][moving_count][16] */

@@ -110,13 +110,7 @@ typedef struct {
     double liver_held;
 } skg_body_options;
 
-/** Prepares the options of a body, of `size` bytes (export.h). */
-SKG_API void skg_body_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of a body. */
-static inline void skg_body_options_init(skg_body_options *options) {
-    skg_body_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_body_options)
 
 /** How an organ moves. */
 enum skg_organ_kind {
@@ -146,13 +140,7 @@ typedef struct {
     double rigid_mm;
 } skg_organ_link;
 
-/** Prepares a link of `size` bytes (export.h). */
-SKG_API void skg_organ_link_init_sized(void *link, int32_t size);
-
-/** Prepares a link. */
-static inline void skg_organ_link_init(skg_organ_link *link) {
-    skg_organ_link_init_sized(link, (int32_t)sizeof *link);
-}
+SKG_INIT(skg_organ_link)
 
 /** An organ. Prepare with skg_organ_init: moves by its label, inside nothing. */
 typedef struct {
@@ -194,13 +182,7 @@ typedef struct {
     int64_t link_count;
 } skg_organ;
 
-/** Prepares an organ of `size` bytes (export.h). */
-SKG_API void skg_organ_init_sized(void *organ, int32_t size);
-
-/** Prepares an organ. */
-static inline void skg_organ_init(skg_organ *organ) {
-    skg_organ_init_sized(organ, (int32_t)sizeof *organ);
-}
+SKG_INIT(skg_organ)
 
 /** Makes an empty body.
  *
@@ -267,13 +249,7 @@ typedef struct {
     const char *conflict[3];
 } skg_body_measure;
 
-/** Prepares a skg_body_measure of `size` bytes (export.h). */
-SKG_API void skg_body_measure_init_sized(void *measure, int32_t size);
-
-/** Prepares a skg_body_measure. */
-static inline void skg_body_measure_init(skg_body_measure *measure) {
-    skg_body_measure_init_sized(measure, (int32_t)sizeof *measure);
-}
+SKG_INIT(skg_body_measure)
 
 /** Measures the last pose. */
 SKG_API skg_status skg_body_measure_get(const skg_body *body, skg_body_measure *measure);

@@ -36,13 +36,7 @@ typedef struct {
     double end_s;
 } skg_breath_hold;
 
-/** Prepares a breath hold of `size` bytes (export.h). */
-SKG_API void skg_breath_hold_init_sized(void *hold, int32_t size);
-
-/** Prepares a breath hold. */
-static inline void skg_breath_hold_init(skg_breath_hold *hold) {
-    skg_breath_hold_init_sized(hold, (int32_t)sizeof *hold);
-}
+SKG_INIT(skg_breath_hold)
 
 /** One way to breathe. Prepare with skg_breath_init: sine, 4 s, ribs and diaphragm, no lag. What it points to
  * is not copied. */
@@ -83,13 +77,7 @@ typedef struct {
     int64_t signal_count;
 } skg_breath;
 
-/** Prepares a breath of `size` bytes (export.h). */
-SKG_API void skg_breath_init_sized(void *breath, int32_t size);
-
-/** Prepares a breath. */
-static inline void skg_breath_init(skg_breath *breath) {
-    skg_breath_init_sized(breath, (int32_t)sizeof *breath);
-}
+SKG_INIT(skg_breath)
 
 /** Gets a breath by the name of its pattern.
  *
@@ -118,13 +106,7 @@ typedef struct {
     double diaphragmatic;
 } skg_breath_state;
 
-/** Prepares the state of a breath, of `size` bytes (export.h). */
-SKG_API void skg_breath_state_init_sized(void *state, int32_t size);
-
-/** Prepares the state of a breath. */
-static inline void skg_breath_state_init(skg_breath_state *state) {
-    skg_breath_state_init_sized(state, (int32_t)sizeof *state);
-}
+SKG_INIT(skg_breath_state)
 
 /** Gets the state of a breath at a time in s, which may be any finite number. */
 SKG_API skg_status skg_breath_state_at_time(const skg_breath *breath, double time_s, skg_breath_state *state);

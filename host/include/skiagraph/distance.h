@@ -39,13 +39,7 @@ typedef struct {
     skg_progress *progress;
 } skg_distance_options;
 
-/** Prepares options of `size` bytes (export.h). */
-SKG_API void skg_distance_options_init_sized(void *options, int32_t size);
-
-/** Prepares options. */
-static inline void skg_distance_options_init(skg_distance_options *options) {
-    skg_distance_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_distance_options)
 
 /** Distance from one surface to another. The library fills it; prepare with skg_distance_init. */
 typedef struct {
@@ -69,13 +63,7 @@ typedef struct {
     double max_position_mm[3];
 } skg_distance;
 
-/** Prepares a distance of `size` bytes (export.h). */
-SKG_API void skg_distance_init_sized(void *distance, int32_t size);
-
-/** Prepares a distance. */
-static inline void skg_distance_init(skg_distance *distance) {
-    skg_distance_init_sized(distance, (int32_t)sizeof *distance);
-}
+SKG_INIT(skg_distance)
 
 /** Measures the distance from one surface to another. The other direction is a second call; it differs.
  *

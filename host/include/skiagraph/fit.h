@@ -6,7 +6,7 @@
  *
  *     skg_fit_create(context, setup, NULL, &fit);
  *     skg_fit_target_add(fit, liver, 0.5, mesh);
- *     do skg_fit_step(fit, &state); while (!state.is_done);
+ *     do skg_fit_step(fit, &state); while (!state.done);
  *     skg_fit_finish(fit);
  *     skg_fit_scene_save(fit, "fitted.json");
  *
@@ -50,13 +50,7 @@ typedef struct {
     skg_progress *progress;
 } skg_fit_options;
 
-/** Prepares options of `size` bytes (export.h). */
-SKG_API void skg_fit_options_init_sized(void *options, int32_t size);
-
-/** Prepares options. */
-static inline void skg_fit_options_init(skg_fit_options *options) {
-    skg_fit_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_fit_options)
 
 /** Begins a fit of a scene that breathes. The start is the body of the scene file.
  *
@@ -104,9 +98,9 @@ typedef struct {
     /** Set by skg_fit_parameter_init. */
     int32_t size;
     /** 1: it is fitted. */
-    int32_t is_chosen;
+    int32_t chosen;
     /** 1: the targets determine it: sigma is at most a fifth of its range. Set by skg_fit_finish. */
-    int32_t is_determined;
+    int32_t determined;
     /** 0 */
     int32_t reserved;
     /** Name, valid for ever. */
@@ -127,13 +121,7 @@ typedef struct {
     double sigma;
 } skg_fit_parameter;
 
-/** Prepares a skg_fit_parameter of `size` bytes (export.h). */
-SKG_API void skg_fit_parameter_init_sized(void *parameter, int32_t size);
-
-/** Prepares a skg_fit_parameter. */
-static inline void skg_fit_parameter_init(skg_fit_parameter *parameter) {
-    skg_fit_parameter_init_sized(parameter, (int32_t)sizeof *parameter);
-}
+SKG_INIT(skg_fit_parameter)
 
 /** Number of parameters, chosen or not. */
 SKG_API skg_status skg_fit_parameter_count(const skg_fit *fit, int64_t *count);
@@ -146,7 +134,7 @@ typedef struct {
     /** Set by skg_fit_state_init. */
     int32_t size;
     /** 1: the evaluations are used up, or the error is small enough. */
-    int32_t is_done;
+    int32_t done;
     /** Poses of the body so far. */
     int64_t evaluations;
     /** Generations so far. */
@@ -157,13 +145,7 @@ typedef struct {
     double best_mm;
 } skg_fit_state;
 
-/** Prepares a skg_fit_state of `size` bytes (export.h). */
-SKG_API void skg_fit_state_init_sized(void *state, int32_t size);
-
-/** Prepares a skg_fit_state. */
-static inline void skg_fit_state_init(skg_fit_state *state) {
-    skg_fit_state_init_sized(state, (int32_t)sizeof *state);
-}
+SKG_INIT(skg_fit_state)
 
 /** Evaluates one generation. Does nothing if the fit is done.
  *
@@ -220,13 +202,7 @@ typedef struct {
     double after_max_mm;
 } skg_fit_target;
 
-/** Prepares a skg_fit_target of `size` bytes (export.h). */
-SKG_API void skg_fit_target_init_sized(void *target, int32_t size);
-
-/** Prepares a skg_fit_target. */
-static inline void skg_fit_target_init(skg_fit_target *target) {
-    skg_fit_target_init_sized(target, (int32_t)sizeof *target);
-}
+SKG_INIT(skg_fit_target)
 
 /** Number of targets. */
 SKG_API skg_status skg_fit_target_count(const skg_fit *fit, int64_t *count);

@@ -74,13 +74,7 @@ typedef struct {
     double lung_hu;
 } skg_motion_state;
 
-/** Prepares a skg_motion_state of `size` bytes (export.h). */
-SKG_API void skg_motion_state_init_sized(void *state, int32_t size);
-
-/** Prepares a skg_motion_state. */
-static inline void skg_motion_state_init(skg_motion_state *state) {
-    skg_motion_state_init_sized(state, (int32_t)sizeof *state);
-}
+SKG_INIT(skg_motion_state)
 
 /** Gets where a motion is. */
 SKG_API skg_status skg_motion_state_get(const skg_motion *motion, skg_motion_state *state);

@@ -45,13 +45,7 @@ typedef struct {
     int64_t seed;
 } skg_readout;
 
-/** Prepares a readout of `size` bytes (export.h). */
-SKG_API void skg_readout_init_sized(void *readout, int32_t size);
-
-/** Prepares a readout. */
-static inline void skg_readout_init(skg_readout *readout) {
-    skg_readout_init_sized(readout, (int32_t)sizeof *readout);
-}
+SKG_INIT(skg_readout)
 
 /** Reads an image out.
  *

@@ -43,13 +43,7 @@ typedef struct {
     skg_progress *progress;
 } skg_fdk_options;
 
-/** Prepares the options of a reconstruction, of `size` bytes (export.h). */
-SKG_API void skg_fdk_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of a reconstruction. */
-static inline void skg_fdk_options_init(skg_fdk_options *options) {
-    skg_fdk_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_fdk_options)
 
 /** Begins a reconstruction.
  *

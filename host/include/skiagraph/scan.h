@@ -23,7 +23,7 @@ typedef struct skg_scan skg_scan;
  * - Circular: step_rad. A half scan has a range of 180 degrees plus the fan (skg_scan_short_range_get).
  * - Helical: also pitch_mm.
  * - Laminography: the axis is oblique to the beam.
- * - Tomosynthesis: source_travel_mm for a source on a line; is_detector_fixed for a source on an arc.
+ * - Tomosynthesis: source_travel_mm for a source on a line; detector_fixed for a source on an arc.
  *
  * Projection k of n has the angle a = start_rad + k step_rad. Its view is the view of the scan with the
  * detector displaced, turned by -a about the axis, moved by -pitch_mm (a - start_rad) / (2 pi) along the axis,
@@ -33,7 +33,7 @@ typedef struct {
     /** Set by skg_scan_options_init. */
     int32_t size;
     /** 1: the detector stays, and only the source turns and travels. */
-    int32_t is_detector_fixed;
+    int32_t detector_fixed;
     /** Number of projections, 1 to 10,000,000. */
     int64_t projections;
     /** Angle of the first projection. */
@@ -76,13 +76,7 @@ typedef struct {
     double exposure_s;
 } skg_scan_options;
 
-/** Prepares the options of a scan, of `size` bytes (export.h). */
-SKG_API void skg_scan_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of a scan. */
-static inline void skg_scan_options_init(skg_scan_options *options) {
-    skg_scan_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_scan_options)
 
 /** Makes a scan.
  *

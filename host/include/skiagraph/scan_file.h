@@ -35,7 +35,7 @@ typedef struct {
     /** 1: a file of another scan at this path is replaced. 0 (default): it is refused. */
     int32_t overwrite;
     /** 1: another process has laid out the file and holds its lock; this one only writes projections. */
-    int32_t is_helper;
+    int32_t helper;
     /** Number of flat fields, of HDF5 and folders with a stem; 1 by default. */
     int64_t flats;
     /** Number of dark fields, of the same; 1 by default. */
@@ -49,13 +49,7 @@ typedef struct {
     const char *stem;
 } skg_scan_file_options;
 
-/** Prepares the options of a file, of `size` bytes (export.h). */
-SKG_API void skg_scan_file_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of a file. */
-static inline void skg_scan_file_options_init(skg_scan_file_options *options) {
-    skg_scan_file_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_scan_file_options)
 
 /** Checks that a path names a kind of file that can be written: an extension of skg_scan_file_open, or a folder.
  * Errors: SKG_ERR_ARGUMENT (extension), SKG_ERR_UNSUPPORTED (.h5 in a build without HDF5). */
@@ -102,7 +96,7 @@ SKG_API skg_status skg_scan_file_done_get(const skg_scan_file *file, int64_t ind
 
 /** Reads every projection that a file has and compares it with the CRC-32C that was written with it. Those that do not fit
  * are marked as missing, so that they are computed again. skg_scan_file_open does so with every file that is not finished
- * (is_helper 0); the flat and dark fields have no checksums.
+ * (helper 0); the flat and dark fields have no checksums.
  *
  *     errors   SKG_ERR_UNSUPPORTED: the file has no checksums, which are in the .h5, or in the NAME.progress of an
  *              unfinished .mha, .raw or .tif; SKG_ERR_FILE; SKG_ERR_OUTPUT */
@@ -160,18 +154,12 @@ typedef struct {
     /** Of zlib: 0 (none) to 9 */
     int32_t level;
     /** 1: values become grey values of 16 bits, 60000 where the mean flat field is strongest; larger ones end at 65535. */
-    int32_t is_grey16;
+    int32_t grey16;
     /** 0 */
     int32_t reserved;
 } skg_scan_pack_options;
 
-/** Prepares the options of packing, of `size` bytes (export.h). */
-SKG_API void skg_scan_pack_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of packing. */
-static inline void skg_scan_pack_options_init(skg_scan_pack_options *options) {
-    skg_scan_pack_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_scan_pack_options)
 
 /** Writes a finished .h5 again, in chunks that are compressed: the last pass over a scan. The new file holds all that the old one
  * does, and is read by the same programs; it cannot be continued.

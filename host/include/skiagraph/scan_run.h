@@ -55,13 +55,7 @@ typedef struct {
     skg_progress *progress;
 } skg_scan_run_options;
 
-/** Prepares the options of a run, of `size` bytes (export.h). */
-SKG_API void skg_scan_run_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of a run. */
-static inline void skg_scan_run_options_init(skg_scan_run_options *options) {
-    skg_scan_run_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_scan_run_options)
 
 /** Starts a run. Three batches are in memory at a time: the caller's, and two that are being computed.
  *
@@ -108,13 +102,7 @@ typedef struct {
     const double *amplitudes;
 } skg_scan_batch;
 
-/** Prepares a skg_scan_batch of `size` bytes (export.h). */
-SKG_API void skg_scan_batch_init_sized(void *batch, int32_t size);
-
-/** Prepares a skg_scan_batch. */
-static inline void skg_scan_batch_init(skg_scan_batch *batch) {
-    skg_scan_batch_init_sized(batch, (int32_t)sizeof *batch);
-}
+SKG_INIT(skg_scan_batch)
 
 /** Waits for the next batch and starts another one.
  *

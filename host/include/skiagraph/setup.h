@@ -67,13 +67,7 @@ typedef struct {
     void *log_user;
 } skg_setup_source;
 
-/** Prepares a skg_setup_source of `size` bytes (export.h). */
-SKG_API void skg_setup_source_init_sized(void *source, int32_t size);
-
-/** Prepares a skg_setup_source. */
-static inline void skg_setup_source_init(skg_setup_source *source) {
-    skg_setup_source_init_sized(source, (int32_t)sizeof *source);
-}
+SKG_INIT(skg_setup_source)
 
 /** Makes a set-up from a text or file; otherwise as skg_setup_load. */
 SKG_API skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup);
@@ -123,15 +117,15 @@ typedef struct {
     /** Set by skg_scan_record_init. */
     int32_t size;
     /** 1: the scene comes from a CTSimU scenario, and a folder is written in its layout. */
-    int32_t is_ctsimu;
+    int32_t ctsimu;
     /** 1: the scene has GreyValues (skg_setup_readout_get). */
-    int32_t has_grey_values;
+    int32_t grey_values;
     /** 1: flat fields have the noise of the grey values. */
     int32_t flat_noise;
     /** 1: dark fields have it. */
     int32_t dark_noise;
     /** 1: the numbers of flat and dark fields are given. */
-    int32_t has_fields;
+    int32_t fields;
     /** Number of flat fields. */
     int64_t flats;
     /** Frames of which each is averaged. */
@@ -153,13 +147,7 @@ typedef struct {
     const double *moving_poses;
 } skg_scan_record;
 
-/** Prepares a skg_scan_record of `size` bytes (export.h). */
-SKG_API void skg_scan_record_init_sized(void *record, int32_t size);
-
-/** Prepares a skg_scan_record. */
-static inline void skg_scan_record_init(skg_scan_record *record) {
-    skg_scan_record_init_sized(record, (int32_t)sizeof *record);
-}
+SKG_INIT(skg_scan_record)
 
 /** Gets how the scan of a set-up is recorded.
  *

@@ -34,13 +34,7 @@ typedef struct {
     int64_t triangles;
 } skg_thorax_options;
 
-/** Prepares the options of a thorax, of `size` bytes (export.h). */
-SKG_API void skg_thorax_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of a thorax. */
-static inline void skg_thorax_options_init(skg_thorax_options *options) {
-    skg_thorax_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_thorax_options)
 
 /** Makes a thorax.
  *
@@ -74,13 +68,7 @@ typedef struct {
     double density_g_cm3;
 } skg_thorax_part;
 
-/** Prepares a skg_thorax_part of `size` bytes (export.h). */
-SKG_API void skg_thorax_part_init_sized(void *part, int32_t size);
-
-/** Prepares a skg_thorax_part. */
-static inline void skg_thorax_part_init(skg_thorax_part *part) {
-    skg_thorax_part_init_sized(part, (int32_t)sizeof *part);
-}
+SKG_INIT(skg_thorax_part)
 
 /** Number of parts of a thorax. */
 SKG_API skg_status skg_thorax_part_count(const skg_thorax *thorax, int64_t *count);

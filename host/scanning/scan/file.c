@@ -227,17 +227,17 @@ static skg_status prepare(skg_scan_file *file, const char *path, const skg_scan_
 
 static skg_status open_file(skg_scan_file *file) {
     int is_there = 0;
-    if (!file->options.is_helper) {
+    if (!file->options.helper) {
         SKG_TRY(skg_scan_lock(file->lock_path, &file->lock));
         skg_scan_remove_stale(file);
     }
     SKG_TRY(look(file, &is_there));
-    if (!is_there && file->options.is_helper)
+    if (!is_there && file->options.helper)
         return skg_fail(SKG_ERR_OUTPUT, "%s: is not laid out", file->path);
     if (!is_there) SKG_TRY(lay_out(file));
     SKG_TRY(open_laid_out(file));
     const int continues = file->done_count > 0 && file->done_count < file->projections;
-    return continues && !file->options.is_helper && file->checksum_at ? skg_scan_file_verify(file) : SKG_OK;
+    return continues && !file->options.helper && file->checksum_at ? skg_scan_file_verify(file) : SKG_OK;
 }
 
 skg_status skg_scan_file_open(const char *path, const skg_scan_file_options *options,

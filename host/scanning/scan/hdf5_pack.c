@@ -221,7 +221,7 @@ static skg_status look(packing *p, char *quantity, size_t length, double *flat) 
     SKG_TRY(check_finished(p, (int64_t)size[0]));
     SKG_TRY(skg_alloc((int64_t)(size[1] * size[2]), sizeof(double), "projection", &p->image));
     read_old(p, quantity, length, flat);
-    if (!p->options.is_grey16) return SKG_OK;
+    if (!p->options.grey16) return SKG_OK;
     if (strncmp(quantity, "attenuation", 11) == 0)
         return refuse(
             p, "attenuations are no grey values; scan energies, or another quantity with a flat field");

@@ -163,10 +163,10 @@ static void turn_to(const skg_scan *scan, double position, skg_view *view) {
     const skg_scan_options *o = &scan->options;
     const double turned = position * o->step_rad + skg_scan_angle_error(o, nearest(scan, position));
     const double along = -o->pitch_mm * turned / (2 * SKG_PI);
-    skg_scan_turn(o->axis, o->centre, -(o->start_rad + turned), o->is_detector_fixed, view);
+    skg_scan_turn(o->axis, o->centre, -(o->start_rad + turned), o->detector_fixed, view);
     if (view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY)
         skg_add_scaled(view->source, along, o->axis, view->source);
-    if (!o->is_detector_fixed) skg_add_scaled(view->centre, along, o->axis, view->centre);
+    if (!o->detector_fixed) skg_add_scaled(view->centre, along, o->axis, view->centre);
 }
 
 static void view_at(const skg_scan *scan, double position, skg_view *view) {

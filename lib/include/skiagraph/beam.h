@@ -55,13 +55,7 @@ typedef struct {
     double thickness_mm;
 } skg_filter;
 
-/** Prepares a filter of `size` bytes (export.h). */
-SKG_API void skg_filter_init_sized(void *filter, int32_t size);
-
-/** Prepares a filter. */
-static inline void skg_filter_init(skg_filter *filter) {
-    skg_filter_init_sized(filter, (int32_t)sizeof *filter);
-}
+SKG_INIT(skg_filter)
 
 /** Makes the spectrum behind filters. Energies that keep less than 1e-9 of the photons of the strongest one
  * are dropped.
@@ -145,13 +139,7 @@ typedef struct {
     void *log_user;
 } skg_tube;
 
-/** Prepares a tube of `size` bytes (export.h). */
-SKG_API void skg_tube_init_sized(void *tube, int32_t size);
-
-/** Prepares a tube. */
-static inline void skg_tube_init(skg_tube *tube) {
-    skg_tube_init_sized(tube, (int32_t)sizeof *tube);
-}
+SKG_INIT(skg_tube)
 
 /** Makes the spectrum of a tube. */
 SKG_API skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectrum);
@@ -199,13 +187,7 @@ typedef struct {
     double air_kerma_ugy;
 } skg_quality;
 
-/** Prepares a skg_quality of `size` bytes (export.h). */
-SKG_API void skg_quality_init_sized(void *quality, int32_t size);
-
-/** Prepares a skg_quality. */
-static inline void skg_quality_init(skg_quality *quality) {
-    skg_quality_init_sized(quality, (int32_t)sizeof *quality);
-}
+SKG_INIT(skg_quality)
 
 /** Gets the figures of a beam's quality. */
 SKG_API skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_quality *quality);
@@ -248,13 +230,7 @@ typedef struct {
     const double *swank;
 } skg_response_table;
 
-/** Prepares a response table of `size` bytes (export.h). */
-SKG_API void skg_response_table_init_sized(void *table, int32_t size);
-
-/** Prepares a response table. */
-static inline void skg_response_table_init(skg_response_table *table) {
-    skg_response_table_init_sized(table, (int32_t)sizeof *table);
-}
+SKG_INIT(skg_response_table)
 
 /** Makes a response from a table.
  *

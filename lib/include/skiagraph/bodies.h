@@ -46,13 +46,7 @@ typedef struct {
     int64_t segments;
 } skg_foam;
 
-/** Prepares a foam of `size` bytes (export.h). */
-SKG_API void skg_foam_init_sized(void *foam, int32_t size);
-
-/** Prepares a foam. */
-static inline void skg_foam_init(skg_foam *foam) {
-    skg_foam_init_sized(foam, (int32_t)sizeof *foam);
-}
+SKG_INIT(skg_foam)
 
 /** Makes the spheres of a foam as one mesh: its pores, or grains. The largest are placed first, each at random where it
  * fits. Errors: SKG_ERR_ARGUMENT (a parameter); SKG_ERR_MESH if no place is found for a sphere, with the share that was
@@ -82,13 +76,7 @@ typedef struct {
     int64_t segments;
 } skg_fibres;
 
-/** Prepares fibres of `size` bytes (export.h). */
-SKG_API void skg_fibres_init_sized(void *fibres, int32_t size);
-
-/** Prepares fibres. */
-static inline void skg_fibres_init(skg_fibres *fibres) {
-    skg_fibres_init_sized(fibres, (int32_t)sizeof *fibres);
-}
+SKG_INIT(skg_fibres)
 
 /** Makes fibres as one mesh. Errors: SKG_ERR_ARGUMENT (a parameter); SKG_ERR_MESH if no place is found for a fibre, with
  * the number that were placed. */

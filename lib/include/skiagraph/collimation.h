@@ -52,13 +52,7 @@ typedef struct {
     double margin_mm;
 } skg_collimation;
 
-/** Prepares a collimation of `size` bytes (export.h). */
-SKG_API void skg_collimation_init_sized(void *collimation, int32_t size);
-
-/** Prepares a collimation. */
-static inline void skg_collimation_init(skg_collimation *collimation) {
-    skg_collimation_init_sized(collimation, (int32_t)sizeof *collimation);
-}
+SKG_INIT(skg_collimation)
 
 /** Gets the corners of the field of a view's beam. Points between them on the detector see the middle of the source.
  *

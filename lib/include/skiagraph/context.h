@@ -143,13 +143,13 @@ typedef struct {
     /** Number of the device on its platform; -1: the caller's own device. */
     int32_t device;
     /** 1: a GPU. */
-    int32_t is_gpu;
+    int32_t gpu;
     /** 1: a CPU. */
-    int32_t is_cpu;
+    int32_t cpu;
     /** Number of compute units; of a context, those for which work is divided. */
     int32_t compute_units;
     /** 1: has fp64, which SKG_PRECISION_DOUBLE and SKG_TYPE_FLOAT64 need. */
-    int32_t has_double;
+    int32_t double_precision;
     /** 1: the driver promises that float division is correctly rounded, so images have the same bits as on other such devices.
      * Without the promise they may have the same bits, too. */
     int32_t correct_division;
@@ -173,13 +173,7 @@ typedef struct {
     char driver[128];
 } skg_device_info;
 
-/** Prepares a skg_device_info of `size` bytes (export.h). */
-SKG_API void skg_device_info_init_sized(void *info, int32_t size);
-
-/** Prepares a skg_device_info. */
-static inline void skg_device_info_init(skg_device_info *info) {
-    skg_device_info_init_sized(info, (int32_t)sizeof *info);
-}
+SKG_INIT(skg_device_info)
 
 /** The device that skg_context_create would open first for these words. It is neither opened nor tested.
  * Errors: those of skg_context_create. */
@@ -231,13 +225,7 @@ typedef struct {
     char reason[256];
 } skg_device_test;
 
-/** Prepares a skg_device_test of `size` bytes (export.h). */
-SKG_API void skg_device_test_init_sized(void *result, int32_t size);
-
-/** Prepares a skg_device_test. */
-static inline void skg_device_test_init(skg_device_test *result) {
-    skg_device_test_init_sized(result, (int32_t)sizeof *result);
-}
+SKG_INIT(skg_device_test)
 
 /** Number of tests that a device can be put to. */
 SKG_API skg_status skg_device_test_count(int64_t *count);

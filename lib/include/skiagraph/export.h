@@ -19,6 +19,8 @@
 #ifndef SKIAGRAPH_EXPORT_H
 #define SKIAGRAPH_EXPORT_H
 
+#include <stdint.h>
+
 #if defined(__GNUC__)
 /** Marks a function that programs may call. All other names stay inside the library. */
 #define SKG_API __attribute__((visibility("default")))
@@ -26,5 +28,12 @@
 /** Marks a function that programs may call. */
 #define SKG_API
 #endif
+
+/** Declares the two functions that prepare a struct of the interface. In C++ as in C. */
+#define SKG_INIT(type)                                                                                       \
+    SKG_API void type##_init_sized(void *object, int32_t size);                                              \
+    static inline void type##_init(type *object) {                                                           \
+        type##_init_sized(object, (int32_t)sizeof *object);                                                  \
+    }
 
 #endif

@@ -61,13 +61,7 @@ typedef struct {
     double series_place;
 } skg_frame;
 
-/** Prepares a frame of `size` bytes (export.h). */
-SKG_API void skg_frame_init_sized(void *frame, int32_t size);
-
-/** Prepares a frame. */
-static inline void skg_frame_init(skg_frame *frame) {
-    skg_frame_init_sized(frame, (int32_t)sizeof *frame);
-}
+SKG_INIT(skg_frame)
 
 /** What an output receives. */
 enum skg_output_kind {
@@ -141,13 +135,7 @@ typedef struct {
     int32_t reserved;
 } skg_output;
 
-/** Prepares an output of `size` bytes (export.h). */
-SKG_API void skg_output_init_sized(void *output, int32_t size);
-
-/** Prepares an output. */
-static inline void skg_output_init(skg_output *output) {
-    skg_output_init_sized(output, (int32_t)sizeof *output);
-}
+SKG_INIT(skg_output)
 
 /** Starts frames with one output.
  *

@@ -45,13 +45,7 @@ typedef struct {
     int64_t offset;
 } skg_adjoint;
 
-/** Prepares an adjoint of `size` bytes (export.h). */
-SKG_API void skg_adjoint_init_sized(void *adjoint, int32_t size);
-
-/** Prepares an adjoint. */
-static inline void skg_adjoint_init(skg_adjoint *adjoint) {
-    skg_adjoint_init_sized(adjoint, (int32_t)sizeof *adjoint);
-}
+SKG_INIT(skg_adjoint)
 
 /** What a gradient is wanted of, and where it goes: the caller's memory, which is written as a whole. Prepare with
  * skg_gradient_init: nothing.
@@ -80,13 +74,7 @@ typedef struct {
     double *densities;
 } skg_gradient;
 
-/** Prepares a gradient of `size` bytes (export.h). */
-SKG_API void skg_gradient_init_sized(void *gradient, int32_t size);
-
-/** Prepares a gradient. */
-static inline void skg_gradient_init(skg_gradient *gradient) {
-    skg_gradient_init_sized(gradient, (int32_t)sizeof *gradient);
-}
+SKG_INIT(skg_gradient)
 
 /** Makes the gradient of a loss for one frame, and waits for it.
  *
@@ -120,13 +108,7 @@ typedef struct {
     const double *const *vertices;
 } skg_direction;
 
-/** Prepares a direction of `size` bytes (export.h). */
-SKG_API void skg_direction_init_sized(void *direction, int32_t size);
-
-/** Prepares a direction. */
-static inline void skg_direction_init(skg_direction *direction) {
-    skg_direction_init_sized(direction, (int32_t)sizeof *direction);
-}
+SKG_INIT(skg_direction)
 
 /** Makes the derivative of a frame's image along a direction, and waits for it.
  *

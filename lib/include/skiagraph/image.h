@@ -52,13 +52,7 @@ typedef struct {
     const char *const *channel_names;
 } skg_picture;
 
-/** Prepares a picture of `size` bytes (export.h). */
-SKG_API void skg_picture_init_sized(void *picture, int32_t size);
-
-/** Prepares a picture. */
-static inline void skg_picture_init(skg_picture *picture) {
-    skg_picture_init_sized(picture, (int32_t)sizeof *picture);
-}
+SKG_INIT(skg_picture)
 
 /** Writes an image to a file.
  *

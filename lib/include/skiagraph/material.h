@@ -145,13 +145,7 @@ typedef struct {
     double total;
 } skg_coefficients;
 
-/** Prepares skg_coefficients of `size` bytes (export.h). */
-SKG_API void skg_coefficients_init_sized(void *coefficients, int32_t size);
-
-/** Prepares skg_coefficients. */
-static inline void skg_coefficients_init(skg_coefficients *coefficients) {
-    skg_coefficients_init_sized(coefficients, (int32_t)sizeof *coefficients);
-}
+SKG_INIT(skg_coefficients)
 
 /** Gets the mass attenuation coefficients at a photon energy in keV. Errors: SKG_ERR_MATERIAL if the energy
  * is out of range or the composition is unknown. */

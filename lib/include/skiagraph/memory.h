@@ -42,13 +42,7 @@ typedef struct {
     void *user;
 } skg_allocator;
 
-/** Prepares an allocator of `size` bytes (export.h). */
-SKG_API void skg_allocator_init_sized(void *allocator, int32_t size);
-
-/** Prepares an allocator. */
-static inline void skg_allocator_init(skg_allocator *allocator) {
-    skg_allocator_init_sized(allocator, (int32_t)sizeof *allocator);
-}
+SKG_INIT(skg_allocator)
 
 /** Sets the allocator of the process, while no other thread is inside a call of the library: before the first call, or when
  * every handle was released.

@@ -190,13 +190,7 @@ typedef struct {
     double bounds[6];
 } skg_mesh_health;
 
-/** Prepares a skg_mesh_health of `size` bytes (export.h). */
-SKG_API void skg_mesh_health_init_sized(void *health, int32_t size);
-
-/** Prepares a skg_mesh_health. */
-static inline void skg_mesh_health_init(skg_mesh_health *health) {
-    skg_mesh_health_init_sized(health, (int32_t)sizeof *health);
-}
+SKG_INIT(skg_mesh_health)
 
 /** Gets the health of a mesh. */
 SKG_API skg_status skg_mesh_health_get(const skg_mesh *mesh, skg_mesh_health *health);
@@ -238,13 +232,7 @@ typedef struct {
     double leaving_place[3];
 } skg_mesh_nesting;
 
-/** Prepares a skg_mesh_nesting of `size` bytes (export.h). */
-SKG_API void skg_mesh_nesting_init_sized(void *nesting, int32_t size);
-
-/** Prepares a skg_mesh_nesting. */
-static inline void skg_mesh_nesting_init(skg_mesh_nesting *nesting) {
-    skg_mesh_nesting_init_sized(nesting, (int32_t)sizeof *nesting);
-}
+SKG_INIT(skg_mesh_nesting)
 
 /** Finds components whose orientation contradicts their nesting, by winding numbers along 64 x 64 lines through
  * each component. Of a mesh with more than 1000 components, the 1000 largest by volume are examined.

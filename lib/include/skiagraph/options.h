@@ -75,13 +75,7 @@ typedef struct {
     const double *point;
 } skg_detector_blur;
 
-/** Prepares a blur of `size` bytes (export.h). */
-SKG_API void skg_detector_blur_init_sized(void *blur, int32_t size);
-
-/** Prepares a blur. */
-static inline void skg_detector_blur_init(skg_detector_blur *blur) {
-    skg_detector_blur_init_sized(blur, (int32_t)sizeof *blur);
-}
+SKG_INIT(skg_detector_blur)
 
 /** Gets the line spread function of a modulation transfer function, for skg_detector_blur: the fewest samples whose
  * transfer function is within 0.005 of the table at all frequencies that the pixels show. Rows are joined by curves of
@@ -122,13 +116,7 @@ typedef struct {
     const skg_detector_blur *blur;
 } skg_depth_blur;
 
-/** Prepares a blur by depths of `size` bytes (export.h). */
-SKG_API void skg_depth_blur_init_sized(void *blur, int32_t size);
-
-/** Prepares a blur by depths. */
-static inline void skg_depth_blur_init(skg_depth_blur *blur) {
-    skg_depth_blur_init_sized(blur, (int32_t)sizeof *blur);
-}
+SKG_INIT(skg_depth_blur)
 
 /** A measured detective quantum efficiency by spatial frequency, for the power of the noise. Prepare with
  * skg_dqe_init.
@@ -150,13 +138,7 @@ typedef struct {
     const double *dqe;
 } skg_dqe;
 
-/** Prepares a DQE of `size` bytes (export.h). */
-SKG_API void skg_dqe_init_sized(void *dqe, int32_t size);
-
-/** Prepares a DQE. */
-static inline void skg_dqe_init(skg_dqe *dqe) {
-    skg_dqe_init_sized(dqe, (int32_t)sizeof *dqe);
-}
+SKG_INIT(skg_dqe)
 
 /** Shapes of the focal spot. A flat one lies across the line from the source to the detector's centre, with
  * its width along the projected column step. */
@@ -202,13 +184,7 @@ typedef struct {
     int64_t samples_max;
 } skg_spot;
 
-/** Prepares a spot of `size` bytes (export.h). */
-SKG_API void skg_spot_init_sized(void *spot, int32_t size);
-
-/** Prepares a spot. */
-static inline void skg_spot_init(skg_spot *spot) {
-    skg_spot_init_sized(spot, (int32_t)sizeof *spot);
-}
+SKG_INIT(skg_spot)
 
 /** The heel effect: photons leave the anode at an angle that differs over the detector, and the shallower it
  * is, the more of them the anode absorbs, the soft ones above all. Prepare with skg_heel_init; set kvp and
@@ -232,13 +208,7 @@ typedef struct {
     double direction[3];
 } skg_heel;
 
-/** Prepares a heel of `size` bytes (export.h). */
-SKG_API void skg_heel_init_sized(void *heel, int32_t size);
-
-/** Prepares a heel. */
-static inline void skg_heel_init(skg_heel *heel) {
-    skg_heel_init_sized(heel, (int32_t)sizeof *heel);
-}
+SKG_INIT(skg_heel)
 
 /** A bow-tie filter: a body at the source whose thickness changes along the fan of rays and not across it. Prepare
  * with skg_bowtie_init; set material, count, angle_deg and path_mm.
@@ -265,13 +235,7 @@ typedef struct {
     double direction[3];
 } skg_bowtie;
 
-/** Prepares a bow-tie filter of `size` bytes (export.h). */
-SKG_API void skg_bowtie_init_sized(void *bowtie, int32_t size);
-
-/** Prepares a bow-tie filter. */
-static inline void skg_bowtie_init(skg_bowtie *bowtie) {
-    skg_bowtie_init_sized(bowtie, (int32_t)sizeof *bowtie);
-}
+SKG_INIT(skg_bowtie)
 
 /** An anti-scatter grid on the detector: strips that stand on it, with an interspace between them. Prepare with
  * skg_grid_init; set ratio, lines_per_cm and strip_mm.
@@ -302,13 +266,7 @@ typedef struct {
     double direction[3];
 } skg_grid;
 
-/** Prepares a grid of `size` bytes (export.h). */
-SKG_API void skg_grid_init_sized(void *grid, int32_t size);
-
-/** Prepares a grid. */
-static inline void skg_grid_init(skg_grid *grid) {
-    skg_grid_init_sized(grid, (int32_t)sizeof *grid);
-}
+SKG_INIT(skg_grid)
 
 /** Gets the share of the photons of an energy that pass a grid without interaction.
  *
@@ -357,13 +315,7 @@ typedef struct {
     int64_t rows;
 } skg_scatter;
 
-/** Prepares scatter of `size` bytes (export.h). */
-SKG_API void skg_scatter_init_sized(void *scatter, int32_t size);
-
-/** Prepares scatter. */
-static inline void skg_scatter_init(skg_scatter *scatter) {
-    skg_scatter_init_sized(scatter, (int32_t)sizeof *scatter);
-}
+SKG_INIT(skg_scatter)
 
 /** Falloff: intensity falls with the cube of the distance from the source (inverse square and obliquity). Photons per
  * pixel of the spectrum are then those at the foot of the perpendicular from the source to the plane of the detector,
@@ -480,13 +432,7 @@ typedef struct {
  * Path lengths (SKG_OUTPUT_LENGTHS) are in mm. */
 SKG_API skg_status skg_quantity_get(int32_t quantity, const char **name, const char **unit);
 
-/** Prepares the options of a plan, of `size` bytes (export.h). */
-SKG_API void skg_plan_options_init_sized(void *options, int32_t size);
-
-/** Prepares the options of a plan. */
-static inline void skg_plan_options_init(skg_plan_options *options) {
-    skg_plan_options_init_sized(options, (int32_t)sizeof *options);
-}
+SKG_INIT(skg_plan_options)
 
 #ifdef __cplusplus
 }

@@ -24,13 +24,7 @@ typedef struct {
     double flat_field;
 } skg_channel;
 
-/** Prepares a skg_channel of `size` bytes (export.h). */
-SKG_API void skg_channel_init_sized(void *channel, int32_t size);
-
-/** Prepares a skg_channel. */
-static inline void skg_channel_init(skg_channel *channel) {
-    skg_channel_init_sized(channel, (int32_t)sizeof *channel);
-}
+SKG_INIT(skg_channel)
 
 /** Number of channels of a plan's images. */
 SKG_API skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *count);
@@ -102,13 +96,7 @@ typedef struct {
     int64_t infinite_pixels;
 } skg_plan_report;
 
-/** Prepares a skg_plan_report of `size` bytes (export.h). */
-SKG_API void skg_plan_report_init_sized(void *report, int32_t size);
-
-/** Prepares a skg_plan_report. */
-static inline void skg_plan_report_init(skg_plan_report *report) {
-    skg_plan_report_init_sized(report, (int32_t)sizeof *report);
-}
+SKG_INIT(skg_plan_report)
 
 /** Gets the report of a plan. */
 SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report);
@@ -137,13 +125,7 @@ typedef struct {
     double mixture_error;
 } skg_scatter_report;
 
-/** Prepares a skg_scatter_report of `size` bytes (export.h). */
-SKG_API void skg_scatter_report_init_sized(void *report, int32_t size);
-
-/** Prepares a skg_scatter_report. */
-static inline void skg_scatter_report_init(skg_scatter_report *report) {
-    skg_scatter_report_init_sized(report, (int32_t)sizeof *report);
-}
+SKG_INIT(skg_scatter_report)
 
 /** Gets what the scatter of the last frame was.
  *
@@ -175,13 +157,7 @@ typedef struct {
     double seconds;
 } skg_scatter_prediction;
 
-/** Prepares a skg_scatter_prediction of `size` bytes (export.h). */
-SKG_API void skg_scatter_prediction_init_sized(void *prediction, int32_t size);
-
-/** Prepares a skg_scatter_prediction. */
-static inline void skg_scatter_prediction_init(skg_scatter_prediction *prediction) {
-    skg_scatter_prediction_init_sized(prediction, (int32_t)sizeof *prediction);
-}
+SKG_INIT(skg_scatter_prediction)
 
 /** Predicts the scatter of a plan's scene, view and beam, whether the plan has scatter or not: about 8,000 histories on a
  * detector of at most 64 pixels along each side, with energies as they are measured. Left out are noise, blur, the extent of the source,
@@ -239,13 +215,7 @@ typedef struct {
     double cost;
 } skg_effect;
 
-/** Prepares a skg_effect of `size` bytes (export.h). */
-SKG_API void skg_effect_init_sized(void *effect, int32_t size);
-
-/** Prepares a skg_effect. */
-static inline void skg_effect_init(skg_effect *effect) {
-    skg_effect_init_sized(effect, (int32_t)sizeof *effect);
-}
+SKG_INIT(skg_effect)
 
 /** Number of effects that a plan knows. */
 SKG_API skg_status skg_plan_effect_count(const skg_plan *plan, int64_t *count);
@@ -273,13 +243,7 @@ typedef struct {
     double place[3];
 } skg_overlap;
 
-/** Prepares a skg_overlap of `size` bytes (export.h). */
-SKG_API void skg_overlap_init_sized(void *overlap, int32_t size);
-
-/** Prepares a skg_overlap. */
-static inline void skg_overlap_init(skg_overlap *overlap) {
-    skg_overlap_init_sized(overlap, (int32_t)sizeof *overlap);
-}
+SKG_INIT(skg_overlap)
 
 /** Number of overlaps that were found. */
 SKG_API skg_status skg_plan_overlap_count(const skg_plan *plan, int64_t *count);
@@ -300,13 +264,7 @@ typedef struct {
     double ns;
 } skg_stage;
 
-/** Prepares a skg_stage of `size` bytes (export.h). */
-SKG_API void skg_stage_init_sized(void *stage, int32_t size);
-
-/** Prepares a skg_stage. */
-static inline void skg_stage_init(skg_stage *stage) {
-    skg_stage_init_sized(stage, (int32_t)sizeof *stage);
-}
+SKG_INIT(skg_stage)
 
 /** Number of stages that were timed; 0 unless skg_plan_options.profile is 1. */
 SKG_API skg_status skg_plan_stage_count(const skg_plan *plan, int64_t *count);

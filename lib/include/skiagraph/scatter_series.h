@@ -61,13 +61,7 @@ typedef struct {
     double seconds;
 } skg_scatter_series_report;
 
-/** Prepares a skg_scatter_series_report of `size` bytes (export.h). */
-SKG_API void skg_scatter_series_report_init_sized(void *report, int32_t size);
-
-/** Prepares a skg_scatter_series_report. */
-static inline void skg_scatter_series_report_init(skg_scatter_series_report *report) {
-    skg_scatter_series_report_init_sized(report, (int32_t)sizeof *report);
-}
+SKG_INIT(skg_scatter_series_report)
 
 /** Gets what a series is. */
 SKG_API skg_status skg_scatter_series_report_get(const skg_scatter_series *series,

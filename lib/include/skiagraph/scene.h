@@ -46,13 +46,7 @@ typedef struct {
     double pose[16];
 } skg_part;
 
-/** Prepares a part of `size` bytes (export.h). */
-SKG_API void skg_part_init_sized(void *part, int32_t size);
-
-/** Prepares a part. */
-static inline void skg_part_init(skg_part *part) {
-    skg_part_init_sized(part, (int32_t)sizeof *part);
-}
+SKG_INIT(skg_part)
 
 /** Makes an empty scene. The context receives warnings and may be NULL. The caller releases the scene. */
 SKG_API skg_status skg_scene_create(skg_context *context, skg_scene **scene);

@@ -51,13 +51,7 @@ typedef struct {
     const skg_collimation *collimation;
 } skg_look;
 
-/** Prepares a look of `size` bytes (export.h). */
-SKG_API void skg_look_init_sized(void *look, int32_t size);
-
-/** Prepares a look. */
-static inline void skg_look_init(skg_look *look) {
-    skg_look_init_sized(look, (int32_t)sizeof *look);
-}
+SKG_INIT(skg_look)
 
 /** Gets the colours in which parts are drawn unless the look has others. Tissues and metals are coloured by their
  * density; if it is unknown, by that of water with the same attenuation at 70 keV. Parts that attenuate nothing

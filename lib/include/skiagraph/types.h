@@ -102,13 +102,7 @@ typedef struct {
     double row_step[3];
 } skg_view;
 
-/** Prepares a view of `size` bytes (export.h). */
-SKG_API void skg_view_init_sized(void *view, int32_t size);
-
-/** Prepares a view. */
-static inline void skg_view_init(skg_view *view) {
-    skg_view_init_sized(view, (int32_t)sizeof *view);
-}
+SKG_INIT(skg_view)
 
 #ifdef __cplusplus
 }
