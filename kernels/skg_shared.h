@@ -213,42 +213,50 @@ typedef struct {
     skg_image_args image;
 
 /* Scattered photons (scatter.cl). */
-#define SKG_SCATTER_STEPS 32      /* of a path through the object: 64 take half as long again; the thorax has 0.2 % too much with 32, 0.1 % with 64 */
-#define SKG_SCATTER_SIDE 2        /* an interaction contributes to a place in each of side x side pieces of the detector */
+#define SKG_SCATTER_STEPS                                                                                    \
+    32 /* of a path through the object: 64 take half as long again; the thorax has 0.2 % too much with 32, 0.1 % with 64 */
+#define SKG_SCATTER_SIDE                                                                                     \
+    2 /* an interaction contributes to a place in each of side x side pieces of the detector */
 #define SKG_SCATTER_ANGLES 256    /* equally likely ranges of the angle of scattering */
 #define SKG_SCATTER_DIMENSIONS 16 /* of a history's point of the lattice */
-#define SKG_SCATTER_KINDS 6       /* planes of sums: orders 1, 2, higher of Rayleigh scattering alone, then with Compton */
+#define SKG_SCATTER_KINDS                                                                                    \
+    6 /* planes of sums: orders 1, 2, higher of Rayleigh scattering alone, then with Compton */
 #define SKG_SCATTER_PLANES (SKG_SCATTER_KINDS + 1) /* the last: what adds to the variance */
-#define SKG_SCATTER_COLUMNS 6     /* of the table by energy */
-#define SKG_SCATTER_ORDERS 64     /* interactions after which a photon is given up */
-#define SKG_SCATTER_EVEN 0.5f     /* share of interactions whose place is even in the optical depth */
-#define SKG_SCATTER_LEAST 0.2f    /* weights below this play roulette */
-#define SKG_SCATTER_FAR 1e6f      /* mm */
+#define SKG_SCATTER_COLUMNS 6                      /* of the table by energy */
+#define SKG_SCATTER_ORDERS 64                      /* interactions after which a photon is given up */
+#define SKG_SCATTER_EVEN 0.5f  /* share of interactions whose place is even in the optical depth */
+#define SKG_SCATTER_LEAST 0.2f /* weights below this play roulette */
+#define SKG_SCATTER_FAR 1e6f   /* mm */
 
 /* Of skg_scatter. Places and vectors are in mm from the lowest corner of the cells. */
 typedef struct {
-    float size[3], per_mm[3];           /* of the box of the cells; cells per mm */
-    float corner[3];                    /* of the detector */
-    float normal[3], area;              /* away from the source; mm2 */
-    float side_u, side_v;               /* mm */
-    float to_u[3], to_v[3];             /* from a place relative to `corner` to shares of the sides */
+    float size[3], per_mm[3];               /* of the box of the cells; cells per mm */
+    float corner[3];                        /* of the detector */
+    float normal[3], area;                  /* away from the source; mm2 */
+    float side_u, side_v;                   /* mm */
+    float to_u[3], to_v[3];                 /* from a place relative to `corner` to shares of the sides */
     float field[3], field_u[3], field_v[3]; /* the field of the beam: its first corner, its sides */
-    float far;                          /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
-    float log_low, per_log;             /* of the table by energy */
+    float
+        far; /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
+    float log_low, per_log; /* of the table by energy */
     float per_momentum, per_log_momentum;
-    float angle_rows;                   /* rows of the table of angles for one of that by energy */
-    float least_kev, scale;             /* photons below are given up; of sums */
-    float strips[3], focus;             /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */
-    float strips_u, strips_v;           /* mm across the strips along the sides of the detector */
-    float period, strip, height;        /* of the strips, mm */
-    float anode[3], heel_low, heel_per; /* SKG_HEEL: across its face; cosine of the first row of the table, rows for a cosine of 1 */
-    float world[4], world_start;        /* SKG_WORLD: coefficients around the cells; of a parallel beam where it begins, mm along it */
-    float central[3], fan[3];           /* SKG_BOWTIE: to the detector's middle; where the angles of the fan grow */
+    float angle_rows;       /* rows of the table of angles for one of that by energy */
+    float least_kev, scale; /* photons below are given up; of sums */
+    float strips[3],
+        focus; /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */
+    float strips_u, strips_v;    /* mm across the strips along the sides of the detector */
+    float period, strip, height; /* of the strips, mm */
+    float anode[3], heel_low,
+        heel_per; /* SKG_HEEL: across its face; cosine of the first row of the table, rows for a cosine of 1 */
+    float world[4],
+        world_start; /* SKG_WORLD: coefficients around the cells; of a parallel beam where it begins, mm along it */
+    float central[3], fan[3]; /* SKG_BOWTIE: to the detector's middle; where the angles of the fan grow */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
-    SKG_INT heel_rows, fan_rows;        /* of the table of the heel effect and of the filter's; 0: none */
-    SKG_INT bands, edges, cosines;      /* channels of the image; numbers before the table of layers; its cosines */
-    SKG_INT first, end, each;           /* histories of a batch; of a work-item */
-    SKG_INT seed[2];                    /* low word first */
+    SKG_INT heel_rows, fan_rows; /* of the table of the heel effect and of the filter's; 0: none */
+    SKG_INT bands, edges,
+        cosines;              /* channels of the image; numbers before the table of layers; its cosines */
+    SKG_INT first, end, each; /* histories of a batch; of a work-item */
+    SKG_INT seed[2];          /* low word first */
 } skg_scatter_args;
 
 /* Of skg_scattered. add: 1: to what the image holds; 0: in its place. */
@@ -313,6 +321,7 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 63 * 4 + 20 * 4 && sizeof(skg_scattered_args) == 72, "layout of scatter");
+_Static_assert(sizeof(skg_scatter_args) == 63 * 4 + 20 * 4 && sizeof(skg_scattered_args) == 72,
+               "layout of scatter");
 #endif
 #endif

@@ -68,7 +68,7 @@ int soak_mpi_is_there(const soak *s);
 /* What has to stay flat (health.c). */
 typedef struct {
     long resident_kib, heap_kib; /* after free pages were given back to the system */
-    int kernels; /* that the driver has compiled, here or in children */
+    int kernels;                 /* that the driver has compiled, here or in children */
     int handles, threads;
 } soak_health;
 

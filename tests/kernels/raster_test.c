@@ -96,7 +96,8 @@ START_TEST(strategies_give_the_same_bits) {
         options.kernels.source_plane = n >= 3;
         view.projection = n == 3 ? SKG_PROJECTION_PARALLEL : SKG_PROJECTION_POINT;
         if (n == 3 || n == 4) view.source[0] = 5, view.source[2] = 10; /* inside the sphere */
-        if (options.kernels.precision == SKG_PRECISION_DOUBLE && !context->device->info.double_precision) continue;
+        if (options.kernels.precision == SKG_PRECISION_DOUBLE && !context->device->info.double_precision)
+            continue;
         check_variants(&options, &view, THREE, bodies);
     }
     shape_free(&sphere);

@@ -232,8 +232,7 @@ static skg_status open_file(skg_scan_file *file) {
         skg_scan_remove_stale(file);
     }
     SKG_TRY(look(file, &is_there));
-    if (!is_there && file->options.helper)
-        return skg_fail(SKG_ERR_OUTPUT, "%s: is not laid out", file->path);
+    if (!is_there && file->options.helper) return skg_fail(SKG_ERR_OUTPUT, "%s: is not laid out", file->path);
     if (!is_there) SKG_TRY(lay_out(file));
     SKG_TRY(open_laid_out(file));
     const int continues = file->done_count > 0 && file->done_count < file->projections;
