@@ -153,9 +153,15 @@ static int write_envelope(const organ *organs, int count, const char *path) {
         TRIANGLE(ends + 1, top + d, top + next);
     }
     skg_mesh *mesh = NULL;
-    int bad =
-        failed(skg_mesh_create(NULL, "envelope", ends + 2, positions, 0, triangles, corners, 0, 1, &mesh)) ||
-        failed(skg_mesh_save(mesh, path));
+    int bad = failed(skg_mesh_create(NULL, "envelope",
+                                     &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                        .vertices = ends + 2,
+                                                        .positions = positions,
+                                                        .triangles = triangles,
+                                                        .corners = corners,
+                                                        .unit_mm = 1},
+                                     &mesh)) ||
+              failed(skg_mesh_save(mesh, path));
     skg_mesh_release(&mesh);
     return bad;
 }

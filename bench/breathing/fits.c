@@ -95,7 +95,14 @@ static void add_targets(skg_fit *fit, const char *scene, char words[SETTINGS][WO
         int32_t *corners = bench_alloc((size_t)(3 * triangles), sizeof *corners);
         bench_try(skg_mesh_positions_get(mesh, positions, 0), organs[o]);
         bench_try(skg_mesh_triangles_get(mesh, corners, 0), organs[o]);
-        bench_try(skg_mesh_create(NULL, organs[o], vertices, positions, 0, triangles, corners, 0, 1, &copy),
+        bench_try(skg_mesh_create(NULL, organs[o],
+                                  &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                     .vertices = vertices,
+                                                     .positions = positions,
+                                                     .triangles = triangles,
+                                                     .corners = corners,
+                                                     .unit_mm = 1},
+                                  &copy),
                   organs[o]);
         bench_try(skg_fit_target_add(fit, id, 0, copy), organs[o]);
         skg_mesh_release(&copy);

@@ -13,7 +13,15 @@ skg_mesh *bench_mesh_with_holes(skg_context *context, const skg_mesh *mesh, int 
     bench_try(skg_mesh_triangles_get(mesh, corners, 0), name);
     for (int64_t t = 0; t < triangles; t++)
         if (t % every != every / 2) memmove(corners + 3 * kept++, corners + 3 * t, 3 * sizeof *corners);
-    bench_try(skg_mesh_create(context, name, vertices, positions, 0, kept, corners, 0, 1, &leaky), name);
+    bench_try(skg_mesh_create(context, name,
+                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                 .vertices = vertices,
+                                                 .positions = positions,
+                                                 .triangles = kept,
+                                                 .corners = corners,
+                                                 .unit_mm = 1},
+                              &leaky),
+              name);
     free(corners);
     free(positions);
     return leaky;

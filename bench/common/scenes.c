@@ -39,8 +39,14 @@ static skg_mesh *make_mesh(skg_context *context, int kind, double radius, int64_
     skg_mesh *mesh = NULL;
     shape_make(kind, radius, triangles, &shape);
     if (leaky) shape_cut(&shape);
-    bench_try(skg_mesh_create_float(context, shape_name(kind), shape.vertices, shape.positions, 0,
-                                    shape.triangles, shape.corners, 0, 1, &mesh),
+    bench_try(skg_mesh_create(context, shape_name(kind),
+                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                 .vertices = shape.vertices,
+                                                 .floats = shape.positions,
+                                                 .triangles = shape.triangles,
+                                                 .corners = shape.corners,
+                                                 .unit_mm = 1},
+                              &mesh),
               "mesh");
     shape_free(&shape);
     return mesh;
@@ -105,8 +111,14 @@ static void one_sphere(skg_context *context, long triangles, void (*change)(benc
     view_box(&all, size, &out->view);
     shape_make(SHAPE_SPHERE, 160, triangles, &shape);
     if (change) change(&shape);
-    bench_try(skg_mesh_create_float(context, "sphere", shape.vertices, shape.positions, 0, shape.triangles,
-                                    shape.corners, 0, 1, &mesh),
+    bench_try(skg_mesh_create(context, "sphere",
+                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                 .vertices = shape.vertices,
+                                                 .floats = shape.positions,
+                                                 .triangles = shape.triangles,
+                                                 .corners = shape.corners,
+                                                 .unit_mm = 1},
+                              &mesh),
               "mesh");
     add_part(out, mesh, soft, NO_PARENT, nowhere, unscaled);
     skg_mesh_release(&mesh);

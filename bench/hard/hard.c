@@ -65,8 +65,14 @@ static skg_plan *plan_of(const tools *t, const solid *s, const skg_view *view, i
     options.precision = precision;
     options.strategy = strategy;
     options.overlaps = 0;
-    bench_try(skg_mesh_create(t->context, "body", s->vertices, s->positions, 0, s->triangles, s->corners, 0,
-                              1, &mesh),
+    bench_try(skg_mesh_create(t->context, "body",
+                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                 .vertices = s->vertices,
+                                                 .positions = s->positions,
+                                                 .triangles = s->triangles,
+                                                 .corners = s->corners,
+                                                 .unit_mm = 1},
+                              &mesh),
               "mesh");
     bench_try(skg_scene_create(t->context, &scene), "scene");
     part.mesh = mesh;

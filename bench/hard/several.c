@@ -19,8 +19,14 @@ static skg_scene *scene_of(skg_context *context, int count, const solid *solids,
         skg_part_init(&part);
         snprintf(label, sizeof label, "part %d", p);
         part.label = label;
-        bench_try(skg_mesh_create(context, label, s->vertices, s->positions, 0, s->triangles, s->corners, 0,
-                                  1, &part.mesh),
+        bench_try(skg_mesh_create(context, label,
+                                  &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                     .vertices = s->vertices,
+                                                     .positions = s->positions,
+                                                     .triangles = s->triangles,
+                                                     .corners = s->corners,
+                                                     .unit_mm = 1},
+                                  &part.mesh),
                   "mesh");
         bench_try(skg_material_create_mu(label, mu[p], &part.material), "material");
         bench_try(skg_scene_part_add(scene, &part, NULL), "part");

@@ -15,8 +15,14 @@ library *library_create(skg_context *context, const bench_shape *shape, const sk
     skg_material *water = NULL;
     skg_scene *scene = NULL;
     skg_spectrum *beam = NULL;
-    bench_try(skg_mesh_create_float(context, "shape", shape->vertices, shape->positions, 0, shape->triangles,
-                                    shape->corners, 0, 1, &mesh),
+    bench_try(skg_mesh_create(context, "shape",
+                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                 .vertices = shape->vertices,
+                                                 .floats = shape->positions,
+                                                 .triangles = shape->triangles,
+                                                 .corners = shape->corners,
+                                                 .unit_mm = 1},
+                              &mesh),
               "mesh");
     bench_try(skg_material_create_mu("water", 0.18, &water), "material"); /* 1/cm, about 80 keV */
     bench_try(skg_scene_create(context, &scene), "scene");

@@ -77,8 +77,14 @@ static skg_mesh *make_mesh(skg_context *context, uint64_t *state, int is_leaky) 
     const double radius = draw(state, 15, 45);
     shape_make(kind, radius, 72 + 8 * draw_below(state, 200), &shape);
     if (is_leaky) shape_cut(&shape);
-    bench_try(skg_mesh_create_float(context, shape_name(kind), shape.vertices, shape.positions, 0,
-                                    shape.triangles, shape.corners, 0, 1, &mesh),
+    bench_try(skg_mesh_create(context, shape_name(kind),
+                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                 .vertices = shape.vertices,
+                                                 .floats = shape.positions,
+                                                 .triangles = shape.triangles,
+                                                 .corners = shape.corners,
+                                                 .unit_mm = 1},
+                              &mesh),
               "mesh");
     shape_free(&shape);
     return mesh;

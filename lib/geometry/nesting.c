@@ -276,8 +276,16 @@ static skg_status create_oriented(skg_context *context, const skg_mesh *mesh, sk
         corners[3 * t + 1] = corners[3 * t + 2];
         corners[3 * t + 2] = second;
     }
-    status = skg_mesh_create(context, mesh->name, mesh->vertices, positions, 3, mesh->triangles, corners, 3,
-                             1, oriented);
+    status = skg_mesh_create(context, mesh->name,
+                             &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                .vertices = mesh->vertices,
+                                                .positions = positions,
+                                                .position_stride = 3,
+                                                .triangles = mesh->triangles,
+                                                .corners = corners,
+                                                .triangle_stride = 3,
+                                                .unit_mm = 1},
+                             oriented);
 cleanup:
     skg_free(&turned);
     skg_free(&positions);

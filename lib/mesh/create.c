@@ -144,74 +144,63 @@ static skg_status check_stride(const char *name, const char *what, int64_t *stri
                     what, *stride);
 }
 
-/* The positions are doubles or floats, whichever is not NULL. */
-static skg_status create(skg_context *context, const char *name, int64_t vertices, const double *doubles,
-                         const float *floats, int64_t position_stride, int64_t triangles,
-                         const int32_t *corners, int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
+void skg_mesh_source_init_sized(void *source, int32_t size) {
+    const skg_mesh_source defaults = {.unit_mm = 1};
+    skg_struct_init(source, size, &defaults, sizeof defaults);
+}
+
+static skg_status check_source(const char *name, skg_mesh_source *from) {
+    if (!isfinite(from->unit_mm) || from->unit_mm <= 0)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
+                        name, from->unit_mm);
+    SKG_TRY(check_stride(name, "position", &from->position_stride));
+    SKG_TRY(check_stride(name, "triangle", &from->triangle_stride));
+    SKG_TRY(check_counts(name, from->vertices, from->triangles));
+    if (from->positions && from->floats)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: positions and floats are both given; set one of them to NULL",
+                        name);
+    if ((!from->positions && !from->floats) || !from->corners)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: %s are NULL", name, from->corners ? "positions" : "triangles");
+    return SKG_OK;
+}
+
+static skg_status copy_arrays(const char *name, const skg_mesh_source *from, skg_mesh_arrays *arrays) {
+    SKG_TRY(skg_alloc(3 * from->vertices, sizeof(double), name, &arrays->positions));
+    SKG_TRY(skg_alloc(3 * from->triangles, sizeof(int32_t), name, &arrays->corners));
+    arrays->vertices = from->vertices;
+    arrays->triangles = from->triangles;
+    for (int64_t i = 0; i < from->vertices; i++)
+        for (int64_t k = 0; k < 3; k++) {
+            const int64_t at = i * from->position_stride + k;
+            arrays->positions[3 * i + k] =
+                from->unit_mm * (from->positions ? from->positions[at] : (double)from->floats[at]);
+        }
+    for (int64_t i = 0; i < from->triangles; i++)
+        memcpy(arrays->corners + 3 * i, from->corners + i * from->triangle_stride, 3 * sizeof(int32_t));
+    return SKG_OK;
+}
+
+static skg_status create(skg_context *context, const char *name, const skg_mesh_source *source,
+                         skg_mesh **mesh) {
+    SKG_PLAIN;
     skg_mesh_arrays arrays = {0};
-    skg_status status = SKG_OK;
+    skg_mesh_source from;
+    SKG_NEEDS_OF("skg_mesh_create", mesh);
     *mesh = NULL;
     if (!name || !*name) name = "mesh";
-    if (!isfinite(unit_mm) || unit_mm <= 0)
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
-                        name, unit_mm);
-    SKG_TRY(check_stride(name, "position", &position_stride));
-    SKG_TRY(check_stride(name, "triangle", &triangle_stride));
-    SKG_TRY(check_counts(name, vertices, triangles));
-    if ((!doubles && !floats) || !corners)
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: %s are NULL", name, corners ? "positions" : "triangles");
-    SKG_TRY_CLEANUP(skg_alloc(3 * vertices, sizeof(double), name, &arrays.positions));
-    SKG_TRY_CLEANUP(skg_alloc(3 * triangles, sizeof(int32_t), name, &arrays.corners));
-    arrays.vertices = vertices;
-    arrays.triangles = triangles;
-    for (int64_t i = 0; i < vertices; i++)
-        for (int64_t k = 0; k < 3; k++) {
-            int64_t at = i * position_stride + k;
-            arrays.positions[3 * i + k] = unit_mm * (doubles ? doubles[at] : (double)floats[at]);
-        }
-    for (int64_t i = 0; i < triangles; i++)
-        memcpy(arrays.corners + 3 * i, corners + i * triangle_stride, 3 * sizeof(int32_t));
-    return skg_mesh_adopt(context, name, &arrays, mesh);
-cleanup:
+    skg_mesh_source_init(&from);
+    SKG_TRY(skg_struct_read(source, "skg_mesh_source", &from, sizeof from));
+    SKG_TRY(check_source(name, &from));
+    const skg_status status = copy_arrays(name, &from, &arrays);
+    if (status == SKG_OK) return skg_mesh_adopt(context, name, &arrays, mesh);
     skg_mesh_arrays_free(&arrays);
     return status;
 }
 
-static skg_status create_double(skg_context *context, const char *name, int64_t vertices,
-                                const double *positions, int64_t position_stride, int64_t triangles,
-                                const int32_t *corners, int64_t triangle_stride, double unit_mm,
-                                skg_mesh **mesh) {
-    SKG_PLAIN;
-    SKG_NEEDS_OF("skg_mesh_create", mesh);
-    return create(context, name, vertices, positions, NULL, position_stride, triangles, corners,
-                  triangle_stride, unit_mm, mesh);
-}
-
-skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices, const double *positions,
-                           int64_t position_stride, int64_t triangles, const int32_t *corners,
-                           int64_t triangle_stride, double unit_mm, skg_mesh **mesh) {
+skg_status skg_mesh_create(skg_context *context, const char *name, const skg_mesh_source *source,
+                           skg_mesh **mesh) {
     const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create_double(context, name, vertices, positions, position_stride, triangles,
-                                               corners, triangle_stride, unit_mm, mesh));
-}
-
-static skg_status create_float(skg_context *context, const char *name, int64_t vertices,
-                               const float *positions, int64_t position_stride, int64_t triangles,
-                               const int32_t *corners, int64_t triangle_stride, double unit_mm,
-                               skg_mesh **mesh) {
-    SKG_PLAIN;
-    SKG_NEEDS_OF("skg_mesh_create_float", mesh);
-    return create(context, name, vertices, NULL, positions, position_stride, triangles, corners,
-                  triangle_stride, unit_mm, mesh);
-}
-
-skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t vertices,
-                                 const float *positions, int64_t position_stride, int64_t triangles,
-                                 const int32_t *corners, int64_t triangle_stride, double unit_mm,
-                                 skg_mesh **mesh) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create_float(context, name, vertices, positions, position_stride, triangles,
-                                              corners, triangle_stride, unit_mm, mesh));
+    return skg_call_end(handler, create(context, name, source, mesh));
 }
 
 skg_status skg_mesh_retain(skg_mesh *mesh) {

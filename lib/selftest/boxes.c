@@ -48,7 +48,14 @@ skg_status skg_boxes_mesh(skg_context *context, const skg_box *boxes, int64_t co
                     corners[3 * triangles + 2] = 1;
         vertices++, triangles++;
     }
-    status = skg_mesh_create(context, "boxes", vertices, positions, 0, triangles, corners, 0, 1, mesh);
+    status = skg_mesh_create(context, "boxes",
+                             &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                .vertices = vertices,
+                                                .positions = positions,
+                                                .triangles = triangles,
+                                                .corners = corners,
+                                                .unit_mm = 1},
+                             mesh);
 cleanup:
     skg_free(&positions);
     skg_free(&corners);

@@ -28,11 +28,16 @@ class Mesh:
                  _context: Any = ffi.NULL) -> None:
         positions = _arrays.rows(vertices, "vertices", (np.float64, np.float32))
         corners = _arrays.rows(faces, "faces", (np.int32,))
-        single = positions.dtype == np.float32
-        create, element = ("skg_mesh_create_float", "float *") if single else ("skg_mesh_create", "double *")
-        self._handle = owned("skg_mesh", make(create, "skg_mesh", _context, encode(name, "name"),
-                                              *_strided(positions, element), *_strided(corners, "int32_t *"),
-                                              float(unit_mm)))
+        source = struct("skg_mesh_source")
+        source.vertices, address, source.position_stride = _strided(positions)
+        if positions.dtype == np.float32:
+            source.floats = ffi.cast("float *", address)
+        else:
+            source.positions = ffi.cast("double *", address)
+        source.triangles, address, source.triangle_stride = _strided(corners)
+        source.corners = ffi.cast("int32_t *", address)
+        source.unit_mm = float(unit_mm)
+        self._handle = owned("skg_mesh", make("skg_mesh_create", "skg_mesh", _context, encode(name, "name"), source))
         self._changed = False
 
     @classmethod
@@ -204,7 +209,7 @@ class Mesh:
         self._changed = True
 
     def _place(self, positions: NDArray[np.float64]) -> None:
-        call("skg_mesh_positions_set", self._handle, *_strided(positions, "double *")[1:])
+        call("skg_mesh_positions_set", self._handle, *_strided(positions)[1:])
 
     @property
     def faces(self) -> NDArray[np.int32]:
@@ -267,11 +272,11 @@ def _remake(vertices: Any, faces: Any, name: str) -> Mesh:
     return Mesh(vertices, faces, name=name)
 
 
-def _strided(array: NDArray[Any], kind: str) -> tuple[int, Any, int]:
+def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
     """The count of rows, where they are, and the elements from one to the next."""
     if not len(array):
         return 0, ffi.NULL, 0
-    address = ffi.cast(kind, array.__array_interface__["data"][0])
+    address = ffi.cast("void *", array.__array_interface__["data"][0])
     return len(array), address, max(array.strides[0] // array.itemsize, 3)
 
 

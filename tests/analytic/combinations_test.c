@@ -75,7 +75,16 @@ static skg_mesh *cut_sphere(double radius) {
     ck_assert(positions && corners);
     ck_skg(skg_mesh_positions_get(whole, positions, 3));
     ck_skg(skg_mesh_triangles_get(whole, corners, 3));
-    ck_skg(skg_mesh_create(context, "cut", vertices, positions, 3, triangles - 1, corners + 3, 3, 1, &mesh));
+    ck_skg(skg_mesh_create(context, "cut",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = vertices,
+                                              .positions = positions,
+                                              .position_stride = 3,
+                                              .triangles = triangles - 1,
+                                              .corners = corners + 3,
+                                              .triangle_stride = 3,
+                                              .unit_mm = 1},
+                           &mesh));
     free(positions);
     free(corners);
     skg_mesh_release(&whole);

@@ -306,7 +306,16 @@ static skg_mesh *folded(void) {
         }
     for (int t = 0; t < 24; t++)
         for (int k = 0; k < 3; k++) triangles[t][k] = t < 12 ? corners[t][k] : 8 + corners[t - 12][2 - k];
-    ck_skg(skg_mesh_create(context, "folded", 16, positions[0], 3, 24, triangles[0], 3, 1, &mesh));
+    ck_skg(skg_mesh_create(context, "folded",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 16,
+                                              .positions = positions[0],
+                                              .position_stride = 3,
+                                              .triangles = 24,
+                                              .corners = triangles[0],
+                                              .triangle_stride = 3,
+                                              .unit_mm = 1},
+                           &mesh));
     return mesh;
 }
 

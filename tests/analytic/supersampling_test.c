@@ -280,7 +280,14 @@ START_TEST(leaky_meshes_take_passes) {
     skg_plan_options options;
     skg_plan_report report;
     char reason[256];
-    ck_skg(skg_mesh_create(context, "open", 4, positions, 0, 3, corners, 0, 1, &mesh));
+    ck_skg(skg_mesh_create(context, "open",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 4,
+                                              .positions = positions,
+                                              .triangles = 3,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &mesh));
     add_part("open", mesh, "Water", here, 0);
     skg_plan_options_init(&options);
     options.repair = SKG_REPAIR_NONE;

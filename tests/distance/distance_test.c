@@ -129,7 +129,14 @@ static skg_mesh *make_square(double x, double width, double height, double slope
                         far, width,  height + slope * far, x,   width,  height + slope * x};
     const int32_t corners[] = {0, 1, 2, 0, 2, 3};
     skg_mesh *mesh;
-    ck_skg(skg_mesh_create(NULL, "square", 4, p, 0, 2, corners, 0, 1, &mesh));
+    ck_skg(skg_mesh_create(NULL, "square",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 4,
+                                              .positions = p,
+                                              .triangles = 2,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &mesh));
     return mesh;
 }
 
@@ -211,7 +218,14 @@ START_TEST(vertices_are_biased_and_areas_are_not) {
             triangles += 2;
         }
     skg_mesh *mesh, *low = make_square(-1000, 2000, 0, 0);
-    ck_skg(skg_mesh_create(NULL, "two", vertices, p, 0, triangles, corners, 0, 1, &mesh));
+    ck_skg(skg_mesh_create(NULL, "two",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = vertices,
+                                              .positions = p,
+                                              .triangles = triangles,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &mesh));
     skg_distance_options options;
     skg_distance_options_init(&options);
     ck_assert_double_eq_tol(between(mesh, low, &options).mean_mm, 4, 1e-9); /* half of 8; rounding of sums */

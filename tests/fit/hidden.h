@@ -124,7 +124,14 @@ static inline skg_mesh *surface(const surface_of *from) {
     ck_skg(skg_mesh_triangles_get(mesh, corners, 0));
     if (from->divided) divide(&vertices, positions, &triangles, corners);
     for (int64_t i = 0; i < 3 * vertices && from->noise > 0; i++) positions[i] += from->noise * bell(&state);
-    ck_skg(skg_mesh_create(NULL, from->label, vertices, positions, 0, triangles, corners, 0, 1, &copy));
+    ck_skg(skg_mesh_create(NULL, from->label,
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = vertices,
+                                              .positions = positions,
+                                              .triangles = triangles,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &copy));
     free(positions);
     free(corners);
     skg_motion_release(&motion);

@@ -38,8 +38,14 @@ static void open_stand(stand *s, const solid *body, int apart, const skg_plan_op
     *s = (stand){0};
     open_caller(&s->c, (size_t)given.vertices * 3 * sizeof(float), NULL);
     ck_skg(skg_context_log_set(s->c.context, hear, NULL));
-    ck_skg(skg_mesh_create(NULL, "soup", given.vertices, given.positions, 0, given.triangles, given.corners,
-                           0, 1, &s->mesh));
+    ck_skg(skg_mesh_create(NULL, "soup",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = given.vertices,
+                                              .positions = given.positions,
+                                              .triangles = given.triangles,
+                                              .corners = given.corners,
+                                              .unit_mm = 1},
+                           &s->mesh));
     ck_skg(skg_mesh_retain(s->mesh));
     add_part(&s->c, "soup", s->mesh, 0.3, -1);
     ck_skg(skg_mesh_offsets_get(s->mesh, &s->offsets, NULL));

@@ -275,7 +275,14 @@ static void add_soup(caller *c) {
         memcpy(xyz[v], corner[face[v / 3][v % 3]], sizeof xyz[v]);
         corners[v / 3][v % 3] = v;
     }
-    ck_skg(skg_mesh_create(c->context, "soup", 12, xyz[0], 0, 4, corners[0], 0, 1, &mesh));
+    ck_skg(skg_mesh_create(c->context, "soup",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 12,
+                                              .positions = xyz[0],
+                                              .triangles = 4,
+                                              .corners = corners[0],
+                                              .unit_mm = 1},
+                           &mesh));
     add_part(c, "soup", mesh, 0.3, CUBE);
 }
 
@@ -357,7 +364,14 @@ START_TEST(leaky_meshes_are_refused_where_rays_are_traced) {
         const int32_t corners[] = {0, 2, 1, 0, 1, 3, 1, 2, 3};
         open_caller(&c, sizeof ball.xyz, NULL);
         skg_plan_release(&c.plan);
-        ck_skg(skg_mesh_create(NULL, "open", 4, xyz, 0, 3, corners, 0, 1, &open));
+        ck_skg(skg_mesh_create(NULL, "open",
+                               &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                  .vertices = 4,
+                                                  .positions = xyz,
+                                                  .triangles = 3,
+                                                  .corners = corners,
+                                                  .unit_mm = 1},
+                               &open));
         add_part(&c, "open", open, 0.4, CUBE);
         skg_plan_options_init(&options);
         options.repair = exact ? SKG_REPAIR_EXACT : SKG_REPAIR_NEIGHBOURS;

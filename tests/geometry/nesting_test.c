@@ -33,7 +33,16 @@ static skg_mesh_nesting nesting_of_boxes(void) {
     skg_mesh_nesting nesting;
     skg_mesh_nesting_init(&nesting);
     skg_mesh_release(&mesh);
-    ck_skg(skg_mesh_create(NULL, "boxes", 8 * boxes, positions, 3, 12 * boxes, corners, 3, 1, &mesh));
+    ck_skg(skg_mesh_create(NULL, "boxes",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 8 * boxes,
+                                              .positions = positions,
+                                              .position_stride = 3,
+                                              .triangles = 12 * boxes,
+                                              .corners = corners,
+                                              .triangle_stride = 3,
+                                              .unit_mm = 1},
+                           &mesh));
     ck_skg(skg_mesh_nesting_get(mesh, &nesting));
     boxes = 0;
     return nesting;

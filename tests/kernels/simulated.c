@@ -103,7 +103,13 @@ static void add(skg_context *context, skg_scene *scene, const char *label, solid
                 int32_t priority) {
     skg_part part;
     skg_part_init(&part);
-    TRY(skg_mesh_create(context, label, s.vertices, s.positions, 0, s.triangles, s.corners, 0, 1,
+    TRY(skg_mesh_create(context, label,
+                        &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                           .vertices = s.vertices,
+                                           .positions = s.positions,
+                                           .triangles = s.triangles,
+                                           .corners = s.corners,
+                                           .unit_mm = 1},
                         &part.mesh));
     TRY(skg_material_create_named(material, &part.material));
     part.label = label;

@@ -68,7 +68,14 @@ static void fill_block(double bulge) {
 
 static skg_mesh *make(void) {
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_create(NULL, "block", VERTICES, positions, 0, TRIANGLES, corners, 0, 1, &mesh));
+    ck_skg(skg_mesh_create(NULL, "block",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = VERTICES,
+                                              .positions = positions,
+                                              .triangles = TRIANGLES,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &mesh));
     return mesh;
 }
 
@@ -101,7 +108,14 @@ START_TEST(nothing_and_flat_sheets_are_no_trap) {
     static const double thin[9] = {0, 0, 0, 1, 0, 0, 2, 0, 0};
     static const int32_t line[3] = {0, 1, 2};
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_create(NULL, "line", 3, thin, 0, 1, line, 0, 1, &mesh)); /* no area at all */
+    ck_skg(skg_mesh_create(NULL, "line",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 3,
+                                              .positions = thin,
+                                              .triangles = 1,
+                                              .corners = line,
+                                              .unit_mm = 1},
+                           &mesh)); /* no area at all */
     ck_assert_int_eq(is_flat(mesh), 0);
 }
 END_TEST

@@ -21,7 +21,14 @@ static skg_mesh *stacked_cubes(int count, double apart) {
         for (int v = 0; v < 24; v++) positions[24 * i + v] = one[v] + (v % 3 == 2 ? i * apart : 0);
         for (int c = 0; c < 36; c++) corners[36 * i + c] = one_corners[c] + 8 * i;
     }
-    ck_skg(skg_mesh_create(NULL, "cubes", count * 8, positions, 0, count * 12, corners, 0, 1, &all));
+    ck_skg(skg_mesh_create(NULL, "cubes",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = count * 8,
+                                              .positions = positions,
+                                              .triangles = count * 12,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &all));
     free(positions);
     free(corners);
     skg_mesh_release(&cube);

@@ -39,7 +39,14 @@ START_TEST(shuffled_triangles_are_put_in_order) {
             given[3 * i + k] = given[3 * j + k], given[3 * j + k] = swap;
         }
     }
-    ck_skg(skg_mesh_create(NULL, "shuffled", vertices, positions, 0, triangles, given, 0, 1, &shuffled));
+    ck_skg(skg_mesh_create(NULL, "shuffled",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = vertices,
+                                              .positions = positions,
+                                              .triangles = triangles,
+                                              .corners = given,
+                                              .unit_mm = 1},
+                           &shuffled));
     ck_skg(skg_mesh_sorted_corners(shuffled, corners, &sorted));
     ck_assert_int_eq(sorted, 1);
     double step = 0; /* mean distance of first corners, in a mesh with edges of some 5 mm */
@@ -81,7 +88,14 @@ static skg_mesh *make_soup(int64_t segments, int64_t less) {
         memcpy(positions + 3 * c, sphere->positions + 3 * (int64_t)sphere->corners[c], 3 * sizeof *positions);
         corners[c] = (int32_t)c;
     }
-    ck_skg(skg_mesh_create(NULL, "soup", 3 * triangles, positions, 0, triangles, corners, 0, 1, &soup));
+    ck_skg(skg_mesh_create(NULL, "soup",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 3 * triangles,
+                                              .positions = positions,
+                                              .triangles = triangles,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &soup));
     skg_free(&positions);
     skg_free(&corners);
     skg_mesh_release(&sphere);
@@ -148,7 +162,14 @@ START_TEST(vertices_follow_the_triangles) {
     for (int64_t v = 0; v < vertices; v++)
         memcpy(positions + 3 * (int64_t)to[v], sphere->positions + 3 * v, 3 * sizeof *positions);
     for (int64_t c = 0; c < 3 * sphere->triangles; c++) corners[c] = to[sphere->corners[c]];
-    ck_skg(skg_mesh_create(NULL, "mixed", vertices, positions, 0, sphere->triangles, corners, 0, 1, &mixed));
+    ck_skg(skg_mesh_create(NULL, "mixed",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = vertices,
+                                              .positions = positions,
+                                              .triangles = sphere->triangles,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &mixed));
     ck_skg(skg_mesh_layout_create(mixed, &layout));
     ck_assert_ptr_nonnull(layout.source);
     ck_assert_int_eq(layout.vertices, vertices);

@@ -41,7 +41,14 @@ static void take_cube(void) {
 
 static skg_mesh *make(int64_t vertices, const double *positions, int64_t triangles, const int32_t *corners) {
     skg_mesh *mesh;
-    ck_skg(skg_mesh_create(NULL, "thing", vertices, positions, 0, triangles, corners, 0, 1, &mesh));
+    ck_skg(skg_mesh_create(NULL, "thing",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = vertices,
+                                              .positions = positions,
+                                              .triangles = triangles,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &mesh));
     return mesh;
 }
 
@@ -55,7 +62,16 @@ START_TEST(numbering_strides_and_units_are_the_callers) {
     for (int i = 0; i < 24; i++) positions[i / 3 * 5 + i % 3] = (float)cube_positions[i] + 0.25F;
     for (int i = 0; i < 36; i++) corners[i / 3 * 4 + i % 3] = cube_corners[i];
     skg_mesh *mesh;
-    ck_skg(skg_mesh_create_float(NULL, NULL, 8, positions, 5, 12, corners, 4, 10, &mesh));
+    ck_skg(skg_mesh_create(NULL, NULL,
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 8,
+                                              .floats = positions,
+                                              .position_stride = 5,
+                                              .triangles = 12,
+                                              .corners = corners,
+                                              .triangle_stride = 4,
+                                              .unit_mm = 10},
+                           &mesh));
     const char *name;
     ck_skg(skg_mesh_name_get(mesh, &name));
     ck_assert_str_eq(name, "mesh");
@@ -337,8 +353,17 @@ START_TEST(bad_arrays_are_named) {
     take_cube();
     memcpy(p, cube_positions, sizeof p);
     memcpy(c, cube_corners, sizeof c);
-#define CREATE(vertices, ps, triangles, cs, unit)                                                            \
-    skg_mesh_create(NULL, "liver", vertices, p, ps, triangles, c, cs, unit, &mesh)
+#define CREATE(points, ps, faces, cs, unit)                                                                  \
+    skg_mesh_create(NULL, "liver",                                                                           \
+                    &(skg_mesh_source){.size = sizeof(skg_mesh_source),                                      \
+                                       .vertices = points,                                                   \
+                                       .positions = p,                                                       \
+                                       .position_stride = ps,                                                \
+                                       .triangles = faces,                                                   \
+                                       .corners = c,                                                         \
+                                       .triangle_stride = cs,                                                \
+                                       .unit_mm = unit},                                                     \
+                    &mesh)
     ck_skg_fails(CREATE(8, 0, 0, 0, 1), SKG_ERR_MESH, "liver: no triangles");
     ck_skg_fails(CREATE(0, 0, 12, 0, 1), SKG_ERR_MESH, "liver: no vertices");
     ck_skg_fails(CREATE(-1, 0, 12, 0, 1), SKG_ERR_ARGUMENT, "-1 vertices");
@@ -351,12 +376,45 @@ START_TEST(bad_arrays_are_named) {
     ck_skg_fails(CREATE(INT64_C(1) << 31, 0, 12, 0, 1), SKG_ERR_MESH, "at most 715827882");
     ck_skg_fails(CREATE(8, 0, INT64_MAX, 0, 1), SKG_ERR_MESH, "at most 715827882");
     ck_skg_fails(CREATE(8, 0, 12, 0, 1e308), SKG_ERR_MESH, "more than single precision");
-    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, NULL, 0, 12, c, 0, 1, &mesh), SKG_ERR_ARGUMENT,
-                 "positions are NULL");
-    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, p, 0, 12, NULL, 0, 1, &mesh), SKG_ERR_ARGUMENT,
-                 "triangles are NULL");
-    ck_skg_fails(skg_mesh_create(NULL, "liver", 8, p, 0, 12, c, 0, 1, NULL), SKG_ERR_ARGUMENT,
-                 "skg_mesh_create: the argument mesh is NULL");
+    ck_skg_fails(skg_mesh_create(NULL, "liver",
+                                 &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                    .vertices = 8,
+                                                    .positions = NULL,
+                                                    .triangles = 12,
+                                                    .corners = c,
+                                                    .unit_mm = 1},
+                                 &mesh),
+                 SKG_ERR_ARGUMENT, "positions are NULL");
+    ck_skg_fails(skg_mesh_create(NULL, "liver",
+                                 &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                    .vertices = 8,
+                                                    .positions = p,
+                                                    .triangles = 12,
+                                                    .corners = NULL,
+                                                    .unit_mm = 1},
+                                 &mesh),
+                 SKG_ERR_ARGUMENT, "triangles are NULL");
+    const float q[24] = {0};
+    ck_skg_fails(skg_mesh_create(NULL, "liver",
+                                 &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                    .vertices = 8,
+                                                    .positions = p,
+                                                    .floats = q,
+                                                    .triangles = 12,
+                                                    .corners = c,
+                                                    .unit_mm = 1},
+                                 &mesh),
+                 SKG_ERR_ARGUMENT, "positions and floats are both given");
+    ck_skg_fails(skg_mesh_create(NULL, "liver", NULL, &mesh), SKG_ERR_ARGUMENT, "skg_mesh_source");
+    ck_skg_fails(skg_mesh_create(NULL, "liver",
+                                 &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                    .vertices = 8,
+                                                    .positions = p,
+                                                    .triangles = 12,
+                                                    .corners = c,
+                                                    .unit_mm = 1},
+                                 NULL),
+                 SKG_ERR_ARGUMENT, "skg_mesh_create: the argument mesh is NULL");
     c[3 * 7 + 1] = 8;
     ck_skg_fails(CREATE(8, 0, 12, 0, 1), SKG_ERR_MESH, "liver: triangle 7 names vertex 8, but");
     c[3 * 7 + 1] = -1;

@@ -40,8 +40,14 @@ START_TEST(makers_are_outward_and_of_the_right_volume) {
         skg_mesh *mesh = NULL;
         skg_mesh_health health;
         skg_mesh_health_init(&health);
-        ck_skg(skg_mesh_create(NULL, "solid", all[n].vertices, all[n].positions, 0, all[n].triangles,
-                               all[n].corners, 0, 1, &mesh));
+        ck_skg(skg_mesh_create(NULL, "solid",
+                               &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                  .vertices = all[n].vertices,
+                                                  .positions = all[n].positions,
+                                                  .triangles = all[n].triangles,
+                                                  .corners = all[n].corners,
+                                                  .unit_mm = 1},
+                               &mesh));
         ck_skg(skg_mesh_health_get(mesh, &health));
         ck_assert_int_eq(health.closed, 1);
         ck_assert_int_eq(health.flipped, 0);

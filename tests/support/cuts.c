@@ -328,8 +328,14 @@ static skg_status add_part(skg_context *context, const cut_scene *s, int64_t n, 
     const solid *of = &s->part[n];
     snprintf(label, sizeof label, "piece %d", (int)n);
     skg_part_init(&part);
-    skg_status status = skg_mesh_create(context, label, of->vertices, of->positions, 0, of->triangles,
-                                        of->corners, 0, 1, &part.mesh);
+    skg_status status = skg_mesh_create(context, label,
+                                        &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                           .vertices = of->vertices,
+                                                           .positions = of->positions,
+                                                           .triangles = of->triangles,
+                                                           .corners = of->corners,
+                                                           .unit_mm = 1},
+                                        &part.mesh);
     if (status == SKG_OK) status = skg_material_create_mu(label, s->mu[n], &part.material);
     part.label = label;
     part.inside = s->inside[n];

@@ -33,7 +33,13 @@ skg_view run_view(int64_t n, double pitch) {
 
 skg_mesh *run_mesh(const solid *s) {
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_create(run_context, "solid", s->vertices, s->positions, 0, s->triangles, s->corners, 0, 1,
+    ck_skg(skg_mesh_create(run_context, "solid",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = s->vertices,
+                                              .positions = s->positions,
+                                              .triangles = s->triangles,
+                                              .corners = s->corners,
+                                              .unit_mm = 1},
                            &mesh));
     return mesh;
 }

@@ -26,7 +26,14 @@ static skg_status copy_mesh(const skg_mesh *mesh, skg_mesh **copy) {
     SKG_TRY_CLEANUP(skg_alloc(3 * triangles, sizeof *corners, name, &corners));
     SKG_TRY_CLEANUP(skg_mesh_positions_get(mesh, positions, 0));
     SKG_TRY_CLEANUP(skg_mesh_triangles_get(mesh, corners, 0));
-    SKG_TRY_CLEANUP(skg_mesh_create(NULL, name, vertices, positions, 0, triangles, corners, 0, 1, copy));
+    SKG_TRY_CLEANUP(skg_mesh_create(NULL, name,
+                                    &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                       .vertices = vertices,
+                                                       .positions = positions,
+                                                       .triangles = triangles,
+                                                       .corners = corners,
+                                                       .unit_mm = 1},
+                                    copy));
 cleanup:
     skg_free(&positions);
     skg_free(&corners);

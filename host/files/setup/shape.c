@@ -59,8 +59,16 @@ static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json
         corners[3 * i + 1] = corners[3 * i + 2];
         corners[3 * i + 2] = second;
     }
-    SKG_TRY_CLEANUP(skg_mesh_create(reader->context, name, health.vertices, positions, 3, health.triangles,
-                                    corners, 3, 1, &turned));
+    SKG_TRY_CLEANUP(skg_mesh_create(reader->context, name,
+                                    &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                       .vertices = health.vertices,
+                                                       .positions = positions,
+                                                       .position_stride = 3,
+                                                       .triangles = health.triangles,
+                                                       .corners = corners,
+                                                       .triangle_stride = 3,
+                                                       .unit_mm = 1},
+                                    &turned));
     skg_mesh_release(mesh);
     *mesh = turned;
 cleanup:

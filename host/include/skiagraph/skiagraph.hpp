@@ -10,6 +10,7 @@
 
 #include <skiagraph/skiagraph.h>
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <stdexcept>
@@ -111,24 +112,34 @@ Number number(Function function, Arguments &&...arguments) {
     return result;
 }
 
+/** A mesh of a source whose positions are set, and their rows of three vertex numbers. */
+inline mesh make_mesh(skg_mesh_source source, std::size_t numbers, std::span<const std::int32_t> corners,
+                      double unit_mm, const char *name) {
+    if (numbers % 3 || corners.size() % 3)
+        throw std::invalid_argument("skiagraph::make_mesh: rows have three numbers");
+    source.vertices = static_cast<std::int64_t>(numbers / 3);
+    source.triangles = static_cast<std::int64_t>(corners.size() / 3);
+    source.corners = corners.data();
+    source.unit_mm = unit_mm;
+    return make<mesh>(skg_mesh_create, nullptr, name, &source);
+}
+
 /** A mesh from rows of x, y, z in units of unit_mm, and rows of three vertex numbers. The arrays are copied. */
 inline mesh make_mesh(std::span<const double> positions, std::span<const std::int32_t> corners,
                       double unit_mm = 1, const char *name = nullptr) {
-    if (positions.size() % 3 || corners.size() % 3)
-        throw std::invalid_argument("skiagraph::make_mesh: rows have three numbers");
-    return make<mesh>(skg_mesh_create, nullptr, name, static_cast<std::int64_t>(positions.size() / 3),
-                      positions.data(), 0, static_cast<std::int64_t>(corners.size() / 3), corners.data(), 0,
-                      unit_mm);
+    skg_mesh_source source;
+    skg_mesh_source_init(&source);
+    source.positions = positions.data();
+    return make_mesh(source, positions.size(), corners, unit_mm, name);
 }
 
 /** The same from floats. */
 inline mesh make_mesh(std::span<const float> positions, std::span<const std::int32_t> corners,
                       double unit_mm = 1, const char *name = nullptr) {
-    if (positions.size() % 3 || corners.size() % 3)
-        throw std::invalid_argument("skiagraph::make_mesh: rows have three numbers");
-    return make<mesh>(skg_mesh_create_float, nullptr, name, static_cast<std::int64_t>(positions.size() / 3),
-                      positions.data(), 0, static_cast<std::int64_t>(corners.size() / 3), corners.data(), 0,
-                      unit_mm);
+    skg_mesh_source source;
+    skg_mesh_source_init(&source);
+    source.floats = positions.data();
+    return make_mesh(source, positions.size(), corners, unit_mm, name);
 }
 
 /** Adds a part to a scene and returns its number. */

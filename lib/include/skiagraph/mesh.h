@@ -20,32 +20,43 @@ extern "C" {
 /** Vertices and triangles. */
 typedef struct skg_mesh skg_mesh;
 
+/** What a mesh is made of. The arrays are the caller's. */
+typedef struct {
+    /** Set by skg_mesh_source_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Number of vertices. */
+    int64_t vertices;
+    /** Rows of x, y, z in units of unit_mm. */
+    const double *positions;
+    /** The same as floats; one of the two is NULL. */
+    const float *floats;
+    /** Elements from one row to the next, at least 3; 0: 3. */
+    int64_t position_stride;
+    /** Number of triangles. */
+    int64_t triangles;
+    /** Rows of three vertex numbers, counted from 0. */
+    const int32_t *corners;
+    /** Elements from one row to the next, at least 3; 0: 3. */
+    int64_t triangle_stride;
+    /** mm per unit: 1, the default, for mm, 10 for cm, 1000 for m; finite, above 0. */
+    double unit_mm;
+} skg_mesh_source;
+
+SKG_INIT(skg_mesh_source)
+
 /** Makes a mesh from arrays, which are copied.
  *
- *     name              for messages; NULL or "": "mesh"
- *     vertices          number of vertices
- *     positions         rows of x, y, z in units of unit_mm
- *     position_stride   elements from one row to the next, at least 3; 0: 3
- *     triangles         number of triangles
- *     corners           rows of three vertex numbers, counted from 0
- *     triangle_stride   elements from one row to the next, at least 3; 0: 3
- *     unit_mm           mm per unit: 1 for mm, 10 for cm, 1000 for m; finite, above 0
- *     mesh              result; the caller releases it
- *     errors            SKG_ERR_ARGUMENT, SKG_ERR_MEMORY; SKG_ERR_MESH if there are no triangles, or for the
- *                       first corner that is out of range or vertex that is not finite
+ *     name      for messages; NULL or "": "mesh"
+ *     mesh      result; the caller releases it
+ *     errors    SKG_ERR_ARGUMENT, SKG_ERR_MEMORY; SKG_ERR_MESH if there are no triangles, or for the first corner that
+ *               is out of range or vertex that is not finite
  *
  * If a closed mesh points inward as a whole, it is turned outward and a warning says so
  * (skg_mesh_health.flipped). The caller's numbering stays. */
-SKG_API skg_status skg_mesh_create(skg_context *context, const char *name, int64_t vertices,
-                                   const double *positions, int64_t position_stride, int64_t triangles,
-                                   const int32_t *corners, int64_t triangle_stride, double unit_mm,
+SKG_API skg_status skg_mesh_create(skg_context *context, const char *name, const skg_mesh_source *source,
                                    skg_mesh **mesh);
-
-/** Makes a mesh from arrays with float positions; otherwise as skg_mesh_create. */
-SKG_API skg_status skg_mesh_create_float(skg_context *context, const char *name, int64_t vertices,
-                                         const float *positions, int64_t position_stride, int64_t triangles,
-                                         const int32_t *corners, int64_t triangle_stride, double unit_mm,
-                                         skg_mesh **mesh);
 
 /** Reads a mesh from a file: STL (text or binary), PLY, OBJ, or another format that Assimp reads.
  *
