@@ -46,16 +46,17 @@ static json_t *plan_json(const live_scene *scene) {
 }
 
 /* What the beam leaves in air before the detector; without the numbers that this beam has not. */
-static json_t *beam_json(const live_scene *scene, const skg_view *view) {
+static json_t *beam_json(live_scene *scene, const skg_view *view) {
     json_t *object = json_object();
-    cli_session session = scene->session;
-    skg_quality quality;
-    session.view = *view;
-    if (cli_flat_field_quality(&session, &quality) == SKG_OK) {
-        json_object_set_new(object, "mean_kev", cli_json_number(quality.mean_kev));
-        json_object_set_new(object, "photons", cli_json_number(quality.photons));
-        json_object_set_new(object, "air_kerma_ugy", cli_json_number(quality.air_kerma_ugy));
+    if (memcmp(&scene->beam_view, view, sizeof *view) != 0) {
+        cli_session session = scene->session;
+        session.view = scene->beam_view = *view;
+        scene->has_beam = cli_flat_field_quality(&session, &scene->beam) == SKG_OK;
     }
+    if (!scene->has_beam) return object;
+    json_object_set_new(object, "mean_kev", cli_json_number(scene->beam.mean_kev));
+    json_object_set_new(object, "photons", cli_json_number(scene->beam.photons));
+    json_object_set_new(object, "air_kerma_ugy", cli_json_number(scene->beam.air_kerma_ugy));
     return object;
 }
 
@@ -95,7 +96,7 @@ static json_t *angles_json(const live_scene *scene) {
     return angles;
 }
 
-json_t *live_describe_scene(const live_base *base, const live_scene *scene, const live_wish *wish,
+json_t *live_describe_scene(const live_base *base, live_scene *scene, const live_wish *wish,
                             int64_t geometry) {
     json_t *object = json_object(), *inner = json_object();
     char sentence[LIVE_SENTENCE];
@@ -151,8 +152,8 @@ static json_t *scatter_json(const live_scene *scene) {
     return object;
 }
 
-json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const skg_view *view,
-                           int64_t number, double ms) {
+json_t *live_describe_shot(live_scene *scene, const live_wish *wish, const skg_view *view, int64_t number,
+                           double ms) {
     json_t *object = json_object(), *seen = json_object();
     const int is_draft = wish->dragging && scene->draft;
     json_object_set_new(object, "shot", json_integer(number));
