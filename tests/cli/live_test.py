@@ -268,7 +268,7 @@ def ends(path):
     with Server(command, path, "--idle", "4") as server:
         page = Page(server)
         page.frame()
-        assert server.process.wait(20) == 0 and "--idle" in server.process.stderr.read()
+        assert server.process.wait(60) == 0 and "--idle" in server.process.stderr.read()
     with Server(command, path) as server:
         pages = [Page(server) for _ in range(8)]
         pages[0].frame()
@@ -276,7 +276,7 @@ def ends(path):
         assert server.end() == 0
     with Server(command, path) as server:
         server.process.send_signal(1)  # its terminal is closed
-        assert server.process.wait(20) == 0
+        assert server.process.wait(60) == 0
 
 
 def prints_json(path):
@@ -291,7 +291,7 @@ def prints_json(path):
             assert len(text) < 2000
     assert found["url"] == f"http://127.0.0.1:{found['port']}/?token={found['token']}" and len(found["token"]) == 32
     process.send_signal(15)
-    assert process.wait(20) == 0
+    assert process.wait(60) == 0
 
 
 def changed_file(path):
