@@ -11,7 +11,7 @@ const frameSum = () => sumOf(xray.frame.numbers) + ' ' + xray.frame.low + ' ' + 
 const filmSum = () => sumOf(pen.getImageData(0, 0, film.width, film.height).data);
 const viewSum = () => { draw(); const p = new Uint8Array(4 * canvas.width * canvas.height);
   gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, p); return sumOf(p); };
-const settled = () => xray.frame && !net.waits && xray.frame.wish === net.sent && net.told && net.told.shot === xray.frame.number;
+const settled = () => xray.frame && !net.waits && xray.frame.wish === net.sent && net.shot && net.shot.shot === xray.frame.number;
 const typed = (box, value) => { box.value = value; box.dispatchEvent(new Event('input')); box.dispatchEvent(new Event('change')); };
 const saved = []; save = (name, bytes) => saved.push([name, typeof bytes === 'string' ? bytes : bytes.length]);
 0

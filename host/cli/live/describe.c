@@ -45,7 +45,7 @@ static json_t *plan_json(const live_scene *scene) {
     return object;
 }
 
-/* What the beam leaves in air before the detector; without the numbers that this beam has not. */
+/* The open beam at the detector; empty if it has no such figures. */
 static json_t *beam_json(live_scene *scene, const skg_view *view) {
     json_t *object = json_object();
     if (memcmp(&scene->beam_view, view, sizeof *view) != 0) {

@@ -44,8 +44,8 @@ typedef struct {
         frame_ms; /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
     int64_t frames;     /* whole images so far */
     float *values;      /* [rows][columns] of an image */
-    skg_view beam_view; /* for which `beam` is; all 0: none yet */
-    skg_quality beam;   /* of the open beam, kept because it takes 0.1 ms */
+    skg_view beam_view; /* view of `beam`; all 0: not computed yet */
+    skg_quality beam;   /* the open beam, cached because it takes 0.1 ms */
     int has_beam;
 } live_scene;
 

@@ -25,9 +25,9 @@ function bars(box, pairs, text) {
   }));
 }
 
-// A frame and its text come in either order.
+// Adds a frame to the sinogram when both the frame and its message have arrived, in either order.
 function pairShot() {
-  if (net.told && xray.frame && net.told.shot === xray.frame.number) noteProjection(xray.frame, net.told.state);
+  if (net.shot && xray.frame && net.shot.shot === xray.frame.number) noteProjection(xray.frame, net.shot.state);
 }
 
 let lastShot = 0, lastView = '';
@@ -38,7 +38,7 @@ function showShot(message) {
   byId('scattered').textContent = message.scatter ? `scatter: ${message.scatter.histories} photons in ${number(message.scatter.seconds, 3)} s, mean ${number(message.scatter.mean, 3)} +- ${number(message.scatter.sigma, 2)}` : '';
   live.beam = message.beam;
   if (isCalm) showExposure(live.beam);
-  net.told = message;
+  net.shot = message;
   pairShot();
   const view = JSON.stringify(message.view);
   if (view !== lastView) {

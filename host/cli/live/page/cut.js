@@ -1,8 +1,8 @@
-// A plane that cuts the parts of the 3D view: across an axis of the world, or across the view, with which it then turns.
+// The clip plane of the 3D view: perpendicular to an axis of the world, or to the direction of view, with which it turns.
 'use strict';
-const cut = {across: '', at: 0, side: 1}; // at: mm along the axis; across the view from the middle of the parts, towards the eye
+const cut = {across: '', at: 0, side: 1}; // at: mm along the axis, or from the middle of the parts towards the eye. side: 1 or -1
 
-// The least and the greatest place of all parts along a direction.
+// Minimum and maximum of all parts along a direction, mm.
 function reachOf(direction) {
   const places = scene.parts.flatMap((part, i) => boxPoints(part.low, meshes[i].high).map(p => dot(direction, carry(moveOf(i), p))));
   return [Math.min(...places), Math.max(...places)];

@@ -1,8 +1,8 @@
-// Focal spot and jaws. The server says both in mm, whatever the units of the scene file, and they are written in mm.
+// Focal spot and jaws. The server sends both in mm, whatever the units of the scene file, and the page writes mm.
 'use strict';
 
-// Controls of a key that follow each new description of the scene. What they have written themselves stays until then, and what is
-// refused or undone goes. Returns how the key is written.
+// Calls `show` when the server has sent a new scene, or when the key was changed by anything but these controls, such as undo or a
+// refused value. Returns the function by which the controls set the key.
 function follow(key, show) {
   let seen, written;
   watch(() => {
@@ -14,7 +14,7 @@ function follow(key, show) {
   return (value, dragging = false, begun = null) => { written = JSON.stringify(value); set(key, value, dragging, begun); };
 }
 
-// Shapes by their number, as the scene file names them, and those that have a width and a height.
+// Names of enum skg_spot_shape in scene files, and the shapes that have a width and a height.
 const SPOTS = ['PointSource', 'Line', 'Rectangle', 'Cube', 'Disc', 'Sphere', 'Gaussian'], OBLONG = ['Rectangle', 'Gaussian'];
 
 function fillSpot() {
@@ -48,7 +48,7 @@ function fillSpot() {
   height.onchange = () => put();
 }
 
-// Jaws halfway to the detector, which leave four fifths of it free along each side.
+// Default of a rectangle: jaws halfway to the detector, open for 80 % of its width and height.
 function someJaws() {
   const [a, b, , d] = scene.view.corners, half = [size(add(b, -1, a)), size(add(d, -1, a))].map(length => 0.4 * length);
   const isParallel = scene.view.projection !== 'point', share = isParallel ? 1 : 0.5;
@@ -85,7 +85,7 @@ function fillJaws() {
   for (const box of edges) box.onchange = () => put();
 }
 
-// What reaches the detector without a sample.
+// The open beam at the detector.
 function showExposure(beam) {
   byId('photons').textContent = `${number(beam.photons, 3)} photons a pixel, mean ${number(beam.mean_kev, 3)} keV`;
   byId('kerma').textContent = `air kerma at the detector ${number(beam.air_kerma_ugy, 3)} \u00b5Gy`;

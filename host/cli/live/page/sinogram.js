@@ -1,9 +1,9 @@
-// The sinogram: of every projection that was seen, the row of the image where the cursor is or was last. The projections are kept
-// while nothing else about the scene changes.
+// The sinogram: a line for each projection that was shown, the row of its image at the last position of the cursor. Frames are
+// cached until anything but the projection changes.
 'use strict';
 const KEPT_BYTES = 128 * 2 ** 20;
 const sinogram = {frames: new Map(), key: '', most: Infinity, row: 0.5, sweep: null, timer: 0};
-// most: frames that are kept. row: a fraction of the height. sweep: {back, asked, key} while all projections are asked for.
+// most: maximum number of cached frames. row: a fraction of the height. sweep: {back, asked, key} while all projections are requested.
 const keyOfState = ({settings, poses, phase, quantity}) => JSON.stringify([settings, poses, phase, quantity]);
 
 function keepOnly(key) {
@@ -11,7 +11,7 @@ function keepOnly(key) {
   sinogram.key = key;
 }
 
-// A frame and the state that it shows.
+// Caches a frame. its: the state that it shows.
 function noteProjection(frame, its) {
   if (its.projection === null || frame.notes & 1 || live.projections < 2 || keyOfState(its) !== sinogram.key) return;
   const {frames, sweep} = sinogram;
@@ -51,7 +51,7 @@ function setRow(share) {
   drawSinogramSoon();
 }
 
-// Asks for all projections that were not seen, one after the other, and goes back; what the hand changes meanwhile ends it.
+// Requests each missing projection in turn, then the first one again. A change by the user ends it.
 function beginSweep() {
   if (!isOwner()) return;
   sinogram.sweep = {back: state.projection, asked: state.projection, key: sinogram.key};

@@ -1,8 +1,8 @@
-// A measuring line of the 3D view between two points of parts, which go with the parts, or the source or the detector's middle.
+// The measuring line of the 3D view. Its ends are points on parts, which move with the parts, the source, or the detector's centre.
 'use strict';
-const tape = {on: false, ends: []}; // each end: {kind} of 'source' or 'detector', or {part, point} where the part's file has it
+const tape = {on: false, ends: []}; // each end: {kind}, 'source' or 'detector', or {part, point} with the point before the part was moved
 
-// The ray through a CSS pixel's own middle: where it starts, and its direction, whose part along the view is 1.
+// The ray through the centre of the canvas pixel at a CSS pixel: its start, and its direction, of length 1 along the view.
 function rayAt(x, y) {
   const ratio = canvas.width / canvas.clientWidth, [right, up, toward] = axes(), t = Math.tan(FIELD / 2);
   const across = (2 * (Math.floor(x * ratio) + 0.5) - canvas.width) / canvas.height * t, above = (1 - 2 * (Math.floor(y * ratio) + 0.5) / canvas.height) * t;
@@ -10,8 +10,8 @@ function rayAt(x, y) {
   return camera.parallel ? {from: aside(eyePoint(), camera.distance), along: away} : {from: eyePoint(), along: aside(away, 1)};
 }
 
-// The part and the point of the world that are seen at a CSS pixel; null: nothing is. Where the cut shows the inside of a part, the
-// point lies in the plane of the cut.
+// The part and the point in the world at a CSS pixel; null if there is no part. If the clip plane shows the inside of a part, the
+// point is the intersection of the ray with the plane.
 function surfaceAt(x, y) {
   const part = partAt(x, y);
   if (part < 0) return null;
@@ -21,11 +21,11 @@ function surfaceAt(x, y) {
     drawMesh(part, program);
   });
   const {from, along} = rayAt(x, y), [a, b, c, w] = shot.cut, normal = [a, b, c], isInside = cut.across && side < 200 && dot(normal, along) !== 0;
-  const behind = dot(toward, add(from, -1, whole.middle)) - ((deep + 0.5) / 16777215 - 0.5) * reach; // of the point, from where the ray starts
+  const behind = dot(toward, add(from, -1, whole.middle)) - ((deep + 0.5) / 16777215 - 0.5) * reach; // mm from the start of the ray to the point, along the view
   return {part, point: add(from, isInside ? (w - dot(normal, from)) / dot(normal, along) : behind, along)};
 }
 
-// A point of the world as the part's file has it: the way back of a turn and a shift.
+// The inverse of `carry` for a rotation and a translation.
 function carryBack(m, p) {
   const from = [0, 1, 2].map(r => p[r] - m[4 * r + 3]);
   return [0, 1, 2].map(c => m[c] * from[0] + m[4 + c] * from[1] + m[8 + c] * from[2]);

@@ -9,7 +9,7 @@ function shownOf(frame, n) {
   return frame.flat > 0 ? -Math.log(Math.max(value, 1e-30 * frame.flat) / frame.flat) : value;
 }
 
-// Behind jaws no photon arrives, which is the -ln of the smallest number: no part of histogram and window.
+// Behind jaws no photon arrives; the value is -ln of the smallest float, 87.34. Histogram and window leave it out.
 const STOPPED = 87;
 const isStopped = (frame, n) => shownOf(frame, n) > STOPPED;
 
@@ -158,7 +158,7 @@ function moveCursor(at) {
   if (at) setRow(at[1]);
   showValue();
   clearTimeout(probeTimer);
-  xray.probed = ''; // an answer about another pixel comes too late
+  xray.probed = ''; // so that an answer about the last pixel is ignored
   if (at && xray.frame) probeTimer = setTimeout(() => {
     const {columns, rows, factor} = xray.frame, pixel = [Math.floor(at[0] * columns * factor), Math.floor(at[1] * rows * factor)];
     xray.probed = String(pixel);

@@ -27,10 +27,10 @@ void main() {
   float lit = 0.34 + 0.66 * max(dot(u, light), 0.0), rim = mix(0.62, 1.0, smoothstep(0.0, 0.45, facing));
   vec3 c = colour.rgb * lit * rim + shine * pow(max(dot(u, normalize(light + v)), 0.0), 40.0);
   float alpha = colour.a >= 1.0 ? 1.0 : 1.0 - pow(1.0 - colour.a, 1.0 / max(facing, 0.12));
-  if (cut.xyz != vec3(0.0) && !gl_FrontFacing) c = 0.7 * colour.rgb; // without light, the inside looks as if the part were solid
+  if (cut.xyz != vec3(0.0) && !gl_FrontFacing) c = 0.7 * colour.rgb; // an unlit inside looks like a solid part's section
   shown = vec4(mix(c, glow, 0.35 * float(glow != vec3(0.0))), alpha);
 }`],
-  // A number of 24 bits: the part's, or how deep the surface lies where `deep` is not 0; then the fourth byte says which side of it is seen.
+  // A number of 24 bits: that of the part, or the depth of the surface if `deep` is not 0. The fourth byte is then 255 for a front face.
   pick: [`#version 300 es
 uniform mat4 m, pose; uniform vec3 low, extent; uniform float between;
 layout(location=0) in vec3 a; layout(location=1) in vec3 b; out vec3 world;
@@ -173,7 +173,7 @@ function showImage(frame) {
 
 // What every program of a picture needs to know.
 const shot = {time: 0, m: null, eye: [0, 0, 0, 1], light: [0, 0, 1], chosen: -1, under: -1, marks: true, ground: [0.957, 0.961, 0.969], cut: [0, 0, 0, 0], aimed: null};
-// cut: what lies beyond dot(xyz, p) = w is not drawn. aimed: called when the eye has its place, with the direction towards it.
+// cut: points p with dot(xyz, p) > w are not drawn. aimed: called after the camera was set, with the direction towards the eye.
 
 // The two key frames around the time, and how far it is from the first to the second.
 function moment(frames) {
@@ -263,7 +263,7 @@ function drawScene() {
   drawParts();
 }
 
-// A picture of the one pixel that lies at a CSS pixel, as `act` draws it; returns its number of 24 bits and its fourth byte.
+// Draws the one pixel at a CSS pixel, by `act`. Returns its number of 24 bits and its fourth byte.
 let sensor = null;
 function sense(x, y, act) {
   if (!sensor) {
