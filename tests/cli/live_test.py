@@ -215,6 +215,9 @@ def second_page(path):
         first.frame()
         wish = first.wish(settings={"Source.Position": [8, -400, 4, "mm"]})
         assert first.frame(wish).wish == second.frame(wish).wish == wish
+        first.find(lambda m: isinstance(m, dict) and "shot" in m and m["wish"] == wish)
+        third = Page(server)  # is told where source and detector are, without another frame
+        assert third.text("shot")["view"]["source"] == [8, -400, 4]
         first.close()
         assert second.text("role")["role"] == "owner"
         second.wishes = wish
