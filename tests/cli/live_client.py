@@ -40,7 +40,7 @@ class Server:
 
     def get(self, path, headers=(), method="GET"):
         """Status and text of an answer."""
-        with socket.create_connection(("127.0.0.1", self.port), timeout=20) as connection:
+        with socket.create_connection(("127.0.0.1", self.port), timeout=60) as connection:
             lines = [f"{method} {path} HTTP/1.1", f"Host: 127.0.0.1:{self.port}", "Connection: close", *headers, "", ""]
             connection.sendall("\r\n".join(lines).encode())
             data = b""
@@ -53,7 +53,7 @@ class Server:
         with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
-    def end(self, timeout=20):
+    def end(self, timeout=60):
         """Exit status after Ctrl-C."""
         self.process.send_signal(2)
         return self.process.wait(timeout)

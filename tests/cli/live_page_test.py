@@ -10,24 +10,12 @@ import tempfile
 import chromium
 from chromium import Browser
 from live_client import Page, Server
+from live_controls import cut, exposure, sinogram, tape
 from live_test import SCENE, has_server
+from live_tried import Tried, check, failures
 
 command = sys.argv[1]
 pictures = sys.argv[2] if len(sys.argv) > 2 else None
-
-# Sums by which pictures are told apart: of the frame's numbers, of the X-ray as it is shown, and of the 3D view.
-HELPERS = """
-const sumOf = numbers => { let s = 7; for (const x of numbers) s = (Math.imul(s, 31) + x) | 0; return s; };
-const frameSum = () => sumOf(xray.frame.numbers) + ' ' + xray.frame.low + ' ' + xray.frame.step + ' ' + xray.frame.columns;
-const filmSum = () => sumOf(pen.getImageData(0, 0, film.width, film.height).data);
-const viewSum = () => { draw(); const p = new Uint8Array(4 * canvas.width * canvas.height);
-  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, p); return sumOf(p); };
-const settled = () => xray.frame && !net.waits && xray.frame.wish === net.sent;
-const typed = (box, value) => { box.value = value; box.dispatchEvent(new Event('input')); box.dispatchEvent(new Event('change')); };
-const saved = []; save = (name, bytes) => saved.push([name, typeof bytes === 'string' ? bytes : bytes.length]);
-0
-"""
-failures = []
 
 
 def scene_of_matter():
@@ -36,36 +24,6 @@ def scene_of_matter():
     for sample, matter in zip(scene["Samples"], ("Water", "Aluminium"), strict=True):
         sample["Material"] = matter
     return scene
-
-
-def check(name, is_right, what=""):
-    if not is_right:
-        failures.append(f"{name} {what}")
-
-
-class Tried:
-    """What a control does to a page."""
-
-    def __init__(self, browser):
-        self.browser = browser
-        browser.until("typeof net !== 'undefined' && xray.frame !== null && live !== null && net.role === 'owner'")
-        browser.run(HELPERS)
-        self.still()
-
-    def still(self):
-        self.browser.until("settled()")
-
-    def differs(self, name, action, of="frameSum"):
-        """The action changes this sum."""
-        before = self.browser.run(f"{of}()")
-        action() if callable(action) else self.browser.run(action)
-        self.still()
-        if of == "frameSum":
-            try:
-                self.browser.until(f"frameSum() !== {json.dumps(before)}", 5)
-            except TimeoutError:
-                pass
-        check(name, self.browser.run(f"{of}()") != before, f"leaves {of} as it is; {self.browser.run('byId(`sentence`).textContent')}")
 
 
 def beam_and_dials(tried):
@@ -84,7 +42,7 @@ def beam_and_dials(tried):
     tried.differs("noise", "byId('noise').click()")
     tried.differs("mAs", "typed(byId('mas').querySelector('input'), 0.1)")
     tried.differs("mAs typed", "typed(byId('mas').querySelector('[type=number]'), 1e-4)")
-    tried.browser.until("!byId('starved').hidden", 5)
+    tried.browser.until("!byId('starved').hidden")
     run("byId('noise').click()")
     tried.still()
     tried.differs("rays", "typed(byId('rays'), '2')")
@@ -164,7 +122,7 @@ def film(tried):
     run("byId('profiles').click()")
     check("no frame for the window", run("xray.frame.number") == frames)
     browser.mouse("mouseMoved", place[0] + 0.5 * place[2], place[1] + 0.5 * place[3])
-    browser.until("byId('value').textContent.includes('bone: 60 mm')", 10)
+    browser.until("byId('value').textContent.includes('bone: 60 mm')")
     check("value", run("byId('value').textContent.includes('column 40, row 30')"), run("byId('value').textContent"))
     run("byId('keep').click()")
     tried.differs("before/after", "typed(byId('energy'), 30); 0", "frameSum")
@@ -178,7 +136,7 @@ def cost_and_takes(tried):
     check("stages", run("byId('stages').textContent.includes('raster')"))
     check("ms", run("/^[0-9.]+ ms for 80 x 60/.test(byId('ms').textContent)"), run("byId('ms').textContent"))
     run("byId('measure').click()")
-    browser.until("!byId('measure').disabled", 60)
+    browser.until("!byId('measure').disabled", 120)
     check("measured", run("byId('results').rows.length > 3 && /ms/.test(byId('results').textContent)"))
     tried.differs("switch", "[...byId('results').querySelectorAll('button')].find(b => b.textContent.includes('2 x 2')).click()")
     run("choose('part', 1); moveChosen(shift([16, 0, 0]))")
@@ -186,7 +144,7 @@ def cost_and_takes(tried):
     shown = run("frameSum()")
     for take in ("json", "py", "command", "png", "tif", "mha"):
         run(f"document.querySelector('[data-take={take}]').click()")
-    browser.until("saved.length >= 5", 30)
+    browser.until("saved.length >= 5")
     names = sorted(name for name, _ in run("saved"))
     check("files", names == ["image.mha", "image.png", "image.py", "image.tif", "scene.json"], str(names))
     texts = dict(run("saved"))
@@ -197,8 +155,9 @@ def cost_and_takes(tried):
 
 
 def reads_only(server, url):
-    """A second page, beside a first one that is not this browser's."""
+    """A second page, beside a first one that is not this browser's, once the server has seen that the page before has gone."""
     first = Page(server)
+    first.find(lambda m: isinstance(m, dict) and m.get("role") == "owner")
     first.frame()
     with Browser(url) as browser:
         browser.until("typeof net !== 'undefined' && net.role === 'reader' && xray.frame !== null && live !== null")
@@ -211,23 +170,32 @@ def reads_only(server, url):
     first.close()
 
 
-def sizes(browser, name):
-    for width, height in ((1280, 800), (390, 844)):
-        browser.size(width, height)
-        browser.run("new Promise(done => setTimeout(done, 400))")
-        check("no scrolling sideways", browser.run("document.documentElement.scrollWidth <= innerWidth"), str(width))
-        if pictures:
-            browser.picture(os.path.join(pictures, f"{name}-{width}.png"))
+def sizes(tried, name):
+    """Wide and as a phone, light and dark."""
+    browser = tried.browser
+    browser.run("typed(byId('jaws'), 'edges')")
+    tried.still()
+    for is_dark in (False, True):
+        browser.run(f"setDark({json.dumps(is_dark)})")
+        for width, height in ((1280, 800), (390, 844)):
+            browser.size(width, height)
+            browser.until("Math.abs(canvas.width - canvas.clientWidth) < 1 && !dirty")
+            for box in ("document.documentElement", "document.querySelector('aside')"):
+                check("no scrolling sideways", browser.run(f"{box}.scrollWidth <= {box}.clientWidth"), f"{box} {width}")
+            if pictures:
+                browser.picture(os.path.join(pictures, f"{name}-{'dark' if is_dark else 'light'}-{width}.png"))
 
 
 def work(folder, path):
     with Server(command, path) as server:
         with Browser(server.url) as browser:
             tried = Tried(browser)
-            for part in (beam_and_dials, geometry, film, view):
+            beam_and_dials(tried)
+            exposure(tried, path)
+            for part in (geometry, sinogram, film, view, cut, tape):
                 part(tried)
             shown, scene = cost_and_takes(tried)
-            sizes(browser, "live")
+            sizes(tried, "live")
             check("no exception", not browser.events, json.dumps(browser.events)[:800])
         reads_only(server, server.url)
     other = os.path.join(folder, "taken.json")
@@ -246,10 +214,12 @@ def breathes(folder):
         tried.differs("phase", "typed(byId('phase'), 0.5)")
         tried.differs("3D breathes", "typed(byId('phase'), 0.2)", "viewSum")
         browser.run("byId('play').click()")
-        browser.until("state.play && xray.frame.number > 20", 30)
+        browser.until("state.play && xray.frame.number > 20")
         browser.run("byId('play').click()")
-        browser.until("!state.play")
-        check("stopped", browser.run("new Promise(done => setTimeout(() => { const n = xray.frame.number; setTimeout(() => done(xray.frame.number - n), 300); }, 500))") == 0)
+        tried.still()
+        last = browser.run("xray.frame.number")
+        tried.differs("phase after the breath", "typed(byId('phase'), (state.phase + 0.5) % 1)")
+        check("stopped", browser.run("xray.frame.number") == last + 1)  # no image came between
         check("no exception", not browser.events, json.dumps(browser.events)[:800])
 
 

@@ -2,7 +2,9 @@
 
 #include "common/encode.h"
 #include "common/say.h"
+#include "core/maths.h"
 #include "live/page.h"
+#include "session/explain.h"
 
 #include <math.h>
 #include <string.h>
@@ -43,25 +45,64 @@ static json_t *plan_json(const live_scene *scene) {
     return object;
 }
 
-/* What the beam leaves in air before the detector, by pixel; null where the beam has no such number. */
-static json_t *beam_json(const live_scene *scene) {
+/* The open beam at the detector; empty if it has no such figures. */
+static json_t *beam_json(live_scene *scene, const skg_view *view) {
     json_t *object = json_object();
-    skg_quality quality;
-    skg_spectrum *resolved = NULL;
-    skg_quality_init(&quality);
-    if (skg_spectrum_create_resolved(scene->session.spectrum, &scene->session.view, &resolved) == SKG_OK &&
-        skg_spectrum_quality_get(resolved, &quality) == SKG_OK) {
-        json_object_set_new(object, "mean_kev", cli_json_number(quality.mean_kev));
-        json_object_set_new(object, "photons", cli_json_number(quality.photons));
+    if (memcmp(&scene->beam_view, view, sizeof *view) != 0) {
+        cli_session session = scene->session;
+        session.view = scene->beam_view = *view;
+        scene->has_beam = cli_flat_field_quality(&session, &scene->beam) == SKG_OK;
     }
-    skg_spectrum_release(&resolved);
+    if (!scene->has_beam) return object;
+    json_object_set_new(object, "mean_kev", cli_json_number(scene->beam.mean_kev));
+    json_object_set_new(object, "photons", cli_json_number(scene->beam.photons));
+    json_object_set_new(object, "air_kerma_ugy", cli_json_number(scene->beam.air_kerma_ugy));
     return object;
 }
 
-json_t *live_describe_scene(const live_base *base, const live_scene *scene, const live_wish *wish,
+/* The focal spot in mm; null in a parallel beam, which has none. */
+static json_t *spot_json(const live_scene *scene) {
+    const skg_spot *spot = scene->session.options.spot;
+    if (scene->session.view.projection != SKG_PROJECTION_POINT) return json_null();
+    json_t *object = json_object();
+    json_object_set_new(object, "shape", json_integer(spot ? spot->shape : SKG_SPOT_POINT));
+    json_object_set_new(object, "extent", spot ? cli_json_numbers(spot->extent, 2) : json_null());
+    return object;
+}
+
+/* The jaws in mm, as the scene file counts them; null if they are open. */
+static json_t *jaws_json(const live_scene *scene) {
+    const skg_collimation *jaws = scene->session.options.collimation;
+    if (!jaws || jaws->kind == SKG_COLLIMATION_OPEN) return json_null();
+    const double edges[] = {jaws->low[0], jaws->high[0], -jaws->high[1], -jaws->low[1]};
+    json_t *object = json_object();
+    if (jaws->kind == SKG_COLLIMATION_DETECTOR) {
+        json_object_set_new(object, "margin", cli_json_number(jaws->margin_mm));
+        return object;
+    }
+    json_object_set_new(object, "edges", cli_json_numbers(edges, 4)); /* left, right, bottom, top */
+    json_object_set_new(object, "distance", cli_json_number(jaws->distance_mm));
+    return object;
+}
+
+/* Of each projection, in degrees; empty without a scan. */
+static json_t *angles_json(const live_scene *scene) {
+    json_t *angles = json_array();
+    skg_scan *scan = NULL;
+    double angle;
+    if (scene->projections < 1 || skg_setup_scan_get(scene->setup, &scan) != SKG_OK) return angles;
+    for (int64_t k = 0; k < scene->projections && skg_scan_angle_get(scan, k, &angle) == SKG_OK; k++)
+        json_array_append_new(angles, cli_json_number(angle * 180 / SKG_PI));
+    return angles;
+}
+
+json_t *live_describe_scene(const live_base *base, live_scene *scene, const live_wish *wish,
                             int64_t geometry) {
     json_t *object = json_object(), *inner = json_object();
+    char sentence[LIVE_SENTENCE];
+    skg_view view;
     const char *text = NULL;
+    if (!live_scene_view(base, scene, wish, &view, sentence)) view = scene->session.view;
     json_t *document = skg_setup_text_get(scene->setup, &text) == SKG_OK ? json_loads(text, 0, NULL) : NULL;
     json_object_set_new(inner, "document", document ? document : json_null());
     json_object_set_new(inner, "warnings", json_deep_copy(base->warnings));
@@ -77,7 +118,10 @@ json_t *live_describe_scene(const live_base *base, const live_scene *scene, cons
     json_object_set_new(inner, "channel", cli_json_text(scene->channel.name));
     json_object_set_new(inner, "unit", cli_json_text(scene->channel.unit));
     json_object_set_new(inner, "plan", plan_json(scene));
-    json_object_set_new(inner, "beam", beam_json(scene));
+    json_object_set_new(inner, "beam", beam_json(scene, &view));
+    json_object_set_new(inner, "spot", spot_json(scene));
+    json_object_set_new(inner, "jaws", jaws_json(scene));
+    json_object_set_new(inner, "angles", angles_json(scene));
     json_object_set_new(object, "scene", inner);
     return object;
 }
@@ -108,8 +152,8 @@ static json_t *scatter_json(const live_scene *scene) {
     return object;
 }
 
-json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const skg_view *view,
-                           int64_t number, double ms) {
+json_t *live_describe_shot(live_scene *scene, const live_wish *wish, const skg_view *view, int64_t number,
+                           double ms) {
     json_t *object = json_object(), *seen = json_object();
     const int is_draft = wish->dragging && scene->draft;
     json_object_set_new(object, "shot", json_integer(number));
@@ -118,6 +162,7 @@ json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const
     json_object_set_new(object, "phase", cli_json_number(wish->phase));
     json_object_set_new(object, "state", live_wish_json(wish));
     json_object_set_new(object, "stages", stages_json(is_draft ? scene->draft : scene->plan));
+    json_object_set_new(object, "beam", beam_json(scene, view));
     json_object_set_new(object, "scatter", is_draft ? json_null() : scatter_json(scene));
     if (live_page_view(scene, view, seen) == CLI_DONE)
         json_object_set_new(object, "view", seen);

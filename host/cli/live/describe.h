@@ -5,12 +5,12 @@
 #include "live/scene.h"
 
 /* {"scene": ...}: the scene file as it is now, what the plan has decided, device, limits of the controls. */
-json_t *live_describe_scene(const live_base *base, const live_scene *scene, const live_wish *wish,
+json_t *live_describe_scene(const live_base *base, live_scene *scene, const live_wish *wish,
                             int64_t geometry);
 
 /* {"shot": ...}: times of the stages of a frame, what it found, and source and detector. */
-json_t *live_describe_shot(const live_scene *scene, const live_wish *wish, const skg_view *view,
-                           int64_t number, double ms);
+json_t *live_describe_shot(live_scene *scene, const live_wish *wish, const skg_view *view, int64_t number,
+                           double ms);
 
 /* A number that differs where the surfaces of two scenes do. */
 int64_t live_geometry_of(const live_scene *scene);

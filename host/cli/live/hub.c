@@ -32,8 +32,9 @@ struct live_hub {
     int64_t greeted;
     live_asked waiting;
     double active_ms;
-    char *page, *greeting;
-    live_packet *last; /* frame, for pages that begin */
+    char *page;
+    char *greeting, *shot; /* texts for pages that begin: the scene, and the last frame's */
+    live_packet *last;     /* frame, likewise */
 };
 
 live_hub *live_hub_create(live_send send) {
@@ -57,6 +58,7 @@ void live_hub_free(live_hub *hub) {
     live_packet_release(&hub->last);
     free(hub->page);
     free(hub->greeting);
+    free(hub->shot);
     pthread_mutex_destroy(&hub->lock);
     pthread_cond_destroy(&hub->asked);
     pthread_cond_destroy(&hub->sent);
@@ -151,6 +153,7 @@ int live_hub_greet(live_client *client) {
     client->order = hub->greeted++;
     tell_role(client, find_owner(hub) == client);
     if (hub->greeting) tell(client, hub->greeting);
+    if (hub->shot) tell(client, hub->shot);
     client->frame = live_packet_retain(hub->last);
     hub->active_ms = cli_now_ms();
     if (pthread_create(&client->sender, NULL, run_sender, client) != 0) client->sends = 0;
@@ -279,19 +282,20 @@ double live_hub_idle(live_hub *hub) {
     return ms / 1000;
 }
 
-void live_hub_page_set(live_hub *hub, char *html) {
+/* Replaces the page, or a text for pages that begin. Takes over the text. */
+static void replace(live_hub *hub, char **text, char *by) {
     pthread_mutex_lock(&hub->lock);
-    free(hub->page);
-    hub->page = html;
+    free(*text);
+    *text = by;
     pthread_mutex_unlock(&hub->lock);
 }
 
+void live_hub_page_set(live_hub *hub, char *html) {
+    replace(hub, &hub->page, html);
+}
+
 void live_hub_greeting_set(live_hub *hub, const char *text) {
-    char *copy = strdup(text);
-    pthread_mutex_lock(&hub->lock);
-    free(hub->greeting);
-    hub->greeting = copy;
-    pthread_mutex_unlock(&hub->lock);
+    replace(hub, &hub->greeting, strdup(text));
 }
 
 void live_hub_tell(live_hub *hub, const char *text) {
@@ -307,6 +311,14 @@ void live_hub_tell_json(live_hub *hub, json_t *object) {
     json_decref(object);
     if (text) live_hub_tell(hub, text);
     free(text);
+}
+
+void live_hub_shot_tell(live_hub *hub, json_t *object) {
+    char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
+    json_decref(object);
+    if (!text) return;
+    live_hub_tell(hub, text);
+    replace(hub, &hub->shot, text);
 }
 
 void live_hub_show(live_hub *hub, int64_t number, unsigned char *bytes, size_t size) {

@@ -67,6 +67,9 @@ void live_hub_greeting_set(live_hub *hub, const char *text);
 void live_hub_tell(live_hub *hub, const char *text);
 void live_hub_tell_json(live_hub *hub, json_t *object); /* releases the object */
 
+/* Tells all pages of a frame, and those that begin later; releases the object. */
+void live_hub_shot_tell(live_hub *hub, json_t *object);
+
 /* Shows all pages a frame. Takes over the bytes. */
 void live_hub_show(live_hub *hub, int64_t number, unsigned char *bytes, size_t size);
 

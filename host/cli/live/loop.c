@@ -80,7 +80,7 @@ static int make_frame(live_loop *loop, char *sentence) {
     loop->number = number;
     live_hub_show(loop->hub, number, shot.bytes, shot.size);
     if (live_scene_view(&loop->base, &loop->scene, &loop->wish, &view, sentence))
-        live_hub_tell_json(loop->hub, live_describe_shot(&loop->scene, &loop->wish, &view, number, shot.ms));
+        live_hub_shot_tell(loop->hub, live_describe_shot(&loop->scene, &loop->wish, &view, number, shot.ms));
     return 1;
 }
 

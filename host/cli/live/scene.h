@@ -42,8 +42,11 @@ typedef struct {
     double load_ms, plan_ms;
     double
         frame_ms; /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
-    int64_t frames; /* whole images so far */
-    float *values;  /* [rows][columns] of an image */
+    int64_t frames;     /* whole images so far */
+    float *values;      /* [rows][columns] of an image */
+    skg_view beam_view; /* view of `beam`; all 0: not computed yet */
+    skg_quality beam;   /* the open beam, cached because it takes 0.1 ms */
+    int has_beam;
 } live_scene;
 
 /* Loads the scene, without a plan. The caller calls live_scene_free, also after a failure. */

@@ -41,8 +41,7 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) 
     return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;
 }
 
-/* The quality of the flat field in a pixel that faces the beam, per pixel instead of per mm2. */
-static skg_status flat_field(const cli_session *session, skg_quality *quality) {
+skg_status cli_flat_field_quality(const cli_session *session, skg_quality *quality) {
     const double *a = session->view.column_step, *b = session->view.row_step;
     const double across[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
                               a[0] * b[1] - a[1] * b[0]};
@@ -58,7 +57,7 @@ static skg_status flat_field(const cli_session *session, skg_quality *quality) {
 
 static json_t *flat_field_json(const cli_session *session) {
     skg_quality quality;
-    if (flat_field(session, &quality) != SKG_OK) return json_null();
+    if (cli_flat_field_quality(session, &quality) != SKG_OK) return json_null();
     return json_pack("{s:f, s:f, s:f}", "mean_energy_keV", quality.mean_kev, "photons_per_pixel",
                      quality.photons, "air_kerma_uGy", quality.air_kerma_ugy);
 }
@@ -254,7 +253,7 @@ static void print_beam(const cli_session *session) {
     skg_spectrum_bin_count(session->spectrum, &bins);
     printf("beam       ");
     if (bins > 1) printf("%" PRId64 " energies, mean ", bins);
-    if (flat_field(session, &quality) == SKG_OK)
+    if (cli_flat_field_quality(session, &quality) == SKG_OK)
         printf("%g keV, %g photons per pixel of the flat field, air kerma %.4g uGy\n", quality.mean_kev,
                quality.photons, quality.air_kerma_ugy);
     else

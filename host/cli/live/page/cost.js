@@ -25,11 +25,21 @@ function bars(box, pairs, text) {
   }));
 }
 
+// Adds a frame to the sinogram when both the frame and its message have arrived, in either order.
+function pairShot() {
+  if (net.shot && xray.frame && net.shot.shot === xray.frame.number) noteProjection(xray.frame, net.shot.state);
+}
+
 let lastShot = 0, lastView = '';
 function showShot(message) {
+  if (!live) return;
   const now = performance.now(), isCalm = now - lastShot > 200 || !state.play; // while it breathes, texts follow five times a second
   if (isCalm) lastShot = now, bars(byId('stages'), Object.entries(message.stages), ms => number(ms, 3) + ' ms');
   byId('scattered').textContent = message.scatter ? `scatter: ${message.scatter.histories} photons in ${number(message.scatter.seconds, 3)} s, mean ${number(message.scatter.mean, 3)} +- ${number(message.scatter.sigma, 2)}` : '';
+  live.beam = message.beam;
+  if (isCalm) showExposure(live.beam);
+  net.shot = message;
+  pairShot();
   const view = JSON.stringify(message.view);
   if (view !== lastView) {
     lastView = view;

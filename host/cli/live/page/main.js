@@ -37,11 +37,15 @@ function takeScene(message) {
     net.sent = wish;
     good = JSON.stringify(state);
     fillBeam();
+    fillSpot();
+    fillJaws();
     fillMotion();
+    listenToSinogram();
     fillDials();
     ask3D();
   }
   showSentence('');
+  showExposure(live.beam);
   showPlan();
   changed();
 }
@@ -50,7 +54,7 @@ const ask3D = () => { describe(); change(); byId('undo').disabled = !trail.past.
 const keys = {
   '0': () => lookAs('start'), Home: () => lookAs('start'), '1': () => lookAs('front'), '2': () => lookAs('side'), '3': () => lookAs('top'),
   '4': () => lookAs('source'), f: () => lookAs('parts'), d: () => byId('dark').click(), i: () => byId('invert').click(),
-  a: () => byId('auto').click(), b: () => byId('keep').click(), l: () => byId('profiles').click(), Escape: () => choose(''),
+  a: () => byId('auto').click(), b: () => byId('keep').click(), l: () => byId('profiles').click(), m: () => byId('measure-3d').click(), c: () => nextCut(), Escape: () => { choose(''); clearTape(); },
   s: () => choose('source'), t: () => choose('detector'), '/': () => byId('find').focus(),
   ' ': () => { if (!byId('breath').hidden) byId('play').click(); },
   '+': () => { zoom(0.9, 0, 0); }, '=': () => { zoom(0.9, 0, 0); }, '-': () => { zoom(1 / 0.9, 0, 0); },
@@ -72,7 +76,8 @@ function pressed(event) {
     const [x, y] = arrows[key];
     if (event.shiftKey) pan(x * 0.04, y * 0.04); else orbit(x * 0.09, y * 0.09);
     standing = '';
-  } else if (keys[key]) keys[key]();
+  } else if (key === 'Enter' && event.target === canvas && tape.on) addEnd(canvas.clientWidth / 2, canvas.clientHeight / 2);
+  else if (keys[key]) keys[key]();
   else return;
   event.preventDefault();
   change();
@@ -84,6 +89,8 @@ function begin3D() {
   prepareParts();
   listenToStage();
   listenToGizmo();
+  listenToCut();
+  listenToTape();
   lookAs('start');
   resize();
   requestAnimationFrame(step3D);

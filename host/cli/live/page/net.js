@@ -1,6 +1,7 @@
 // The socket: what the server says goes to `hear`, frames to `show`, and wishes go the other way.
 'use strict';
-const net = {socket: null, role: '', sent: 0, shown: 0, hear: {}, show: null, file: null, waits: false, tries: 0};
+// shot: the newest message about a frame.
+const net = {socket: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, file: null, waits: false, tries: 0};
 const HEADER = 48; // bytes before the pixels of a frame, live_header of host/cli/live/frame.h
 
 function readFrame(buffer) {

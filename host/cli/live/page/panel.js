@@ -42,7 +42,6 @@ function showBeam() {
   byId('make-tube').hidden = isTube;
   if (isTube) showFilters();
   if (isMono && document.activeElement !== byId('energy')) byId('energy').value = beam[0][keyOf(beam[0], 'Energy')];
-  byId('photons').textContent = live ? `${number(live.beam.photons, 3)} photons a pixel, mean ${number(live.beam.mean_kev, 3)} keV` : '';
 }
 
 function fillBeam() {
@@ -72,7 +71,7 @@ function fillMotion() {
   watch(() => {
     if (!begun) phase.value = state.phase ?? 0, projection.value = state.projection ?? 0;
     byId('phase-text').textContent = state.phase === null ? 'as in the file' : number(state.phase, 3);
-    byId('projection-text').textContent = state.projection === null ? 'the scene\u2019s own view' : `${state.projection} of ${live ? live.projections : 0}`;
+    byId('projection-text').textContent = state.projection === null ? 'the scene\u2019s own view' : `${state.projection} of ${live.projections}, ${number(live.angles[state.projection] ?? NaN, 4)}\u00b0`;
     play.textContent = state.play ? 'stop' : 'breathe';
   });
 }

@@ -23,6 +23,7 @@ function resize() {
   if (canvas.width !== width || canvas.height !== height) {
     canvas.width = width, canvas.height = height;
     if (standing) lookAs(standing);
+    nextDraw = 0; // the canvas is empty now
   }
   change();
 }
@@ -35,6 +36,7 @@ function draw() {
     drawScene();
   }
   drawGizmo();
+  drawTape();
   dirty = false;
 }
 
@@ -135,13 +137,17 @@ function point(event) {
   change();
 }
 
-// What stands at a place of the view: the source and the detector's middle before the parts.
-function pick(x, y) {
+// 'source' or 'detector' if its middle is near a place of the view.
+function markAt(x, y) {
   const near = p => { const at = place(shot.m, p, canvas.clientWidth, canvas.clientHeight); return at && Math.hypot(at[0] - x, at[1] - y) < 14; };
-  if (near(scene.view.source)) return choose('source');
-  if (near(scene.view.centre)) return choose('detector');
-  const part = partAt(x, y);
-  choose(part >= 0 ? 'part' : '', part);
+  return near(scene.view.source) ? 'source' : near(scene.view.centre) ? 'detector' : '';
+}
+
+// Chooses what stands at a place of the view, the source and the detector's middle before the parts; or measures from there.
+function pick(x, y) {
+  if (tape.on) return addEnd(x, y);
+  const mark = markAt(x, y), part = mark ? -1 : partAt(x, y);
+  choose(mark || (part >= 0 ? 'part' : ''), part);
 }
 
 function listenToStage() {

@@ -1,6 +1,6 @@
 // The X-ray image: window and level, histogram, the value under the cursor, before and after. None of these asks for a frame.
 'use strict';
-const xray = {frame: null, before: null, low: 0, high: 1, auto: true, inverted: false, split: 0.5, at: null, stamp: 0};
+const xray = {frame: null, ends: [0, 1], before: null, low: 0, high: 1, auto: true, inverted: false, split: 0.5, at: null, probed: '', stamp: 0};
 const film = byId('film'), pen = film.getContext('2d', {alpha: false});
 
 // What is shown of a number: -ln(I/I0), so that dense matter is white.
@@ -9,21 +9,30 @@ function shownOf(frame, n) {
   return frame.flat > 0 ? -Math.log(Math.max(value, 1e-30 * frame.flat) / frame.flat) : value;
 }
 
-// 256 bins of the numbers, of a sample of 64k or more pixels.
+// Behind jaws no photon arrives; the value is -ln of the smallest float, 87.34. Histogram and window leave it out.
+const STOPPED = 87;
+const isStopped = (frame, n) => shownOf(frame, n) > STOPPED;
+
+// 256 bins of the numbers from `first` on, each of `width` numbers, of a sample of 64k or more pixels.
 function countNumbers(frame) {
-  const bins = new Uint32Array(256), {numbers} = frame, stride = Math.max(1, Math.floor(numbers.length / 65536));
-  for (let i = 0; i < numbers.length; i += stride) bins[numbers[i] >> 8]++;
-  return bins;
+  const bins = new Uint32Array(256), {numbers} = frame, stride = Math.max(1, Math.floor(numbers.length / 65536)), hasJaws = live && live.jaws;
+  let first = hasJaws ? 65535 : 0, last = hasJaws ? 0 : 65535;
+  for (let i = 0; hasJaws && i < numbers.length; i += stride)
+    if (!isStopped(frame, numbers[i])) first = Math.min(first, numbers[i]), last = Math.max(last, numbers[i]);
+  const width = Math.max(1, last - first + 1) / 256;
+  for (let i = 0; i < numbers.length; i += stride)
+    if (numbers[i] >= first && numbers[i] <= last) bins[Math.floor((numbers[i] - first) / width)]++;
+  return {bins, first, width};
 }
 const total = bins => bins.reduce((sum, count) => sum + count, 0);
 
 // The numbers below and above which a share of 0.5 % lies.
 function autoWindow(frame) {
-  const bins = countNumbers(frame), cut = 0.005 * total(bins);
-  let first = 0, last = 255;
-  for (let sum = bins[0]; sum < cut && first < 255; sum += bins[++first]);
-  for (let sum = bins[255]; sum < cut && last > 0; sum += bins[--last]);
-  const ends = [shownOf(frame, first << 8), shownOf(frame, (last << 8) + 255)].sort((a, b) => a - b);
+  const {bins, first, width} = countNumbers(frame), cut = 0.005 * total(bins);
+  let from = 0, to = 255;
+  for (let sum = bins[0]; sum < cut && from < 255; sum += bins[++from]);
+  for (let sum = bins[255]; sum < cut && to > 0; sum += bins[--to]);
+  const ends = [shownOf(frame, first + from * width), shownOf(frame, first + (to + 1) * width - 1)].sort((a, b) => a - b);
   xray.low = ends[0], xray.high = Math.max(ends[1], ends[0] + 1e-6);
 }
 
@@ -72,6 +81,7 @@ function paint() {
     pen.fillRect(width - 1, 0, Math.max(1, film.width / 400), film.height);
   }
   showOnDetector(small, frame.columns, frame.rows);
+  drawSinogramSoon();
   xray.stamp++;
 }
 
@@ -85,6 +95,7 @@ function showFrame(frame) {
   drawProfile();
   if (xray.at) moveCursor(xray.at);
   showCost(frame);
+  pairShot();
 }
 
 // Five times a second at most while images follow each other; the last one has it in any case.
@@ -96,8 +107,8 @@ function drawHistogramSoon() {
 function drawHistogram() {
   const canvas = byId('histogram'), frame = xray.frame, draw = canvas.getContext('2d');
   if (!frame || canvas.offsetParent === null) return;
-  const bins = countNumbers(frame), most = Math.log(1 + Math.max(...bins)), width = canvas.width, height = canvas.height;
-  const style = getComputedStyle(document.documentElement), ends = [shownOf(frame, 0), shownOf(frame, 65535)];
+  const {bins, first, width: step} = countNumbers(frame), most = Math.log(1 + Math.max(...bins)), width = canvas.width, height = canvas.height;
+  const style = getComputedStyle(document.documentElement), ends = xray.ends = [shownOf(frame, first), shownOf(frame, first + 256 * step - 1)];
   const at = value => (value - ends[0]) / (ends[1] - ends[0] || 1) * width;
   draw.clearRect(0, 0, width, height);
   draw.fillStyle = style.getPropertyValue('--faint');
@@ -109,7 +120,7 @@ function drawHistogram() {
   for (const end of [xray.low, xray.high]) draw.fillRect(at(end) - 1, 0, 2, height);
   byId('low').value = number(xray.low), byId('high').value = number(xray.high);
   const photons = live && live.beam.photons, starved = photons > 0 ? bins.reduce((sum, count, i) =>
-    sum + (photons * Math.exp(-shownOf(frame, (i << 8) + 128)) < 10 ? count : 0), 0) / total(bins) : 0;
+    sum + (photons * Math.exp(-shownOf(frame, first + (i + 0.5) * step)) < 10 ? count : 0), 0) / total(bins) : 0;
   byId('starved').hidden = starved < 0.001;
   byId('starved').textContent = `${number(100 * starved, 2)} % of the pixels get fewer than 10 photons.`;
 }
@@ -144,16 +155,21 @@ function showValue(parts = null) {
 
 function moveCursor(at) {
   xray.at = at;
+  if (at) setRow(at[1]);
   showValue();
   clearTimeout(probeTimer);
-  if (at && xray.frame) probeTimer = setTimeout(() => say({probe: [
-    Math.floor(at[0] * xray.frame.columns * xray.frame.factor), Math.floor(at[1] * xray.frame.rows * xray.frame.factor)]}), 150);
+  xray.probed = ''; // so that an answer about the last pixel is ignored
+  if (at && xray.frame) probeTimer = setTimeout(() => {
+    const {columns, rows, factor} = xray.frame, pixel = [Math.floor(at[0] * columns * factor), Math.floor(at[1] * rows * factor)];
+    xray.probed = String(pixel);
+    say({probe: pixel});
+  }, 150);
 }
 
 function listenToFilm() {
   film.addEventListener('pointermove', event => { if (!profile.drags) moveCursor(placeOn(event)); });
   film.addEventListener('pointerleave', () => moveCursor(null));
-  net.hear.probed = message => { if (xray.at) showValue(message.parts); };
+  net.hear.probed = message => { if (xray.at && String(message.probed) === xray.probed) showValue(message.parts); };
   const typed = () => setWindow(Number(byId('low').value), Number(byId('high').value));
   byId('low').onchange = byId('high').onchange = typed;
   byId('auto').onclick = () => {
@@ -172,8 +188,7 @@ function listenToFilm() {
   const histogram = byId('histogram');
   let end = '';
   const pull = event => {
-    const frame = xray.frame, ends = [shownOf(frame, 0), shownOf(frame, 65535)];
-    const value = ends[0] + event.offsetX / histogram.clientWidth * (ends[1] - ends[0]);
+    const {ends} = xray, value = ends[0] + event.offsetX / histogram.clientWidth * (ends[1] - ends[0]);
     if (!end) end = Math.abs(value - xray.low) < Math.abs(value - xray.high) ? 'low' : 'high';
     setWindow(end === 'low' ? value : xray.low, end === 'high' ? value : xray.high);
   };

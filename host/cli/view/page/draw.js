@@ -18,24 +18,34 @@ void main() {
 }`,
   `#version 300 es
 precision highp float;
-uniform vec4 colour, eye; uniform vec3 light, glow; uniform float shine; in vec3 n, world; out vec4 shown;
+uniform vec4 colour, eye, cut; uniform vec3 light, glow; uniform float shine; in vec3 n, world; out vec4 shown;
 void main() {
+  if (dot(cut.xyz, world) > cut.w) discard;
   vec3 v = normalize(eye.w > 0.5 ? eye.xyz - world : eye.xyz), u = normalize(n);
   float facing = dot(u, v);
   if (facing < 0.0) { u = -u; facing = -facing; }
   float lit = 0.34 + 0.66 * max(dot(u, light), 0.0), rim = mix(0.62, 1.0, smoothstep(0.0, 0.45, facing));
   vec3 c = colour.rgb * lit * rim + shine * pow(max(dot(u, normalize(light + v)), 0.0), 40.0);
   float alpha = colour.a >= 1.0 ? 1.0 : 1.0 - pow(1.0 - colour.a, 1.0 / max(facing, 0.12));
+  if (cut.xyz != vec3(0.0) && !gl_FrontFacing) c = 0.7 * colour.rgb; // an unlit inside looks like a solid part's section
   shown = vec4(mix(c, glow, 0.35 * float(glow != vec3(0.0))), alpha);
 }`],
+  // A number of 24 bits: that of the part, or the depth of the surface if `deep` is not 0. The fourth byte is then 255 for a front face.
   pick: [`#version 300 es
 uniform mat4 m, pose; uniform vec3 low, extent; uniform float between;
-layout(location=0) in vec3 a; layout(location=1) in vec3 b;
-void main() { gl_Position = m * (pose * vec4(low + extent * mix(a, b, between), 1.0)); }`,
+layout(location=0) in vec3 a; layout(location=1) in vec3 b; out vec3 world;
+void main() {
+  world = (pose * vec4(low + extent * mix(a, b, between), 1.0)).xyz;
+  gl_Position = m * vec4(world, 1.0);
+}`,
   `#version 300 es
 precision highp float;
-uniform vec4 colour; out vec4 shown;
-void main() { shown = colour; }`],
+uniform vec4 colour, cut, deep; in vec3 world; out vec4 shown;
+void main() {
+  if (dot(cut.xyz, world) > cut.w) discard;
+  float at = floor(clamp(dot(deep.xyz, world) + deep.w, 0.0, 1.0) * 16777215.0);
+  shown = deep.xyz == vec3(0.0) ? colour : vec4(mod(at, 256.0), mod(floor(at / 256.0), 256.0), floor(at / 65536.0), gl_FrontFacing ? 255.0 : 128.0) / 255.0;
+}`],
   line: [`#version 300 es
 uniform mat4 m; uniform vec2 picture; uniform float width;
 layout(location=0) in vec3 p; layout(location=1) in vec3 q; layout(location=2) in float side;
@@ -162,7 +172,8 @@ function showImage(frame) {
 }
 
 // What every program of a picture needs to know.
-const shot = {time: 0, m: null, eye: [0, 0, 0, 1], light: [0, 0, 1], chosen: -1, under: -1, marks: true, ground: [0.957, 0.961, 0.969]};
+const shot = {time: 0, m: null, eye: [0, 0, 0, 1], light: [0, 0, 1], chosen: -1, under: -1, marks: true, ground: [0.957, 0.961, 0.969], cut: [0, 0, 0, 0], aimed: null};
+// cut: points p with dot(xyz, p) > w are not drawn. aimed: called after the camera was set, with the direction towards the eye.
 
 // The two key frames around the time, and how far it is from the first to the second.
 function moment(frames) {
@@ -199,6 +210,7 @@ function drawParts() {
   gl.useProgram(program.program);
   gl.uniform4fv(program.at.eye, shot.eye);
   gl.uniform3fv(program.at.light, shot.light);
+  gl.uniform4fv(program.at.cut, shot.cut);
   for (const i of shown) if (meshes[i].colour[3] >= 1) drawMesh(i, program);
   if (shot.marks) drawMarks();
   gl.useProgram(program.program);
@@ -239,6 +251,7 @@ function aim() {
   shot.m = matrix(aspect, whole.middle, whole.reach);
   shot.eye = camera.parallel ? [...toward, 0] : [...eyePoint(), 1];
   shot.light = unit(add(add(toward, 0.5, up), -0.35, right));
+  if (shot.aimed) shot.aimed(toward);
 }
 
 function drawScene() {
@@ -250,10 +263,9 @@ function drawScene() {
   drawParts();
 }
 
-// The part at a CSS pixel: the nearest opaque one, or else the nearest translucent one; -1: none. A picture of one pixel is
-// drawn in which each part has its number as its colour.
+// Draws the one pixel at a CSS pixel, by `act`. Returns its number of 24 bits and its fourth byte.
 let sensor = null;
-function partAt(x, y) {
+function sense(x, y, act) {
   if (!sensor) {
     sensor = gl.createFramebuffer();
     gl.bindFramebuffer(gl.FRAMEBUFFER, sensor);
@@ -267,22 +279,29 @@ function partAt(x, y) {
   const ratio = canvas.width / canvas.clientWidth, found = new Uint8Array(4), program = programs.pick;
   aim();
   gl.bindFramebuffer(gl.FRAMEBUFFER, sensor);
-  gl.viewport(-Math.floor(x * ratio), -Math.floor(canvas.height - 1 - y * ratio), canvas.width, canvas.height);
+  gl.viewport(-Math.floor(x * ratio), Math.floor(y * ratio) + 1 - canvas.height, canvas.width, canvas.height);
   gl.enable(gl.DEPTH_TEST);
   gl.useProgram(program.program);
-  let part = -1;
+  gl.uniform4fv(program.at.cut, shot.cut);
+  gl.uniform4f(program.at.deep, 0, 0, 0, 0);
+  gl.clearColor(0, 0, 0, 0);
+  gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
+  act(program);
+  gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, found);
+  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
+  return [found[0] | found[1] << 8 | found[2] << 16, found[3]];
+}
+
+// The part at a CSS pixel: the nearest opaque one, or else the nearest translucent one; -1: none. Each part has its number as its
+// colour.
+function partAt(x, y) {
   for (const opaque of [true, false]) {
-    gl.clearColor(0, 0, 0, 0);
-    gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
-    meshes.forEach((mesh, i) => {
+    const [found] = sense(x, y, program => meshes.forEach((mesh, i) => {
       if (!mesh.visible || mesh.colour[3] === 0 || mesh.colour[3] >= 1 !== opaque) return;
       gl.uniform4f(program.at.colour, (i + 1 & 255) / 255, (i + 1 >> 8 & 255) / 255, (i + 1 >> 16) / 255, 1);
       drawMesh(i, program);
-    });
-    gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, found);
-    part = (found[0] | found[1] << 8 | found[2] << 16) - 1;
-    if (part >= 0) break;
+    }));
+    if (found > 0) return found - 1;
   }
-  gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-  return part;
+  return -1;
 }

@@ -1,0 +1,54 @@
+"""What the tests of the page of `skiagraph live` share."""
+import json
+from types import SimpleNamespace
+
+from live_test import check_same, image
+
+# Sums by which pictures are told apart: of the frame's numbers, of the X-ray as it is shown, and of the 3D view.
+HELPERS = """
+const sumOf = numbers => { let s = 7; for (const x of numbers) s = (Math.imul(s, 31) + x) | 0; return s; };
+const frameSum = () => sumOf(xray.frame.numbers) + ' ' + xray.frame.low + ' ' + xray.frame.step + ' ' + xray.frame.columns;
+const filmSum = () => sumOf(pen.getImageData(0, 0, film.width, film.height).data);
+const viewSum = () => { draw(); const p = new Uint8Array(4 * canvas.width * canvas.height);
+  gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, p); return sumOf(p); };
+const settled = () => xray.frame && !net.waits && xray.frame.wish === net.sent && net.shot && net.shot.shot === xray.frame.number;
+const typed = (box, value) => { box.value = value; box.dispatchEvent(new Event('input')); box.dispatchEvent(new Event('change')); };
+const saved = []; save = (name, bytes) => saved.push([name, typeof bytes === 'string' ? bytes : bytes.length]);
+0
+"""
+failures = []
+
+
+def check(name, is_right, what=""):
+    if not is_right:
+        failures.append(f"{name} {what}")
+
+
+class Tried:
+    """What a control does to a page."""
+
+    def __init__(self, browser):
+        self.browser = browser
+        browser.until("typeof net !== 'undefined' && xray.frame !== null && live !== null && net.role === 'owner'")
+        browser.run(HELPERS)
+        self.still()
+
+    def still(self):
+        self.browser.until("settled()")
+
+    def differs(self, name, action, of="frameSum"):
+        """The action changes this sum."""
+        before = self.browser.run(f"{of}()")
+        action() if callable(action) else self.browser.run(action)
+        self.still()
+        check(name, self.browser.run(f"{of}()") != before, f"leaves {of} as it is; {self.browser.run('byId(`sentence`).textContent')}")
+
+
+def check_image(tried, path, settings):
+    """The page shows what the verb image computes."""
+    frame = tried.browser.run("({numbers: [...xray.frame.numbers], low: xray.frame.low, step: xray.frame.step})")
+    words = [word for key, value in settings.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+    try:
+        check_same(SimpleNamespace(**frame), image(path, "--quantity", "attenuation", *words))
+    except AssertionError as error:
+        check("as the verb image", False, f"{settings}: {error}")
