@@ -87,6 +87,11 @@ class World:
     response_rows: NDArray[np.float64] | None = None
     bands: list[float] | None = None
     noise: bool = False
+    #: Of the images that are read out, ...WithGain; and how many of them had a noise of the bias.
+    gain: float = 1.0
+    bias: float = 0.0
+    bias_deviation: float = 0.0
+    readouts: int = 0
     seed: int = 0
     frame: int = 0
     images: dict[str, Any] = field(default_factory=dict)
