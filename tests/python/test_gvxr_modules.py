@@ -398,3 +398,60 @@ def test_readers_bring_what_gvxrs_bring():
         brought = {}
         exec(f"from skiagraph.gvxr.{module} import *", brought)
         assert set(names.split()) <= set(brought) and brought["gvxr"] is gvxr
+
+
+def made(label):
+    return sk.Mesh(gvxr.getVertexSet(label).reshape(-1, 3), gvxr.getIndexSet(label).reshape(-1, 3)).health
+
+
+@pytest.mark.parametrize("inner", (20, 24, 10))  # as high, longer, and within
+def test_a_cylinder_is_hollowed(inner):
+    gvxr.makeCylinder("hollow", 12, 20, 6, "mm")
+    gvxr.makeCylinder("core", 12, inner, 3, "mm")
+    whole, core = made("hollow")["volume"], made("core")["volume"]
+    gvxr.subtractMesh("hollow", "core")
+    rest = made("hollow")
+    assert rest["closed"] and rest["volume"] == pytest.approx(whole - core * min(inner, 20) / inner, rel=1e-9)
+
+
+def test_meshes_are_subtracted_one_after_another():
+    gvxr.makeCuboid("matrix", 40, 10, 20, "mm")
+    for number, place in enumerate((-12, 0, 12)):
+        for name, radius in (("fibre", 4), ("core", 1)):
+            label = f"{name}{number}"
+            gvxr.makeCylinder(label, 16, 14, radius, "mm")
+            gvxr.translateNode(label, place, 0, 0, "mm")
+            gvxr.applyCurrentLocalTransformation(label)
+        gvxr.subtractMesh("matrix", f"fibre{number}")
+    hole = made("fibre0")["volume"] / 14
+    assert made("matrix")["closed"] and made("matrix")["volume"] == pytest.approx(40 * 10 * 20 - 3 * 10 * hole, rel=1e-9)
+    for name in ("fibre", "core"):
+        gvxr.emptyMesh(name + "s")
+        for number in range(3):
+            gvxr.addMesh(name + "s", f"{name}{number}")
+    before, cores = made("fibres")["volume"], made("cores")["volume"]
+    gvxr.subtractMesh("fibres", "cores")  # three convex pieces
+    assert made("fibres")["volume"] == pytest.approx(before - cores, rel=1e-9)
+    imaged()
+    gvxr.removePolygonMeshesFromXRayRenderer()
+    gvxr.addPolygonMeshAsInnerSurface("matrix")
+    gvxr.setCompound("matrix", "H2O")
+    lengths = gvxr.computeLBuffer("matrix")
+    assert lengths.min() >= 0 and lengths.max() < 1.02  # cm: through 10 mm of the matrix, up to 6 degrees oblique
+
+
+def test_what_cannot_be_subtracted():
+    gvxr.makeCuboid("l", 10, 10, 10, "mm")
+    gvxr.makeCuboid("arm", 30, 4, 4, "mm")
+    gvxr.translateNode("arm", 100, 0, 0, "mm")
+    whole = made("l")["volume"]
+    gvxr.subtractMesh("l", "arm")  # beside it
+    assert made("l")["volume"] == whole
+    vertices = [0, 0, 0, 20, 0, 0, 20, 5, 0, 5, 5, 0, 5, 20, 0, 0, 20, 0]
+    walls = [[i, (i + 1) % 6, (i + 1) % 6 + 6] for i in range(6)] + [[i, (i + 1) % 6 + 6, i + 6] for i in range(6)]
+    top = [[6, 7, 8], [6, 8, 9], [6, 9, 10], [6, 10, 11]]
+    faces = walls + top + [[c - 6, b - 6, a - 6] for a, b, c in top]
+    gvxr.makeTriangularMesh("angle", vertices + [v + (i % 3 == 2) * 5 for i, v in enumerate(vertices)], np.ravel(faces), "mm")
+    assert made("angle")["volume"] == pytest.approx(875)
+    with pytest.raises(sk.ArgumentError, match="angle: is not convex"):
+        gvxr.subtractMesh("angle", "l")

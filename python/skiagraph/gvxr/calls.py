@@ -73,6 +73,9 @@ _DIFFERS = {
         """getTotalEnergyWithDetectorResponseWithGain getTotalEnergyWithoutDetectorResponseWithGain""",
     "says that it is Skiagraph's own":
         """getNoiseGenerator""",
+    "the mesh from which others are subtracted, or each of its pieces, has to be convex before the first of them; what two of"
+    " them share is subtracted twice":
+        """subtractMesh""",
     "one outer surface; the inner ones displace it where they are":
         """addPolygonMeshAsOuterSurface""",
     "returns the projections; no screenshots; angles divide the range evenly in both cases; a folder of TIFF,"
@@ -218,8 +221,6 @@ stopArcBallRotation useLighing useLogFile useNegative useWireframe usingArcBallR
 _REFUSED = {
     "read it by the package that wrote it, such as SimpleITK; makeIsoSurface takes the array":
         """loadImage2D loadImage3D""",
-    "meshes are not cut: add the one as an inner surface of the other, which it displaces":
-        """subtractMesh""",
     "gVXR 2.1 refuses it too: use computeCTAcquisition":
         """computeProjectionSet computeSinogram""",
     "gVXR's documentation does not say how the index is computed":

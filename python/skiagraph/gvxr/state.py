@@ -54,6 +54,8 @@ class Node:
     #: ambient, diffuse, specular: red, green, blue, opacity; and shininess.
     colours: dict[str, tuple[float, ...]] = field(default_factory=dict)
     shininess: float = 50.0
+    #: A mesh from which others were subtracted, and what it was before.
+    cut: tuple[Mesh, Mesh] | None = None
 
 
 @dataclass
