@@ -455,3 +455,28 @@ def test_what_cannot_be_subtracted():
     assert made("angle")["volume"] == pytest.approx(875)
     with pytest.raises(sk.ArgumentError, match="angle: is not convex"):
         gvxr.subtractMesh("angle", "l")
+
+
+def test_a_line_spread_function_is_written_and_read_again(tmp_path):
+    imaged()
+    gvxr.setLSF([0.2, 0.6, 0.2])
+    image = gvxr.computeXRayImage()
+    gvxr2json.saveJSON(str(tmp_path / "scene.json"))
+    gvxr.destroyAllWindows()
+    json2gvxr.initGVXR(str(tmp_path / "scene.json"))
+    for part in (json2gvxr.initSourceGeometry, json2gvxr.initSpectrum, json2gvxr.initDetector, json2gvxr.initSamples):
+        part()
+    assert list(gvxr.getLSF()) == pytest.approx([0.2, 0.6, 0.2])
+    np.testing.assert_allclose(gvxr.computeXRayImage(), image, rtol=2e-6)
+
+
+def test_several_outer_surfaces_without_inner_ones():
+    imaged()
+    gvxr.makeCube("other", 1, "cm")
+    gvxr.translateNode("other", -1.2, 0, 0, "cm")
+    gvxr.setCompound("other", "H2O")
+    gvxr.addPolygonMeshAsInnerSurface("other")
+    inner = gvxr.computeXRayImage()
+    for label in ("cube", "other"):
+        gvxr.addPolygonMeshAsOuterSurface(label)
+    assert (gvxr.computeXRayImage() == inner).all()

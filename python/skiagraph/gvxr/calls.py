@@ -76,7 +76,7 @@ _DIFFERS = {
     "the mesh from which others are subtracted, or each of its pieces, has to be convex before the first of them; what two of"
     " them share is subtracted twice":
         """subtractMesh""",
-    "one outer surface; the inner ones displace it where they are":
+    "with inner surfaces one outer surface; they displace it where they are":
         """addPolygonMeshAsOuterSurface""",
     "returns the projections; no screenshots; angles divide the range evenly in both cases; a folder of TIFF,"
     " or one file":

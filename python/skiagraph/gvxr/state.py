@@ -233,9 +233,9 @@ class World:
         description = self.geometry()
         shown = [(label, node) for label, node in self.nodes.items() if node.surface and node.mesh is not None]
         outer = [label for label, node in shown if node.surface == "outer"]
-        if len(outer) > 1:
-            raise SceneError(f"{', '.join(map(repr, outer))} are all outer surfaces; there can be one, which the inner "
-                             "ones displace")
+        if 1 < len(outer) < len(shown):
+            raise SceneError(f"{', '.join(map(repr, outer))} are all outer surfaces; with inner surfaces there can be one, which "
+                             "they displace")
         made_of = (json.dumps(description), needs_beam, self.per_cm2, tuple(self.filters), tuple(self.inherent), tuple(self.tube.items()),
                    tuple(self.spectrum.items()), [(label, node.surface, id(node.mesh)) for label, node in shown])
         if self._scene is None or made_of != self._made_of:
