@@ -5,13 +5,15 @@ clipped from it, turned, and added to the destination.
 """
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import NDArray
 
 from .._interface import ArgumentError
 
 _Vertices = NDArray[np.float64]
-_Faces = NDArray[np.int64]
+_Faces = NDArray[Any]
 #: Of the size of a mesh: vertices as close as this to a plane lie on it.
 CLOSE = 1e-9
 
