@@ -20,6 +20,7 @@ MAGIC = re.compile(r"^(\s*)[%!].*$", re.M)
 #: From the most special to the least.
 ALIASES = (
     (re.compile(r"\bfrom\s+gvxrPython3\s+import\b"), "from skiagraph import"),
+    (re.compile(r"\bimport\s+gvxrPython3\s+as\s+gvxr\b"), "from skiagraph import gvxr"),  # older than the package
     (re.compile(r"\bimport\s+gvxrPython3\s+as\b"), "import skiagraph as"),
     (re.compile(r"\bimport\s+gvxrPython3\s*$", re.M), "import skiagraph as gvxrPython3"),
     (re.compile(r"\bgvxrPython3\.gvxr\b"), "skiagraph.gvxr"),

@@ -1,6 +1,7 @@
 """The modules beside gVXR's calls: utils, json2gvxr, gvxr2json, the readers, and the scripts that use them."""
 import json
 import pathlib
+import struct
 import subprocess
 import sys
 import zipfile
@@ -10,7 +11,7 @@ import pytest
 
 import skiagraph as sk
 from skiagraph import gvxr, gvxr2json, json2gvxr
-from skiagraph.gvxr import dragon, utils
+from skiagraph.gvxr import dragon, packing, utils
 from skiagraph.gvxr.gVXRDataReader import gVXRDataReader
 from skiagraph.gvxr.JSON2gVXRDataReader import JSON2gVXRDataReader
 
@@ -230,7 +231,8 @@ json2gvxr.initDetector("scene.json")
 assert os.path.basename(os.path.dirname(gvxr.__file__)) == "gvxr" and has_k3d
 print(gvxr.getVersionOfSimpleGVXR(), gvxr.getDetectorNumberOfPixels())
 """)
-    (tmp_path / "bad.py").write_text("from gvxrPython3 import gvxr\ngvxr.computeXRayImageWithGain()\n")
+    (tmp_path / "older.py").write_text("import gvxrPython3 as gvxr\ngvxr.createWindow()\nprint(gvxr.getVersionOfCoreGVXR())\n")
+    (tmp_path / "bad.py").write_text("from gvxrPython3 import gvxr\ngvxr.computeSinogram()\n")
     cells = [{"cell_type": "markdown", "source": ["# gvxrPython3"]},
              {"cell_type": "code", "source": ["%matplotlib inline\n", "from gvxrPython3 import gvxr\n"]},
              {"cell_type": "code", "source": ["!pip install gvxr\n", "gvxr.createOpenGLContext()"]}]
@@ -240,8 +242,9 @@ print(gvxr.getVersionOfSimpleGVXR(), gvxr.getDetectorNumberOfPixels())
     done = subprocess.run([sys.executable, str(HERE / "gvxr_scripts.py"), str(tmp_path), "100"], capture_output=True,
                           text=True, check=False)
     lines = done.stdout.splitlines()
-    assert done.returncode == 1 and lines[-1].startswith("2 of 3 scripts"), done.stdout + done.stderr
-    assert "FAIL bad.py" in lines[0] and "refused" in lines[0] and lines[1:3] == ["ok   book.ipynb", "ok   old.py"]
+    assert done.returncode == 1 and lines[-1].startswith("3 of 4 scripts"), done.stdout + done.stderr
+    assert "FAIL bad.py" in lines[0] and "refused" in lines[0] and lines[1:4] == [
+        "ok   book.ipynb", "ok   old.py", "ok   older.py"]
 
 
 def test_shapes_of_gvxr():
@@ -254,8 +257,8 @@ def test_shapes_of_gvxr():
         gvxr.makeSpheresInCylinder("c", 20, 3, 3, "s", 8, 8, 1, 70, "mm")
     volume = np.zeros((5, 6, 7))
     volume[1:4, 1:5, 1:6] = 1
-    for values in (volume, volume.ravel().tolist()):
-        gvxr.makeIsoSurface("surface", 0.5, values, 7, 6, 5, 1, 1, 2, "mm")
+    for values in ((0.5, volume), (0.5, volume.ravel().tolist()), (volume, 0.5), (volume.ravel().tolist(), 0.5)):
+        gvxr.makeIsoSurface("surface", *values, 7, 6, 5, 1, 1, 2, "mm")
         assert gvxr.getNodeOnlyBoundingBox("surface", "mm") == pytest.approx((1.5, 1.5, 3, 6.5, 5.5, 9))
     with pytest.raises(sk.ArgumentError, match="has 210 values instead of 7 x 6 x 4"):
         gvxr.makeIsoSurface("surface", 0.5, volume, 7, 6, 4, 1, 1, 2, "mm")
@@ -284,3 +287,196 @@ def test_implicit_surfaces():
     gvxr.destroyImplicitSurface("s")
     with pytest.raises(sk.SceneError, match="no implicit surface 's'"):
         gvxr.getNumberOfControlPoints("s")
+
+
+@pytest.mark.parametrize("percentage, spread", [(30, 10), (50, 10), (50, 0), (45, 30)])
+def test_dense_foam(percentage, spread):
+    box, random = np.array([20.0, 18.0, 16.0]), np.random.default_rng(3)
+    radii = packing.radii_of(box, 1.5, spread / 100, percentage / 100, random)
+    assert percentage / 100 <= 4 / 3 * np.pi * (radii ** 3).sum() / box.prod() < percentage / 100 + 0.03  # one sphere more
+    places = packing.pack(box, radii, random)
+    distances = np.linalg.norm(places[:, None] - places, axis=-1) + np.eye(len(radii)) * 1e9
+    assert (distances >= radii[:, None] + radii).all()
+    assert (np.abs(places) + radii[:, None] <= box / 2).all()
+    gvxr.makeFoamInCuboid("pores", "", 20, 18, 16, 1.5, percentage, spread, 0.5, "mm")
+    made = sk.Mesh(gvxr.getVertexSet("pores").reshape(-1, 3), gvxr.getIndexSet("pores").reshape(-1, 3)).health
+    assert made["closed"] and 0.8 * percentage / 100 < made["volume"] / box.prod() < percentage / 100  # polyhedra in spheres
+
+
+def test_foam_that_is_too_dense():
+    with pytest.raises(sk.ArgumentError, match="fill 80.* % of the box; give a smaller percentage"):
+        gvxr.makeFoamInCuboid("pores", "", 10, 10, 10, 2, 80, 0, 0.5, "mm")
+    with pytest.raises(sk.ArgumentError, match="radius 6 mm does not fit"):
+        gvxr.makeFoamInCuboid("pores", "", 10, 10, 10, 6, 50, 0, 0.5, "mm")
+
+
+def imaged():
+    """A cube of water before a small detector, MeV."""
+    gvxr.setSourcePosition(0, -40, 0, "cm")
+    gvxr.usePointSource()
+    gvxr.setMonoChromatic(80, "keV", 1000)
+    gvxr.setDetectorPosition(0, 10, 0, "cm")
+    gvxr.setDetectorUpVector(0, 0, -1)
+    gvxr.setDetectorNumberOfPixels(16, 12)
+    gvxr.setDetectorPixelSize(2, 3, "mm")
+    gvxr.makeCube("cube", 1, "cm")
+    gvxr.setCompound("cube", "H2O")
+    gvxr.addPolygonMeshAsInnerSurface("cube")
+    return gvxr.computeXRayImage()
+
+
+def dicom_elements(data):
+    """Explicit kinds, little endian: (group, element) -> value."""
+    found, at = {}, 132
+    while at < len(data):
+        group, number, kind, length = struct.unpack_from("<HH2sH", data, at)
+        at += 8
+        if kind in (b"OB", b"OW"):
+            length = struct.unpack_from("<I", data, at)[0]
+            at += 4
+        found[group, number] = data[at:at + length]
+        at += length
+    assert at == len(data)
+    return found
+
+
+def test_images_in_the_formats_of_gvxr(tmp_path):
+    image = imaged()
+    gvxr.saveLastXRayImage(str(tmp_path / "i.mhd"))
+    header = dict(line.split(" = ") for line in (tmp_path / "i.mhd").read_text().splitlines())
+    assert (header["DimSize"], header["ElementSpacing"], header["ElementType"]) == ("16 12", "2 3", "MET_FLOAT")
+    assert (np.fromfile(tmp_path / header["ElementDataFile"], "<f4").reshape(12, 16) == image).all()
+    gvxr.saveLastXRayImage(str(tmp_path / "i.txt"))
+    assert (np.loadtxt(tmp_path / "i.txt", dtype=np.float32) == image).all()
+    gvxr.saveLastXRayImage(str(tmp_path / "i.dcm"))
+    data = (tmp_path / "i.dcm").read_bytes()
+    found = dicom_elements(data)
+    assert data[128:132] == b"DICM" and struct.unpack("<I", found[2, 0])[0] == len(data[144:]) - sum(
+        len(value) + (12 if key == (0x7FE0, 0x10) else 8) for key, value in found.items() if key[0] > 2)
+    assert [key for key in found] == sorted(found)
+    levels = np.frombuffer(found[0x7FE0, 0x10], "<u2").reshape(12, 16)
+    slope, low = float(found[0x28, 0x1053]), float(found[0x28, 0x1052])
+    assert levels.max() == 65535 and np.abs(levels * slope + low - image).max() <= 0.51 * slope  # and roundings to 9 digits
+    gvxr.computeCTAcquisition(str(tmp_path / "scan.mhd"), "", 2, 0, False, 180, 0, 0, 0, 0, "mm", 0, 0, 1)
+    assert len(list(tmp_path.glob("scan.mhd/*.tif"))) == 2  # a folder, as its name is none of a file of a scan
+    gvxr.saveLastProjectionSet(str(tmp_path / "set.mhd"))
+    assert "DimSize = 16 12 2" in (tmp_path / "set.mhd").read_text()
+    with pytest.raises(sk.ArgumentError, match=r"\.txt holds one image and not 2"):
+        gvxr.saveLastProjectionSet(str(tmp_path / "set.txt"))
+    (tmp_path / "folder.txt").mkdir()
+    before = sorted(tmp_path.iterdir())
+    with pytest.raises(sk.FileError, match="cannot be written"):
+        gvxr.saveLastXRayImage(str(tmp_path / "folder.txt"))
+    assert sorted(tmp_path.iterdir()) == before  # nothing half written stays behind
+
+
+def test_images_with_gain():
+    image = imaged()
+    assert (gvxr.computeXRayImageWithGain() == image).all()
+    gvxr.setDetectorGain(3)
+    gvxr.setDetectorBias(50)
+    read = gvxr.computeXRayImageWithGain()
+    assert np.abs(read - (3 * image + 50)).max() < 1e-4  # floats of 290
+    assert np.abs(gvxr.getWhiteImageWithGain() - (3 * gvxr.getWhiteImage() + 50)).max() < 1e-4
+    assert (gvxr.getLastXRayImage() == image).all()
+    assert gvxr.getTotalEnergyWithDetectorResponseWithGain() == pytest.approx(3 * 80 + 50)
+    gvxr.setDetectorStdDevBias(2)
+    noise = np.array([gvxr.computeXRayImageWithGain() - read for _ in range(50)])
+    assert abs(noise.std() - 2) < 0.1 and abs(noise.mean()) < 0.1  # 9600 numbers: 5 standard deviations each
+    assert (gvxr.getDetectorGain(), gvxr.getDetectorBias(), gvxr.getDetectorStdDevBias()) == (3, 50, 2)
+    gvxr.setDetectorStdDevBias(0)
+    arguments = ("", "", 3, 0, False, 180, 1, 0, 0, 0, "mm", 0, 0, 1)
+    scan = gvxr.computeCTAcquisitionWithGain(*arguments)
+    assert (gvxr.getLastProjectionSetWithGain() == scan).all()
+    assert np.abs(scan[0] - read / gvxr.getWhiteImageWithGain()).max() < 1e-6
+    assert np.abs(gvxr.computeCTAcquisition(*arguments)[0] - image / gvxr.getWhiteImage()).max() < 1e-6
+
+
+def test_readers_bring_what_gvxrs_bring():
+    for module, names in (("gVXRDataReader", "gVXRDataReader gvxr np os"),
+                          ("JSON2gVXRDataReader", "JSON2gVXRDataReader gvxr json np os")):
+        brought = {}
+        exec(f"from skiagraph.gvxr.{module} import *", brought)
+        assert set(names.split()) <= set(brought) and brought["gvxr"] is gvxr
+
+
+def made(label):
+    return sk.Mesh(gvxr.getVertexSet(label).reshape(-1, 3), gvxr.getIndexSet(label).reshape(-1, 3)).health
+
+
+@pytest.mark.parametrize("inner", (20, 24, 10))  # as high, longer, and within
+def test_a_cylinder_is_hollowed(inner):
+    gvxr.makeCylinder("hollow", 12, 20, 6, "mm")
+    gvxr.makeCylinder("core", 12, inner, 3, "mm")
+    whole, core = made("hollow")["volume"], made("core")["volume"]
+    gvxr.subtractMesh("hollow", "core")
+    rest = made("hollow")
+    assert rest["closed"] and rest["volume"] == pytest.approx(whole - core * min(inner, 20) / inner, rel=1e-9)
+
+
+def test_meshes_are_subtracted_one_after_another():
+    gvxr.makeCuboid("matrix", 40, 10, 20, "mm")
+    for number, place in enumerate((-12, 0, 12)):
+        for name, radius in (("fibre", 4), ("core", 1)):
+            label = f"{name}{number}"
+            gvxr.makeCylinder(label, 16, 14, radius, "mm")
+            gvxr.translateNode(label, place, 0, 0, "mm")
+            gvxr.applyCurrentLocalTransformation(label)
+        gvxr.subtractMesh("matrix", f"fibre{number}")
+    hole = made("fibre0")["volume"] / 14
+    assert made("matrix")["closed"] and made("matrix")["volume"] == pytest.approx(40 * 10 * 20 - 3 * 10 * hole, rel=1e-9)
+    for name in ("fibre", "core"):
+        gvxr.emptyMesh(name + "s")
+        for number in range(3):
+            gvxr.addMesh(name + "s", f"{name}{number}")
+    before, cores = made("fibres")["volume"], made("cores")["volume"]
+    gvxr.subtractMesh("fibres", "cores")  # three convex pieces
+    assert made("fibres")["volume"] == pytest.approx(before - cores, rel=1e-9)
+    imaged()
+    gvxr.removePolygonMeshesFromXRayRenderer()
+    gvxr.addPolygonMeshAsInnerSurface("matrix")
+    gvxr.setCompound("matrix", "H2O")
+    lengths = gvxr.computeLBuffer("matrix")
+    assert lengths.min() >= 0 and lengths.max() < 1.02  # cm: through 10 mm of the matrix, up to 6 degrees oblique
+
+
+def test_what_cannot_be_subtracted():
+    gvxr.makeCuboid("l", 10, 10, 10, "mm")
+    gvxr.makeCuboid("arm", 30, 4, 4, "mm")
+    gvxr.translateNode("arm", 100, 0, 0, "mm")
+    whole = made("l")["volume"]
+    gvxr.subtractMesh("l", "arm")  # beside it
+    assert made("l")["volume"] == whole
+    vertices = [0, 0, 0, 20, 0, 0, 20, 5, 0, 5, 5, 0, 5, 20, 0, 0, 20, 0]
+    walls = [[i, (i + 1) % 6, (i + 1) % 6 + 6] for i in range(6)] + [[i, (i + 1) % 6 + 6, i + 6] for i in range(6)]
+    top = [[6, 7, 8], [6, 8, 9], [6, 9, 10], [6, 10, 11]]
+    faces = walls + top + [[c - 6, b - 6, a - 6] for a, b, c in top]
+    gvxr.makeTriangularMesh("angle", vertices + [v + (i % 3 == 2) * 5 for i, v in enumerate(vertices)], np.ravel(faces), "mm")
+    assert made("angle")["volume"] == pytest.approx(875)
+    with pytest.raises(sk.ArgumentError, match="angle: is not convex"):
+        gvxr.subtractMesh("angle", "l")
+
+
+def test_a_line_spread_function_is_written_and_read_again(tmp_path):
+    imaged()
+    gvxr.setLSF([0.2, 0.6, 0.2])
+    image = gvxr.computeXRayImage()
+    gvxr2json.saveJSON(str(tmp_path / "scene.json"))
+    gvxr.destroyAllWindows()
+    json2gvxr.initGVXR(str(tmp_path / "scene.json"))
+    for part in (json2gvxr.initSourceGeometry, json2gvxr.initSpectrum, json2gvxr.initDetector, json2gvxr.initSamples):
+        part()
+    assert list(gvxr.getLSF()) == pytest.approx([0.2, 0.6, 0.2])
+    np.testing.assert_allclose(gvxr.computeXRayImage(), image, rtol=2e-6)
+
+
+def test_several_outer_surfaces_without_inner_ones():
+    imaged()
+    gvxr.makeCube("other", 1, "cm")
+    gvxr.translateNode("other", -1.2, 0, 0, "cm")
+    gvxr.setCompound("other", "H2O")
+    gvxr.addPolygonMeshAsInnerSurface("other")
+    inner = gvxr.computeXRayImage()
+    for label in ("cube", "other"):
+        gvxr.addPolygonMeshAsOuterSurface(label)
+    assert (gvxr.computeXRayImage() == inner).all()

@@ -71,7 +71,11 @@ static skg_status scale_fractions(const skg_json_node *node, int64_t count, doub
     const double close = 5e-3;
     double sum = 0;
     for (int64_t i = 0; i < count; i++) sum += fractions[i];
-    if (!node->file->lenient || !(sum > 0) || fabs(sum - 1) <= close || !isfinite(sum)) return SKG_OK;
+    if (!(sum > 0) || fabs(sum - 1) <= close || !isfinite(sum)) return SKG_OK;
+    if (!node->file->lenient)
+        return skg_json_fault(node, SKG_ERR_MATERIAL,
+                              "the fractions by mass sum to %.6g; they have to sum to 1 within %g", sum,
+                              close);
     for (int64_t i = 0; i < count; i++) fractions[i] /= sum;
     return skg_json_remark(node, "the fractions by mass sum to %g; they are scaled to 1", sum);
 }

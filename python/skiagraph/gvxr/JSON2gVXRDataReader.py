@@ -1,14 +1,19 @@
 """Projections of a scene file for CIL (the Core Imaging Library), which has to be installed."""
 from __future__ import annotations
 
+import json
 import os
 from typing import Any
 
+import numpy as np
+
+from .. import gvxr
 from . import json2gvxr, scans
 from .gVXRDataReader import gVXRDataReader
 from .state import millimetres
 
-__all__ = ["JSON2gVXRDataReader"]
+#: `from ... import *` brings what it brings in gVXR, except CIL's classes, which are imported when they are needed.
+__all__ = ["JSON2gVXRDataReader", "gvxr", "json", "np", "os"]
 
 
 class JSON2gVXRDataReader:

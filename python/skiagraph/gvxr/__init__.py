@@ -31,6 +31,7 @@ from typing import Any
 
 from .._interface import UnsupportedError
 from .beam import *
+from .calls import description as _description
 from .calls import CALLS as _CALLS
 from .compare import *
 from .detector import *
@@ -41,6 +42,7 @@ from .life import *
 from .matter import *
 from .meshes import *
 from .places import *
+from .readout import *
 from .response import *
 from .scans import *
 from .shapes import *
@@ -48,11 +50,32 @@ from .space import *
 from .tube import *
 
 
+def _idle(name: str) -> Any:
+    """A call that does nothing."""
+    def call(*arguments: Any, **keys: Any) -> None:
+        return None
+
+    call.__name__ = call.__qualname__ = name
+    call.__doc__ = _description(name)
+    return call
+
+
+def _describe() -> None:
+    """Gives each call that has no words of its own those of the page."""
+    for name in _CALLS:
+        call = globals().get(name)
+        if call is not None and not call.__doc__:
+            call.__doc__ = _description(name)
+
+
+_describe()
+
+
 def __getattr__(name: str) -> Any:
     """Refuses the calls that are not there, with the reason; those about windows do nothing."""
     kind, remark = _CALLS.get(name, ("", ""))
     if kind == "nothing":
-        return lambda *arguments, **keys: None
+        return _idle(name)
     if kind == "refused":
         raise UnsupportedError(f"gvxr.{name} is refused: {remark}")
     raise AttributeError(f"gVXR 2.1 has no call {name!r}")

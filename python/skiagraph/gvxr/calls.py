@@ -9,7 +9,8 @@ _SAME = """
 addEnergyBinToSpectrum addEnergyBinToSpectrumPerCm2At1m addEnergyBinToSpectrumPerPixelAtSDD addFilter
 addInherentFilter addMesh addPolygonMeshAsInnerSurface applyCurrentLocalTransformation autoAlignDetector
 clearDetectorEnergyResponse clearFiltration clearInherentFiltration clearLSF computeZNCC destroy destroyAllWindows
-disablePoissonNoise emptyMesh getAmbientColour getAngleSetCT getBestSOD getCentreOfRotationPositionCT getChildLabel
+disablePoissonNoise emptyMesh getAmbientColour getAngleSetCT getDetectorBias getDetectorGain getDetectorStdDevBias
+setDetectorBias setDetectorGain setDetectorStdDevBias getBestSOD getCentreOfRotationPositionCT getChildLabel
 getDensityFromElement getDetectorNumberOfPixels getDetectorPixelArea getDetectorPixelSpacing getDetectorPosition
 getDetectorPositionSet getDetectorRightVector getDetectorSize getDiffuseColour getEffectiveAtomicNumber
 getEffectiveMolarMass getEffectiveZNumber getElementAtomicNumber getElementMolarMass getElementName getElementSymbol
@@ -50,10 +51,10 @@ _DIFFERS = {
         getImplicitSurfaceLastVoxelization getNumberOfControlLineSegments getNumberOfControlPoints
         getNumberOfImplicitSurfaces implicitSurfaceExists setControlLineSegmentParameters setControlPointParameters
         voxeliseImplicitSurface voxelizeImplicitSurface""",
-    "exact spheres that do not overlap; voxels and the name of the volume have no effect":
+    "exact spheres that do not overlap, up to some 50 % of the box; voxels and the name of the volume have no effect":
         """makeFoamInCuboid""",
     "what is at or above the value is inside; the surface is closed where it meets the border of the volume; the arguments"
-    " that gVXR documents, not those of its other overloads":
+    " that gVXR documents; the volume may stand before the value, too":
         """makeIsoSurface""",
     "10 steps unless their number is given, as gVXR documents; gVXR 2.1 makes 2":
         """makeStepWedge""",
@@ -63,7 +64,19 @@ _DIFFERS = {
         """makeSpheresInCylinder""",
     "the mesh stands at this distance along the beam; gVXR 2.1 moves it as if it stood at the origin":
         """applySOD""",
-    "one outer surface; the inner ones displace it where they are":
+    "gain x image + bias, with normal deviations of the bias by other random numbers; gVXR's documentation does not say how it"
+    " applies them":
+        """computeXRayImageWithGain getLastProjectionSetWithGain getWhiteImageWithGain getWhiteSpectralImageWithGain""",
+    "as computeCTAcquisition; projections and white images have gain and bias":
+        """computeCTAcquisitionWithGain""",
+    "gain x energy + bias":
+        """getTotalEnergyWithDetectorResponseWithGain getTotalEnergyWithoutDetectorResponseWithGain""",
+    "says that it is Skiagraph's own":
+        """getNoiseGenerator""",
+    "the mesh from which others are subtracted, or each of its pieces, has to be convex before the first of them; what two of"
+    " them share is subtracted twice":
+        """subtractMesh""",
+    "with inner surfaces one outer surface; they displace it where they are":
         """addPolygonMeshAsOuterSurface""",
     "returns the projections; no screenshots; angles divide the range evenly in both cases; a folder of TIFF,"
     " or one file":
@@ -154,9 +167,9 @@ _DIFFERS = {
         """moveToCenter moveToCentre""",
     "multiples of the direction, rising; origin and direction in mm":
         """rayIntersect""",
-    ".png, .tif or .mha; not compressed":
-        """saveLastLBuffer saveLastPathLength saveLastXRayImage""",
-    ".tif or .mha; not compressed":
+    ".png, .tif, .mha, .mhd, .txt or .dcm; not compressed":
+        """saveLastLBuffer saveLastPathLength saveLastXRayImage saveLastXRayImageWithGain""",
+    ".tif, .mha or .mhd; not compressed":
         """saveLastProjectionSet""",
     "a name of the tables has no effect: formulas by atoms only":
         """setCompound""",
@@ -208,13 +221,6 @@ stopArcBallRotation useLighing useLogFile useNegative useWireframe usingArcBallR
 _REFUSED = {
     "read it by the package that wrote it, such as SimpleITK; makeIsoSurface takes the array":
         """loadImage2D loadImage3D""",
-    "meshes are not cut: add the one as an inner surface of the other, which it displaces":
-        """subtractMesh""",
-    "gain, bias and their deviations are not simulated: apply them to the image with NumPy":
-        """computeCTAcquisitionWithGain computeXRayImageWithGain getDetectorBias getDetectorGain getDetectorStdDevBias
-        getLastProjectionSetWithGain getNoiseGenerator getTotalEnergyWithDetectorResponseWithGain
-        getTotalEnergyWithoutDetectorResponseWithGain getWhiteImageWithGain getWhiteSpectralImageWithGain
-        saveLastXRayImageWithGain setDetectorBias setDetectorGain setDetectorStdDevBias""",
     "gVXR 2.1 refuses it too: use computeCTAcquisition":
         """computeProjectionSet computeSinogram""",
     "gVXR's documentation does not say how the index is computed":
@@ -246,3 +252,13 @@ CALLS: dict[str, tuple[str, str]] = {
     **{name: ("nothing", "no window, no display; leaky meshes are repaired by default") for name in _NOTHING.split()},
     **{name: ("refused", remark) for remark, names in _REFUSED.items() for name in names.split()},
 }
+
+
+def description(name: str) -> str:
+    """What help() shows of a call that has no words of its own."""
+    kind, remark = CALLS[name]
+    if kind == "same":
+        return f"The arguments, values and units of gVXR's {name}."
+    if kind == "nothing":
+        return f"Does nothing: {remark}."
+    return f"gVXR's {name}; what differs: {remark}."

@@ -7,11 +7,13 @@ from typing import Any
 
 import numpy as np
 
+from .. import gvxr
 from .._interface import UnsupportedError
 from .detector import getDetectorNumberOfPixels, getDetectorPixelSpacing, getDetectorRightVector, getDetectorUpVector
 from .state import world
 
-__all__ = ["gVXRDataReader"]
+#: `from ... import *` brings what it brings in gVXR, except CIL's classes, which are imported when they are needed.
+__all__ = ["gVXRDataReader", "gvxr", "np", "os"]
 
 
 class gVXRDataReader:

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .._device import warn
 from .._interface import SceneError
 from .._picture import write_picture
+from .files import write_other
 from .state import Node, World, millimetres, world
 
 __all__ = [
@@ -103,12 +104,12 @@ def getLastLBuffer() -> NDArray[np.float32]:
 
 
 def saveLastXRayImage(aFileName: str = "image.tif", useCompression: bool = True) -> None:
-    """.png, .tif or .mha, in MeV. Never compressed, except PNG."""
+    """.png, .tif, .mha, .mhd with .raw, .txt or .dcm, in MeV. Never compressed, except PNG."""
     save(aFileName, getLastXRayImage(), "energy", "MeV per pixel")
 
 
 def saveLastLBuffer(aFileName: str = "lengths.tif", useCompression: bool = True) -> None:
-    """.png, .tif or .mha, in cm."""
+    """.png, .tif, .mha, .mhd with .raw, .txt or .dcm, in cm."""
     save(aFileName, getLastLBuffer(), "path length", "cm")
 
 
@@ -116,5 +117,7 @@ saveLastPathLength = saveLastLBuffer
 
 
 def save(path: str, image: Any, name: str, unit: str) -> None:
-    """Writes an image of the detector."""
-    write_picture(path, image, names=[name], unit=unit, view=world.view())
+    """Writes an image of the detector, or several."""
+    view = world.view()
+    if not write_other(path, image, (float(np.linalg.norm(view.column_step)), float(np.linalg.norm(view.row_step)))):
+        write_picture(path, image, names=[name], unit=unit, view=view)

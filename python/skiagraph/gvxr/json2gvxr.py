@@ -193,6 +193,8 @@ def initDetector(fname: str = "", verbose: int = 0) -> None:
     _set_response(found)
     lines = _get(found, "LSF")
     response.clearLSF()
+    if isinstance(lines, list) and len(lines) == 2 and lines[1] == [1]:  # along the rows alone, as gvxr2json writes it
+        lines = lines[0]
     if lines is not None:
         response.setLSF(getFilePath(lines) if isinstance(lines, str) else lines)
 

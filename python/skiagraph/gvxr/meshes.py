@@ -12,6 +12,7 @@ from ..matrices import rotate
 from ..mesh import Mesh
 from . import dragon
 from .state import Node, millimetres, world
+from .subtract import subtracted
 
 __all__ = [
     "addMesh", "addPolygonMeshAsInnerSurface", "addPolygonMeshAsOuterSurface", "emptyMesh", "getChildLabel",
@@ -20,7 +21,7 @@ __all__ = [
     "getVertexNormalVectorSet", "getVertexNumber", "getVertexSet", "hasNormalVectorsInverted", "invertNormalVectors",
     "isInnerSurface", "isOuterSurface", "loadMeshFile", "loadSceneGraph", "makeCube", "makeCuboid", "makeCylinder",
     "makeSphere", "makeTriangularMesh", "rayIntersect", "removeMeshAndChildren", "removePolygonMeshesFromSceneGraph",
-    "removePolygonMeshesFromXRayRenderer", "saveSTLfile",
+    "removePolygonMeshesFromXRayRenderer", "saveSTLfile", "subtractMesh",
 ]
 
 
@@ -84,16 +85,31 @@ def emptyMesh(aLabel: str, aParent: str = "root") -> None:
     world.add(aLabel, None, aParent)
 
 
+def _beside(destination: str, source: str) -> NDArray[np.float64]:
+    """The source's vertices as the destination's, each by its own matrix."""
+    matrix = np.linalg.inv(world.world_matrix(destination)) @ world.world_matrix(source)
+    vertices: NDArray[np.float64] = world.mesh(source).vertices @ matrix[:3, :3].T + matrix[:3, 3]
+    return vertices
+
+
 def addMesh(aDestination: str, aSource: str) -> None:
     """The destination's vertices and the source's, each by its own matrix."""
-    target, source = world.node(aDestination), world.mesh(aSource)
-    matrix = np.linalg.inv(world.world_matrix(aDestination)) @ world.world_matrix(aSource)
-    vertices = source.vertices @ matrix[:3, :3].T + matrix[:3, 3]
-    faces = source.faces
+    target, vertices, faces = world.node(aDestination), _beside(aDestination, aSource), world.mesh(aSource).faces
     if target.mesh is not None:
         faces = np.concatenate([target.mesh.faces, faces + len(target.mesh.vertices)])
         vertices = np.concatenate([target.mesh.vertices, vertices])
     target.mesh = Mesh(vertices, faces, name=aDestination)
+
+
+def subtractMesh(aDestination: str, aSource: str) -> None:
+    """Takes from the destination what the source has in it. The destination, or each of its pieces, has to be convex as it was
+    before anything was subtracted. What two sources share is taken twice."""
+    target, old = world.node(aDestination), world.mesh(aDestination)
+    solid = target.cut[1] if target.cut is not None and target.cut[0] is old else old
+    vertices, faces = subtracted((old.vertices, old.faces), (solid.vertices, solid.faces),
+                                 (_beside(aDestination, aSource), world.mesh(aSource).faces), aDestination)
+    target.mesh = Mesh(vertices, faces, name=aDestination)
+    target.cut = target.mesh, solid
 
 
 def addPolygonMeshAsInnerSurface(aLabel: str) -> None:

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Any
 
 import numpy as np
@@ -25,16 +25,22 @@ __all__ = [
 ]
 
 
-def _project(views: Sequence[View], integrate: bool, whites: int) -> NDArray[np.float32]:
+def _as_is(image: Any) -> NDArray[np.float32]:
+    made: NDArray[np.float32] = image
+    return made
+
+
+def _project(views: Sequence[View], integrate: bool, whites: int, read: Callable[[Any], NDArray[np.float32]]) -> NDArray[np.float32]:
     if not world.has_beam():
         warn("there is no beam, so that the projections are 0; call setMonoChromatic, addEnergyBinToSpectrum or setVoltage")
-        return np.stack([blank()] * len(views))
+        return read(np.stack([blank()] * len(views)))
     options = {**world.options(), "index": world.frame}
-    images = world.scene().images("energy" if integrate else "photons", unit="MeV" if integrate else None, views=views,
-                                  **options)
+    images = read(world.scene().images("energy" if integrate else "photons", unit="MeV" if integrate else None, views=views,
+                                       **options))
     world.frame += len(views) * world.noise
     if whites > 0:
-        images /= np.mean([getWhiteImage(integrate) for _ in range(whites if world.noise else 1)], axis=0)
+        varies = world.noise or world.bias_deviation > 0
+        images /= np.mean([read(getWhiteImage(integrate)) for _ in range(whites if varies else 1)], axis=0)
     return images
 
 
@@ -49,7 +55,8 @@ def computeCTAcquisition(aProjectionOutputPath: str, aScreenshotOutputPath: str,
                          aNumberOfWhiteImagesInFlatField: int, aPositionOfCentreOfRotationX: float,
                          aPositionOfCentreOfRotationY: float, aPositionOfCentreOfRotationZ: float, aUnitOfLength: str,
                          aAxisOfRotationX: float, aAxisOfRotationY: float, aAxisOfRotationZ: float,
-                         anIntegrateEnergyFlag: bool = True, aVerboseLevel: int = 0) -> NDArray[np.float32]:
+                         anIntegrateEnergyFlag: bool = True, aVerboseLevel: int = 0, *,
+                         _read: Callable[[Any], NDArray[np.float32]] = _as_is) -> NDArray[np.float32]:
     """A circular scan, [n, row, column]. With white images: divided by their mean. The meshes turn about the axis.
 
     aProjectionOutputPath: a folder, which gets a TIFF for each projection, or a file, .tif or .mha; "": none.
@@ -63,7 +70,7 @@ def computeCTAcquisition(aProjectionOutputPath: str, aScreenshotOutputPath: str,
     axis, view = three(aAxisOfRotationX, aAxisOfRotationY, aAxisOfRotationZ), world.view()
     views = [rotate(axis, -angle, about=centre) @ view for angle in angles]  # source and detector turn back
     whites = int(aNumberOfWhiteImagesInFlatField)
-    images = _project(views, bool(anIntegrateEnergyFlag), whites)
+    images = _project(views, bool(anIntegrateEnergyFlag), whites, _read)
     world.images["scan"] = images
     world.scan = {"path": str(aProjectionOutputPath), "pictures": str(aScreenshotOutputPath), "first": float(aFirstAngle),
                   "last": float(aLastAngle), "closed": bool(anIncludeLastAngleFlag), "whites": whites, "centre": centre,

@@ -7,9 +7,13 @@ import numpy as np
 
 from .._interface import ArgumentError
 from ..mesh import Mesh
+from . import packing
 from .state import millimetres, world
 
 __all__ = ["makeFoamInCuboid", "makeIsoSurface", "makeSpheresInCylinder", "makeStepWedge"]
+
+#: Up to this share of the box, spheres find a place at random.
+_LOOSE = 0.2
 
 
 def makeStepWedge(aLabel: str, aNumberOfSteps: int = 10, aTotalLength: float = 10, aWidth: float = 1,
@@ -22,10 +26,15 @@ def makeStepWedge(aLabel: str, aNumberOfSteps: int = 10, aTotalLength: float = 1
     world.add(aLabel, Mesh(made.vertices + (0, 0, heights[-1] / 2), made.faces, name=aLabel), aParent)
 
 
-def makeIsoSurface(aLabel: str, anIsoValue: float, aVoxelDataSet: Any, aWidth: int, aHeight: int, aDepth: int,
+def makeIsoSurface(aLabel: str, anIsoValue: Any, aVoxelDataSet: Any, aWidth: int, aHeight: int, aDepth: int,
                    aSpacingX: float, aSpacingY: float, aSpacingZ: float, aUnitOfLength: str = "cm",
                    aParent: str = "root") -> None:
-    """The surface of a volume, [z, y, x] or a flat list of as many. The middle of its first voxel is at the spacings."""
+    """The surface of a volume, [z, y, x] or a flat list of as many. The middle of its first voxel is at the spacings.
+
+    The value may follow the volume, too.
+    """
+    if np.ndim(anIsoValue) > 0:  # (label, volume, value, ...)
+        anIsoValue, aVoxelDataSet = aVoxelDataSet, anIsoValue
     values = np.asarray(aVoxelDataSet, dtype=float)
     if values.size != aWidth * aHeight * aDepth:
         raise ArgumentError(f"{aLabel}: the volume has {values.size} values instead of {aWidth} x {aHeight} x {aDepth}")
@@ -46,8 +55,15 @@ def makeFoamInCuboid(aPorosityName: str, aBoundingVolumeName: str, aCuboidWidth:
     mm = millimetres(aUnitOfLength)
     radius, *deviation = np.atleast_1d(np.asarray(aPorosityRadius, dtype=float)).tolist()
     spread = deviation[0] / radius if deviation else aPercentageDeviation / 100
-    box = (aCuboidWidth * mm, aCuboidHeight * mm, aCuboidDepth * mm)
-    world.add(aPorosityName, Mesh.foam(box, radius * mm, aPercentageOfVolume / 100, spread=spread, seed=world.seed), "root")
+    box = np.array([aCuboidWidth * mm, aCuboidHeight * mm, aCuboidDepth * mm])
+    share = aPercentageOfVolume / 100
+    if share <= _LOOSE:
+        made = Mesh.foam(box.tolist(), radius * mm, share, spread=spread, seed=world.seed)
+    else:
+        random = np.random.default_rng(world.seed)
+        radii = packing.radii_of(box, radius * mm, spread, share, random)
+        made = Mesh.spheres(packing.pack(box, radii, random), radii)
+    world.add(aPorosityName, made, "root")
 
 
 def makeSpheresInCylinder(aCylinderLabel: str, aCylinderNumberOfSectors: int, aCylinderRadius: float, aCylinderHeight: float,

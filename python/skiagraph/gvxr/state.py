@@ -54,6 +54,8 @@ class Node:
     #: ambient, diffuse, specular: red, green, blue, opacity; and shininess.
     colours: dict[str, tuple[float, ...]] = field(default_factory=dict)
     shininess: float = 50.0
+    #: A mesh from which others were subtracted, and what it was before.
+    cut: tuple[Mesh, Mesh] | None = None
 
 
 @dataclass
@@ -87,6 +89,11 @@ class World:
     response_rows: NDArray[np.float64] | None = None
     bands: list[float] | None = None
     noise: bool = False
+    #: Of the images that are read out, ...WithGain; and how many of them had a noise of the bias.
+    gain: float = 1.0
+    bias: float = 0.0
+    bias_deviation: float = 0.0
+    readouts: int = 0
     seed: int = 0
     frame: int = 0
     images: dict[str, Any] = field(default_factory=dict)
@@ -226,9 +233,9 @@ class World:
         description = self.geometry()
         shown = [(label, node) for label, node in self.nodes.items() if node.surface and node.mesh is not None]
         outer = [label for label, node in shown if node.surface == "outer"]
-        if len(outer) > 1:
-            raise SceneError(f"{', '.join(map(repr, outer))} are all outer surfaces; there can be one, which the inner "
-                             "ones displace")
+        if 1 < len(outer) < len(shown):
+            raise SceneError(f"{', '.join(map(repr, outer))} are all outer surfaces; with inner surfaces there can be one, which "
+                             "they displace")
         made_of = (json.dumps(description), needs_beam, self.per_cm2, tuple(self.filters), tuple(self.inherent), tuple(self.tube.items()),
                    tuple(self.spectrum.items()), [(label, node.surface, id(node.mesh)) for label, node in shown])
         if self._scene is None or made_of != self._made_of:

@@ -36,7 +36,7 @@ def getVoltage(aUnitOfElectriPotential: str) -> float:
 
 
 def getUnitOfElectriPotential(aUnitOfElectriPotential: str) -> float:
-    """MV."""
+    """A unit of voltage in MV."""
     return unit(aUnitOfElectriPotential, VOLTAGES) / unit("MV", VOLTAGES)
 
 
@@ -156,7 +156,7 @@ def getPhotonCountsPerCm2At1m(anApplyFiltrationFlag: bool = True) -> tuple[float
 
 
 def getNumberOfPhotons(anApplyFiltrationFlag: bool = True) -> float:
-    """Per pixel."""
+    """Photons per pixel."""
     return float(_photons(anApplyFiltrationFlag).sum())
 
 
