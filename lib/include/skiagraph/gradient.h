@@ -135,7 +135,7 @@ static inline void skg_direction_init(skg_direction *direction) {
  *     derivative   result: [channels][rows][columns], in the plan's quantity for a unit of the direction
  *     saturated    result: number of slopes of faces at their corners that were cut off at 2^24 times the mean slope, because the
  *                  sums over hits are 64-bit integers; may be NULL
- *     limits       faces that contain rays add nothing, unlike in skg_plan_gradient
+ *     limits       as above: faces that contain rays change the means of their pixels
  *     errors       as of skg_plan_gradient; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
 SKG_API skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                        double *derivative, int64_t *saturated);
