@@ -78,6 +78,13 @@ typedef struct {
     /** [parts] by the density of each part over that of its material; NULL: not wanted. In a world, for frames with densities of
      * their own, and for parts that compete by priority it costs an image of path lengths a part. */
     double *densities;
+    /** [parts][nodes] by the attenuation coefficient of the material of each part at each energy of the plan (skg_plan_node_count,
+     * skg_plan_node_get), per 1/mm; NULL: not wanted. It costs an image of path lengths a part, and for each energy a pass over the
+     * image and 8 bytes for each of its rays. A pixel of an attenuation above 87, in precision double above 700, counts as
+     * constant if the plan has several energies. */
+    double *attenuations;
+    /** Number of energies that `attenuations` has memory for: that of the plan. */
+    int64_t nodes;
 } skg_gradient;
 
 /** Prepares a gradient of `size` bytes (export.h). */
