@@ -1,5 +1,6 @@
 #include "frame/adjoint.h"
 
+#include "frame/job.h"
 #include "plan/decide.h"
 #include "spectral/quantity.h"
 
@@ -148,4 +149,18 @@ skg_status skg_adjoint_of_intensities(const skg_plan *plan, const skg_view *view
     if (image) undo_logarithm(count, image, *values);
     SKG_TRY(undo_detection(plan, view, *values));
     return undo_blurs(plan, values);
+}
+
+skg_status skg_adjoint_send(skg_job *job, const double *adjoint) {
+    const skg_recipe *recipe = job->recipe;
+    skg_machine *machine = job->machine;
+    const int64_t count = skg_model_sums(&recipe->model) * recipe->view.rows * recipe->view.columns;
+    float *rounded = NULL;
+    if (skg_recipe_kernel_precision(recipe) == SKG_PRECISION_DOUBLE)
+        return skg_buffer_write(machine->context, &machine->gradient.adjoint,
+                                count * (int64_t)sizeof *adjoint, adjoint, "adjoint");
+    SKG_TRY(skg_staging_take(&job->staging, count, sizeof *rounded, "adjoint", &rounded));
+    for (int64_t i = 0; i < count; i++) rounded[i] = (float)adjoint[i];
+    return skg_buffer_write(machine->context, &machine->gradient.adjoint, count * (int64_t)sizeof *rounded,
+                            rounded, "adjoint");
 }

@@ -25,4 +25,7 @@ skg_status skg_derivative_of_image(const skg_plan *plan, const skg_view *view, c
 /* Whether the image itself is needed: where a logarithm is taken of what is finished. */
 int skg_adjoint_needs_image(const skg_plan *plan);
 
+/* Uploads derivatives by the intensities, [layers][channels][rows][columns], in the precision of the raster. */
+skg_status skg_adjoint_send(skg_job *job, const double *adjoint);
+
 #endif

@@ -7,6 +7,7 @@
 #include "geometry/slopes.h"
 #include "spectral/quantity.h"
 
+#include <float.h>
 #include <string.h>
 
 /* The velocity of a sample of the source: by differences, as in gradient_pass.c. */
@@ -59,45 +60,80 @@ static void find_beam(const skg_view *view, const skg_camera *camera, const skg_
     skg_add_scaled(moves, -skg_dot(moves, d) / skg_dot(d, d), d, v->beam);
 }
 
-/* The slopes of the faces of all parts, a part an item. */
+/* The slopes of the faces of all parts, a part an item; and what faces that are seen as lines add to each channel. */
 typedef struct {
     const skg_pass *pass;
     const skg_velocities *of_view;
     const skg_direction *direction;
-    skg_face_moments *faces; /* [parts] */
-    double **slopes;         /* [parts] */
+    skg_face_moments *faces;   /* [parts] */
+    skg_part_weights *weights; /* [parts] */
+    skg_pixel_weights of_pixels;
+    double *slopes;   /* [triangles][3] */
+    uint8_t *edge_on; /* [triangles] */
+    int64_t *first;   /* [parts] the first triangle */
 } slopes_work;
 
-static skg_status find_part(void *user, int64_t part) {
-    const slopes_work *w = user;
+static skg_velocities velocities_of(const slopes_work *w, int64_t part) {
     const skg_direction *direction = w->direction;
-    const double reference = w->pass->parts[part].reference;
     skg_velocities v = *w->of_view;
     if (direction->poses) memcpy(v.pose, direction->poses + 6 * part, sizeof v.pose);
     if (direction->vertices) v.vertices = direction->vertices[part];
+    return v;
+}
+
+static skg_status find_part(void *user, int64_t part) {
+    const slopes_work *w = user;
+    const double reference = w->pass->parts[part].reference;
+    const double rounding =
+        w->pass->kernels.precision == SKG_PRECISION_DOUBLE ? DBL_EPSILON : (double)FLT_EPSILON;
+    const skg_velocities v = velocities_of(w, part);
     skg_slopes_find(&w->faces[part], &v, w->pass->camera.parallel || !(reference > 0) ? 1 : reference,
-                    w->slopes[part]);
+                    rounding, w->slopes + 3 * w->first[part], w->edge_on + w->first[part]);
     return SKG_OK;
 }
 
-static skg_status find_slopes(skg_job *job, const skg_pass *pass, const skg_velocities *of_view,
-                              double *slopes) {
+static skg_status find_slopes(skg_job *job, slopes_work *w) {
     const skg_geometry *geometry = &job->machine->geometry;
-    const int64_t parts = pass->scene->count;
-    slopes_work w = {.pass = pass, .of_view = of_view, .direction = &job->gradient->direction};
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.faces, "derivative", &w.faces));
-    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.slopes, "derivative", &w.slopes));
+    const int64_t parts = w->pass->scene->count;
+    SKG_TRY(skg_alloc(parts, sizeof *w->faces, "derivative", &w->faces));
+    SKG_TRY(skg_alloc(parts, sizeof *w->weights, "derivative", &w->weights));
+    SKG_TRY(skg_alloc(parts, sizeof *w->first, "derivative", &w->first));
+    SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *w->slopes, "derivative", &w->slopes));
+    SKG_TRY(skg_alloc(geometry->triangles, sizeof *w->edge_on, "derivative", &w->edge_on));
+    SKG_TRY(skg_pixel_weights_create(w->pass, &w->of_pixels));
     for (int64_t p = 0; p < parts; p++) {
-        w.slopes[p] = slopes;
-        slopes += 3 * geometry->layouts[geometry->mesh_of_part[p]].triangles;
-        SKG_TRY_CLEANUP(skg_gradient_place_faces(job, pass, p, &w.faces[p]));
+        if (p > 0) w->first[p] = w->first[p - 1] + w->faces[p - 1].mesh->triangles;
+        SKG_TRY(skg_gradient_place_faces(job, w->pass, p, &w->faces[p]));
+        w->weights[p] = (skg_part_weights){.all = &w->of_pixels, .part = p};
+        w->faces[p].weight = skg_pixel_weigh;
+        w->faces[p].weight_user = &w->weights[p];
     }
-    status = skg_parallel(parts, find_part, &w);
-cleanup:
-    skg_free(&w.faces);
-    skg_free(&w.slopes);
-    return status;
+    return skg_parallel(parts, find_part, w);
+}
+
+static void release_slopes(slopes_work *w) {
+    skg_pixel_weights_release(&w->of_pixels);
+    skg_free(&w->faces);
+    skg_free(&w->weights);
+    skg_free(&w->first);
+    skg_free(&w->slopes);
+    skg_free(&w->edge_on);
+}
+
+/* Adds the faces that are seen as lines, with the weights that stand on the device. */
+static skg_status add_edges(skg_job *job, slopes_work *w, double *values) {
+    skg_pixel_weights_clear(&w->of_pixels);
+    for (int64_t p = 0; p < w->pass->scene->count; p++) {
+        const skg_velocities v = velocities_of(w, p);
+        const skg_face_moments *faces = &w->faces[p];
+        if (w->pass->parts[p].contributions == 0) continue;
+        for (int64_t f = 0; f < faces->mesh->triangles; f++) {
+            if (!w->edge_on[w->first[p] + f]) continue;
+            SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
+            skg_slopes_spread(faces, &v, f, values);
+        }
+    }
+    return SKG_OK;
 }
 
 /* What changes besides the lengths: those of whole rays, the falloff, and the photons of an absolute beam. */
@@ -134,16 +170,17 @@ static skg_status add_rays(skg_job *job, const skg_frame_work *work, const skg_p
 }
 
 /* One channel of the intensities: the adjoint is 1 there, so that the weights of a ray are its own slopes. */
-static skg_status add_channel(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
-                              const skg_velocities *v, int64_t channel, double *slopes, double *values) {
+static skg_status add_channel(skg_job *job, const skg_frame_work *work, const skg_pass *pass, slopes_work *w,
+                              int64_t channel, double *values) {
     struct skg_gradient_work *gradient = job->gradient;
     skg_machine *machine = job->machine;
     const int64_t columns = pass->camera.columns, rows = pass->camera.rows, fine = pass->fine;
     double *image = gradient->derivative + channel * (rows / fine) * (columns / fine);
     SKG_TRY(skg_gradient_scatter(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
-                                 slopes, values, &gradient->saturated));
+                                 w->slopes, values, &gradient->saturated));
+    SKG_TRY(add_edges(job, w, values));
     if (gradient->direction.source || gradient->direction.detector)
-        SKG_TRY(add_rays(job, work, pass, v, values));
+        SKG_TRY(add_rays(job, work, pass, w->of_view, values));
     for (int64_t r = 0; r < rows; r++)
         for (int64_t c = 0; c < columns; c++)
             image[r / fine * (columns / fine) + c / fine] += values[r * columns + c];
@@ -155,23 +192,23 @@ skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int
     struct skg_gradient_work *gradient = job->gradient;
     const skg_direction *direction = &gradient->direction;
     const int64_t size = job->recipe->view.rows * job->recipe->view.columns;
-    double *slopes = NULL, *values = NULL;
+    double *values = NULL;
     skg_velocities v = {.vertices = NULL};
+    slopes_work w = {.pass = pass, .of_view = &v, .direction = direction};
     skg_status status = SKG_OK;
     find_source(job->recipe, work->view, number, direction, v.source);
     if (direction->detector) memcpy(v.detector, direction->detector, sizeof v.detector);
     if (pass->camera.parallel) find_beam(work->view, &pass->camera, direction, &v);
-    SKG_TRY_CLEANUP(skg_alloc(3 * job->machine->geometry.triangles, sizeof *slopes, "derivative", &slopes));
     SKG_TRY_CLEANUP(
         skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *values, "derivative", &values));
-    SKG_TRY_CLEANUP(find_slopes(job, pass, &v, slopes));
+    SKG_TRY_CLEANUP(find_slopes(job, &w));
     for (int64_t c = 0; c < job->recipe->model.channels; c++) {
         for (int64_t p = 0; p < job->recipe->model.channels * size; p++) gradient->adjoint[p] = p / size == c;
         SKG_TRY_CLEANUP(skg_gradient_weigh(job, pass, sums, factor, 0));
-        SKG_TRY_CLEANUP(add_channel(job, work, pass, &v, c, slopes, values));
+        SKG_TRY_CLEANUP(add_channel(job, work, pass, &w, c, values));
     }
 cleanup:
-    skg_free(&slopes);
+    release_slopes(&w);
     skg_free(&values);
     return status;
 }

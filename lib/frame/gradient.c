@@ -66,6 +66,10 @@ static skg_status check_wanted(const char *call, const skg_recipe *recipe, const
     if (detects && detection.over_flat_field)
         return refuse(call, "a ratio to a flat field that differs from pixel to pixel, with noise or steps",
                       "make the plan without noise and steps");
+    if (wanted->attenuations && machine->images.ratio)
+        return refuse(call,
+                      "a ratio to a flat field that differs from ray to ray, under attenuation coefficients,",
+                      "make the plan of energies or photons");
     return wanted->source || wanted->detector ? check_view(call, recipe) : SKG_OK;
 }
 
@@ -149,6 +153,9 @@ static skg_status hand_out(const skg_scene *scene, const struct skg_gradient_wor
     if (wanted->poses) memcpy(wanted->poses, work->poses, 6 * (size_t)scene->count * sizeof *work->poses);
     if (wanted->densities)
         memcpy(wanted->densities, work->densities, (size_t)scene->count * sizeof *work->densities);
+    if (wanted->attenuations)
+        memcpy(wanted->attenuations, work->attenuations,
+               (size_t)(scene->count * work->node_count) * sizeof *work->attenuations);
     if (wanted->source) memcpy(wanted->source, work->view, 3 * sizeof *work->view);
     if (wanted->detector) memcpy(wanted->detector, work->view + 3, 6 * sizeof *work->view);
     for (int64_t p = 0; wanted->vertices && p < scene->count; p++)
@@ -216,6 +223,15 @@ skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg
 
 /* --- by everything */
 
+/* Materials that were changed may have other energies, which the caller's memory has no place for. */
+static skg_status check_nodes(const char *call, int64_t count, const skg_gradient *wanted) {
+    if (!wanted->attenuations || wanted->nodes == count) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "%s: the attenuations have memory for %" PRId64 " energies, and the plan has %" PRId64
+                    "; set `nodes` to what skg_plan_node_count says now",
+                    call, wanted->nodes, count);
+}
+
 static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
                                 const skg_gradient *gradient) {
     SKG_PLAIN;
@@ -231,9 +247,14 @@ static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const sk
     SKG_TRY(skg_plan_renew(plan));
     const skg_scene *scene = plan->recipe->scene;
     SKG_TRY(check_wanted(call, plan->recipe, &plan->machine, &work.wanted));
+    SKG_TRY(check_nodes(call, plan->recipe->model.nodes, &work.wanted));
     SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
     SKG_TRY_CLEANUP(skg_alloc(6 * scene->count, sizeof *work.poses, "gradient", &work.poses));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.densities, "gradient", &work.densities));
+    work.node_count = plan->recipe->model.nodes;
+    if (work.wanted.attenuations)
+        SKG_TRY_CLEANUP(skg_alloc(scene->count * work.node_count, sizeof *work.attenuations, "gradient",
+                                  &work.attenuations));
     SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.needs_lengths, "gradient", &work.needs_lengths));
     SKG_TRY_CLEANUP(find_adjoint(call, plan, frame, adjoint, &work.wanted, &work.adjoint));
     clear_vertices(scene, &work.wanted);
@@ -245,6 +266,8 @@ cleanup:
     skg_free(&work.densities);
     skg_free(&work.needs_lengths);
     skg_free(&work.planes);
+    skg_free(&work.attenuations);
+    skg_free(&work.nodes);
     return status;
 }
 

@@ -9,6 +9,7 @@
 #include "frame/gradient_density.h"
 
 #include "frame/gradient_faces.h"
+#include "frame/gradient_nodes.h"
 
 #include <string.h>
 
@@ -21,7 +22,8 @@ int skg_gradient_needs_lengths(const struct skg_gradient_work *gradient, int64_t
 /* Which densities take path lengths in this pass. */
 static void find_needs(const skg_job *job, const skg_frame_work *work, const skg_pass *pass, uint8_t *needs) {
     const int overridden = work->frame && work->frame->override_count != 0;
-    const int all = overridden || job->recipe->model.world_plane >= 0;
+    const int all =
+        overridden || job->recipe->model.world_plane >= 0 || job->gradient->wanted.attenuations != NULL;
     for (int64_t p = 0; p < pass->scene->count; p++) needs[p] = (uint8_t)all;
     for (int64_t s = 0; s < pass->priority.count; s++) {
         const int64_t part = pass->priority.parts[s], around = pass->scene->parts[part].inside;
@@ -165,8 +167,9 @@ skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t 
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *own, "gradient", &own));
     SKG_TRY_CLEANUP(
         skg_gradient_read(pass, job->machine->gradient.lengths.memory, 0, columns * rows, lengths));
+    if (gradient->wanted.attenuations) SKG_TRY_CLEANUP(skg_gradient_add_nodes(job, pass, part, lengths));
     find_own(recipe, part, own);
-    for (int64_t k = 0; k < planes; k++) {
+    for (int64_t k = 0; k < planes && gradient->wanted.densities; k++) {
         const double *slopes = gradient->planes + k * layout.plane;
         for (int64_t r = 0; r < rows && own[k] != 0; r++)
             for (int64_t c = 0; c < columns; c++)

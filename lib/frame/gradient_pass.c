@@ -2,26 +2,13 @@
 
 #include "core/parallel.h"
 #include "core/vector.h"
+#include "frame/adjoint.h"
 #include "frame/gradient_density.h"
 #include "frame/gradient_faces.h"
+#include "frame/gradient_nodes.h"
 #include "spectral/quantity.h"
 
 #include <string.h>
-
-/* Uploads d loss / d intensities in the precision of the raster. */
-static skg_status send_adjoint(skg_job *job, const struct skg_gradient_work *work) {
-    const skg_recipe *recipe = job->recipe;
-    skg_machine *machine = job->machine;
-    const int64_t count = skg_model_sums(&recipe->model) * recipe->view.rows * recipe->view.columns;
-    float *rounded = NULL;
-    if (skg_recipe_kernel_precision(recipe) == SKG_PRECISION_DOUBLE)
-        return skg_buffer_write(machine->context, &machine->gradient.adjoint,
-                                count * (int64_t)sizeof *work->adjoint, work->adjoint, "adjoint");
-    SKG_TRY(skg_staging_take(&job->staging, count, sizeof *rounded, "adjoint", &rounded));
-    for (int64_t i = 0; i < count; i++) rounded[i] = (float)work->adjoint[i];
-    return skg_buffer_write(machine->context, &machine->gradient.adjoint, count * (int64_t)sizeof *rounded,
-                            rounded, "adjoint");
-}
 
 /* Adds the sums of every part to its twist, and to those of all parts. */
 static void add_sums(int64_t parts, const skg_force_sums *sums, double *poses, skg_force_sums *all) {
@@ -231,7 +218,7 @@ skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums
     skg_attenuation attenuation = machine->images;
     SKG_TRY(check_places(pass));
     memcpy(attenuation.window, pass->window, sizeof attenuation.window);
-    SKG_TRY(send_adjoint(job, job->gradient));
+    SKG_TRY(skg_adjoint_send(job, job->gradient->adjoint));
     SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
     return skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, of_planes,
                                    memory->adjoint.memory, memory->weights.memory, memory->most.memory,
@@ -263,8 +250,11 @@ skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64
     const skg_status status = add_gathered(job, work, number, pass, of_parts);
     skg_free(&of_parts);
     SKG_TRY(status);
-    if (!gradient->wanted.densities || !skg_gradient_needs_lengths(gradient, pass->scene->count))
-        return SKG_OK;
-    SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
-    return skg_gradient_keep_planes(job, pass);
+    if (gradient->wanted.densities && skg_gradient_needs_lengths(gradient, pass->scene->count)) {
+        SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
+        SKG_TRY(skg_gradient_keep_planes(job, pass));
+    }
+    if (!gradient->wanted.attenuations) return SKG_OK;
+    memset(gradient->needs_lengths, 1, (size_t)pass->scene->count);
+    return skg_gradient_keep_nodes(job, pass, sums, factor);
 }

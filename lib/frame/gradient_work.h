@@ -18,6 +18,10 @@ struct skg_gradient_work {
     double view[9];         /* by the source and by the twist of the detector */
     /* [planes of the model][rows][row_stride] by the mm of a pass, if densities are wanted; freed by the caller */
     double *planes;
+    int64_t node_count;
+    double *attenuations; /* [parts][nodes] */
+    /* the planes of rays of all nodes of the model, by the exponent of each, if attenuations are wanted; freed by the caller */
+    double *nodes;
     int32_t forward; /* 1: the derivative of the image along `direction` instead */
     int32_t reserved;
     skg_direction direction;

@@ -71,24 +71,31 @@ static void add_force(const skg_face_moments *faces, const face_corner *corner, 
             faces->pose[k] * force[0] + faces->pose[4 + k] * force[1] + faces->pose[8 + k] * force[2];
 }
 
-/* A face that contains rays. Its normal is turned outward: the mesh grows where it moves along it. */
-static void add_edge_on(const skg_face_moments *faces, int64_t face, skg_force_sums *sums, double *vertices) {
-    face_corner corners[3];
-    double seen[3][3], moments[3] = {0}, across[3], force[3], side[2][3], normal[3];
-    for (int k = 0; k < 3; k++) {
-        find_corner(faces, vertex_of(faces, face, k), &corners[k]);
-        memcpy(seen[k], corners[k].seen, sizeof seen[k]);
-    }
-    for (int k = 0; k < 2; k++) skg_add_scaled(corners[k + 1].at, -1, corners[0].at, side[k]);
-    skg_cross(side[0], side[1], normal);
+void skg_face_outward(const skg_face_moments *faces, double at[3][3], double normal[3]) {
     const double *pose = faces->pose;
     const double x[3] = {pose[0], pose[4], pose[8]}, y[3] = {pose[1], pose[5], pose[9]},
                  z[3] = {pose[2], pose[6], pose[10]};
+    double side[2][3], across[3];
+    for (int k = 0; k < 2; k++) skg_add_scaled(at[k + 1], -1, at[0], side[k]);
+    skg_cross(side[0], side[1], normal);
     skg_cross(y, z, across);
     const int outward = (skg_dot(x, across) < 0) == (faces->mesh->orientation < 0);
+    if (!outward) skg_scale_vector(-1, normal, normal);
+}
+
+/* A face that contains rays. */
+static void add_edge_on(const skg_face_moments *faces, int64_t face, skg_force_sums *sums, double *vertices) {
+    face_corner corners[3];
+    double at[3][3], seen[3][3], moments[3] = {0}, force[3], normal[3];
+    for (int k = 0; k < 3; k++) {
+        find_corner(faces, vertex_of(faces, face, k), &corners[k]);
+        memcpy(at[k], corners[k].at, sizeof at[k]);
+        memcpy(seen[k], corners[k].seen, sizeof seen[k]);
+    }
+    skg_face_outward(faces, at, normal);
     skg_steep_add(faces->camera, seen, faces->weight, faces->weight_user, moments);
     for (int k = 0; k < 3; k++) {
-        skg_scale_vector(outward ? moments[k] : -moments[k], normal, force);
+        skg_scale_vector(moments[k], normal, force);
         if (moments[k] != 0) add_force(faces, &corners[k], force, sums, vertices);
     }
 }

@@ -9,7 +9,7 @@
 #include "geometry/steep.h"
 #include "mesh/mesh.h"
 
-/* The faces of a part. For slopes (geometry/slopes.h) what follows `source` is not used. */
+/* The faces of a part. Slopes (geometry/slopes.h) use neither the moments nor their unit and pixel. */
 typedef struct {
     const skg_camera *camera;
     const skg_mesh *mesh;
@@ -31,6 +31,9 @@ typedef struct {
     double along[3];        /* of t F; with a parallel beam of (t - 1) F */
     double pixel_torque[3]; /* of t p x F, p the pixel that sees the corner; with a parallel beam of p x F */
 } skg_force_sums;
+
+/* The normal of a face, twice its area long, turned outward: the mesh grows where it moves along it. at: corners in the world */
+void skg_face_outward(const skg_face_moments *faces, double at[3][3], double normal[3]);
 
 /* Adds up the faces of parts. vertices: [count] NULL or [mesh->vertices][3] the derivatives by the positions of the mesh, which are
  * added to; all of those at one place go to the first of them. NULL: of no part. sums: [count] result */

@@ -24,33 +24,72 @@ static void find_velocity(const skg_face_moments *faces, const skg_velocities *v
                                         : (1 - t) * v->source[k] + t * v->detector[k] + of_pixel[k];
 }
 
-void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
-                     double *slopes) {
-    const skg_camera *camera = faces->camera;
-    for (int64_t f = 0; f < faces->mesh->triangles; f++) {
-        double at[3][3], t[3], side[2][3], normal[3], from[3], relative[3];
-        int64_t vertices[3];
-        for (int k = 0; k < 3; k++) {
-            const int32_t number = faces->corners[3 * f + k];
-            double local[3], seen[3];
-            vertices[k] = faces->source ? faces->source[number] : number;
-            skg_mesh_vertex(faces->mesh, vertices[k], local);
-            for (int r = 0; r < 3; r++)
-                at[k][r] = skg_dot(faces->pose + 4 * r, local) + faces->pose[4 * r + 3];
-            skg_camera_see(camera, at[k], seen);
-            t[k] = seen[2];
+/* A face in the world, and as its camera sees it. */
+typedef struct {
+    int64_t vertices[3];
+    double at[3][3], seen[3][3];
+} placed_face;
+
+static void place_face(const skg_face_moments *faces, int64_t face, placed_face *f) {
+    for (int k = 0; k < 3; k++) {
+        const int32_t number = faces->corners[3 * face + k];
+        double local[3];
+        f->vertices[k] = faces->source ? faces->source[number] : number;
+        skg_mesh_vertex(faces->mesh, f->vertices[k], local);
+        for (int r = 0; r < 3; r++)
+            f->at[k][r] = skg_dot(faces->pose + 4 * r, local) + faces->pose[4 * r + 3];
+        skg_camera_see(faces->camera, f->at[k], f->seen[k]);
+    }
+}
+
+/* Whether the device sees a face as a line, narrower than 1e-4 pixels, or may do so after rounding. A face that is somewhat wider is
+ * integrated as exactly, so that more of them do no harm. */
+static int is_edge_on(const skg_camera *camera, const placed_face *f, double rounding) {
+    double at[3][2], longest = 0, far = 0;
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 2; c++) {
+            at[k][c] = f->seen[k][c] / (camera->parallel ? 1 : f->seen[k][2]);
+            far = fmax(far, fabs(at[k][c]));
         }
-        for (int k = 0; k < 2; k++) skg_add_scaled(at[k + 1], -1, at[0], side[k]);
-        skg_cross(side[0], side[1], normal);
-        skg_add_scaled(at[0], -1, camera->origin, from);
+    for (int k = 0; k < 3; k++)
+        for (int c = 0; c < 2; c++) longest = fmax(longest, fabs(at[k][c] - at[(k + 1) % 3][c]));
+    const double twice_area =
+        (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) - (at[2][0] - at[0][0]) * (at[1][1] - at[0][1]);
+    return fabs(twice_area) <= (1e-4 + 32 * rounding * far) * longest;
+}
+
+void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
+                     double rounding, double *slopes, uint8_t *edge_on) {
+    const skg_camera *camera = faces->camera;
+    for (int64_t face = 0; face < faces->mesh->triangles; face++) {
+        placed_face f;
+        double normal[3], from[3], relative[3];
+        place_face(faces, face, &f);
+        edge_on[face] = (uint8_t)is_edge_on(camera, &f, rounding);
+        skg_face_outward(faces, f.at, normal);
+        skg_add_scaled(f.at[0], -1, camera->origin, from);
         const double height = skg_dot(normal, camera->parallel ? camera->first : from);
         for (int k = 0; k < 3; k++) {
-            find_velocity(faces, velocities, vertices[k], at[k], t[k], relative);
+            const double t = f.seen[k][2];
+            find_velocity(faces, velocities, f.vertices[k], f.at[k], t, relative);
             const double slope =
-                factor * skg_dot(normal, relative) / (camera->parallel ? height : height * t[k]);
-            slopes[3 * f + k] = isfinite(slope) ? slope : 0;
+                factor * skg_dot(normal, relative) / (camera->parallel ? height : height * t);
+            slopes[3 * face + k] = isfinite(slope) && !edge_on[face] ? slope : 0;
         }
     }
+}
+
+void skg_slopes_spread(const skg_face_moments *faces, const skg_velocities *velocities, int64_t face,
+                       double *values) {
+    placed_face f;
+    double normal[3], relative[3], slopes[3];
+    place_face(faces, face, &f);
+    skg_face_outward(faces, f.at, normal);
+    for (int k = 0; k < 3; k++) {
+        find_velocity(faces, velocities, f.vertices[k], f.at[k], f.seen[k][2], relative);
+        slopes[k] = skg_dot(normal, relative);
+    }
+    skg_steep_spread(faces->camera, f.seen, faces->weight, faces->weight_user, slopes, values);
 }
 
 double skg_slope_of_ray(const skg_camera *camera, const skg_velocities *velocities, const double ray[3]) {

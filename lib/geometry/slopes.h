@@ -14,9 +14,18 @@ typedef struct {
 } skg_velocities;
 
 /* Fills the slopes at the corners of a part's faces, [triangles][3]: n . (v - ray) / (h t_k) with the velocity v of the corner and
- * that of the ray there; with a parallel beam n . (v - ray) / (n . d). Times `factor`. */
+ * that of the ray there; with a parallel beam n . (v - ray) / (n . d). Times `factor`.
+ *
+ * edge_on   [triangles] result: 1 for faces that are seen as lines, whose slopes are 0: skg_slopes_spread adds them. They are those
+ *           of kernels/gradient.cl, and a few that are slightly wider
+ * rounding  of the places of corners on the device, relative */
 void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
-                     double *slopes);
+                     double rounding, double *slopes, uint8_t *edge_on);
+
+/* Adds the derivatives of the means of pixels by a face that is seen as a line, with the weights of `faces`.
+ * values: [camera->rows][camera->columns] */
+void skg_slopes_spread(const skg_face_moments *faces, const skg_velocities *velocities, int64_t face,
+                       double *values);
 
 /* The derivative of |D| over |D|, where D goes from the source to a pixel. */
 double skg_slope_of_ray(const skg_camera *camera, const skg_velocities *velocities, const double ray[3]);

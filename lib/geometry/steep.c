@@ -82,12 +82,13 @@ static void add_polygon(const skg_camera *camera, const double seen[3][3], const
     }
 }
 
-void skg_steep_add(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
-                   double moments[3]) {
+/* The integrals of a face over the pixels that see it: their sum, or to each pixel what slopes at the corners make of its own.
+ * values: NULL: the sum. */
+static void walk(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
+                 const double slopes[3], double *values, double sums[3]) {
     const double(*at)[3] = (const double(*)[3])seen;
     const polygon face = {.count = 3, .b = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
     int64_t columns[2], rows[2];
-    double sums[3] = {0};
     range_of(camera, at, &face, 0, columns);
     for (int64_t c = columns[0]; c <= columns[1]; c++) {
         const polygon left = cut(camera, at, &face, 0, (double)c - 0.5, 1);
@@ -96,11 +97,25 @@ void skg_steep_add(const skg_camera *camera, double seen[3][3], skg_steep_weight
         range_of(camera, at, &strip, 1, rows);
         for (int64_t r = rows[0]; r <= rows[1]; r++) {
             const double of_pixel = weight(user, c, r);
+            double own[3] = {0};
             if (of_pixel == 0) continue;
             const polygon above = cut(camera, at, &strip, 1, (double)r - 0.5, 1);
             const polygon pixel = cut(camera, at, &above, 1, (double)r + 0.5, -1);
-            add_polygon(camera, at, &pixel, of_pixel, sums);
+            add_polygon(camera, at, &pixel, of_pixel, values ? own : sums);
+            for (int k = 0; values && k < 3; k++)
+                values[r * camera->columns + c] += slopes[k] * own[k] / fabs(camera->determinant);
         }
     }
+}
+
+void skg_steep_add(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
+                   double moments[3]) {
+    double sums[3] = {0};
+    walk(camera, seen, weight, user, NULL, NULL, sums);
     for (int k = 0; k < 3; k++) moments[k] += sums[k] / fabs(camera->determinant);
+}
+
+void skg_steep_spread(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
+                      const double slopes[3], double *values) {
+    walk(camera, seen, weight, user, slopes, values, NULL);
 }

@@ -17,4 +17,8 @@ typedef double (*skg_steep_weight)(const void *user, int64_t column, int64_t row
 void skg_steep_add(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
                    double moments[3]);
 
+/* Adds to every pixel of [camera->rows][camera->columns] its own weight times the same integrals, times slopes[k] at corner k. */
+void skg_steep_spread(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
+                      const double slopes[3], double *values);
+
 #endif

@@ -11,8 +11,9 @@
 enum { GROUP = 64, SLICES = 32, CLAIM = 1024 }; /* CLAIM: triangles of a work-item of a processor */
 
 void skg_gradient_memory_release(skg_gradient_memory *memory) {
-    skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,    &memory->scales,
-                                   &memory->moments, &memory->slopes,  &memory->lengths, &memory->faces};
+    skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,
+                                   &memory->scales,  &memory->moments, &memory->slopes,
+                                   &memory->lengths, &memory->faces,   &memory->node};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     skg_free(&memory->gathered);
     skg_free(&memory->corners);
@@ -20,7 +21,8 @@ void skg_gradient_memory_release(skg_gradient_memory *memory) {
 
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
     return memory->adjoint.bytes + memory->weights.bytes + memory->most.bytes + memory->scales.bytes +
-           memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes + memory->faces.bytes;
+           memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes + memory->faces.bytes +
+           memory->node.bytes;
 }
 
 /* One gather. */

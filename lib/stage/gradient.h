@@ -10,7 +10,7 @@
 
 /* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces;
+    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces, node;
     int64_t *gathered; /* [triangles][3] the moments on the host */
     int32_t *corners;  /* [triangles of all meshes][3] as the device has them */
 } skg_gradient_memory;

@@ -24,7 +24,7 @@ def path() -> str:
     return found
 
 
-def cost(source: Source, quick: bool, within: float, frames: int) -> dict[str, Any]:
+def cost(source: Source, quick: bool, within: float, frames: int, sensitivity: bool) -> dict[str, Any]:
     with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
         scene = source.path
         if scene is None:
@@ -33,6 +33,8 @@ def cost(source: Source, quick: bool, within: float, frames: int) -> dict[str, A
         words = ["cost", scene, "--json", "--within", f"{within:g}", "--frames", str(frames)]
         if quick:
             words.append("--quick")
+        if sensitivity:
+            words.append("--sensitivity")
         if source.lenient:
             words.append("--lenient")
         for setting in source.settings:

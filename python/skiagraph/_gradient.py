@@ -10,13 +10,13 @@ from numpy.typing import ArrayLike, NDArray
 from ._frames import Batch
 from ._images import number_frames
 from ._interface import OK, ArgumentError, SceneError
-from ._library import check, ffi, lib, struct, text
+from ._library import check, ffi, integer, lib, struct, text
 
 if TYPE_CHECKING:
     from ._state import State
 
 #: What a gradient can be taken of.
-NAMES = ("poses", "source", "detector", "vertices", "density")
+NAMES = ("poses", "source", "detector", "vertices", "density", "mu")
 
 
 class Differentiable:
@@ -29,10 +29,11 @@ class Differentiable:
         """The derivative of a number, the loss, by the scene.
 
         weights: the derivative of the loss by the image, [row, column], with bands [band, row, column]. wrt: of "poses",
-        "source", "detector", "vertices", "density". quantity and options: of the image, as in image().
+        "source", "detector", "vertices", "density", "mu". quantity and options: of the image, as in image().
 
         Returns a dictionary with these keys. "poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label:
-        [n, 3]} in the axes of the mesh, "density": {label: number} by the density over the present one. A twist is (tx, ty,
+        [n, 3]} in the axes of the mesh, "density": {label: number} by the density over the present one, "mu": {label: [energies]} by the attenuation coefficient in
+        1/mm at each of plan()["energies"], for the price of an image for each part. A twist is (tx, ty,
         tz in mm, rx, ry, rz in rad) in world axes about the world's origin; the image counts as if pose' = exp(twist) pose.
         docs/derivatives.md says what is exact, what counts as constant and what is refused.
 
@@ -91,10 +92,26 @@ def _gradient(state: State, weights: NDArray[np.float64], wrt: list[str], option
             setattr(wanted, "densities" if name == "density" else name, _pointer(array))
     if vertices:
         wanted.vertices = keep
-    _run(state, options, lambda plan, frame: lib.skg_plan_gradient(plan, frame, adjoint, wanted))
+    coefficients = np.zeros((len(labels), 0))
+
+    def work(plan: Any, frame: Any) -> int:
+        nonlocal coefficients
+        status: int = 0
+        for _ in range(2 if "mu" in wrt else 1):  # the first call may find that changed materials have other energies
+            wanted.nodes = integer("skg_plan_node_count", plan)
+            coefficients = np.zeros((len(labels), wanted.nodes))
+            if "mu" in wrt:
+                wanted.attenuations = _pointer(coefficients)
+            status = lib.skg_plan_gradient(plan, frame, adjoint, wanted)
+            if status == OK or integer("skg_plan_node_count", plan) == wanted.nodes:
+                break
+        return status
+
+    _run(state, options, work)
     found: dict[str, Any] = {"poses": dict(zip(labels, poses)), "source": source, "detector": detector,
                              "vertices": dict(zip(labels, vertices)),
-                             "density": {label: float(x) for label, x in zip(labels, densities)}}
+                             "density": {label: float(x) for label, x in zip(labels, densities)},
+                             "mu": dict(zip(labels, coefficients))}
     return {name: found[name] for name in wrt}
 
 

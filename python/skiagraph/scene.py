@@ -348,11 +348,12 @@ class Scene(_gradient.Differentiable):
 
     # Costs
 
-    def cost(self, *, quick: bool = False, within: float = 60, frames: int = 1) -> dict[str, Any]:
+    def cost(self, *, quick: bool = False, within: float = 60, frames: int = 1, sensitivity: bool = False) -> dict[str, Any]:
         """What accuracy costs: errors and times of the scene's settings, as the command `skiagraph cost` measures them.
 
         within: the time for measuring, in seconds; frames: the length of the batches that are timed. Of the result, "summary"
-        says it in a sentence, and "sources" lists each source of error and what halving it costs.
+        says it in a sentence, and "sources" lists each source of error and what halving it costs. sensitivity: "sensitivity" lists
+        how much the image changes when each part moves by a mm, as a fraction of the open beam.
 
         The command has to be installed. It reads the scene as it was loaded: a scene that was changed since is refused.
         """
@@ -360,7 +361,7 @@ class Scene(_gradient.Differentiable):
             if self._state.is_changed():
                 raise SceneError("the scene was changed since it was read, and cost() compares it as it was read; put "
                                  "the changes into the file, the dictionary or settings")
-        return _command.cost(self._state.source, quick, within, frames)
+        return _command.cost(self._state.source, quick, within, frames, sensitivity)
 
     # Life
 

@@ -183,11 +183,93 @@ START_TEST(sides_of_a_box_change_the_mean) {
 }
 END_TEST
 
+/* Along a direction the same sides change the pixels that see them: those of the right side gain depth over pitch for a mm, those of
+ * the left side lose it, by their share of its height. */
+START_TEST(sides_of_a_box_change_pixels_along_a_direction) {
+    static double found[PIXELS];
+    const double x = 21.3, y = 17.9, z = 33, pitch = 4;
+    double twist[6] = {1};
+    skg_direction moving;
+    int64_t saturated = -1;
+    solid box = solid_box(x, y, z);
+    skg_view view = run_view(SIDE, pitch);
+    view.projection = SKG_PROJECTION_PARALLEL;
+    scene = run_scene(&box, NULL);
+    skg_plan *plan = run_plan(
+        scene, &view,
+        (run_choice){.precision = _i && run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                     .quantity = SKG_QUANTITY_ATTENUATION});
+    skg_direction_init(&moving);
+    moving.poses = twist;
+    ck_skg(skg_plan_derivative(plan, NULL, &moving, found, &saturated));
+    ck_assert_int_eq(saturated, 0);
+    for (int p = 0; p < PIXELS; p++) {
+        const double left = (p % SIDE - SIDE / 2) * pitch, low = (p / SIDE - SIDE / 2) * pitch;
+        const double high = fmin(low + pitch, y / 2), share = fmax(high - fmax(low, -y / 2), 0) / pitch;
+        const int sign = (x / 2 > left && x / 2 < left + pitch) - (-x / 2 > left && -x / 2 < left + pitch);
+        /* mu is 0.1 per mm, in single precision */
+        ck_assert_double_eq_tol(found[p], sign * share * 0.1 * z / pitch, 1e-5 * 0.1 * z / pitch);
+    }
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+    solid_free(&box);
+}
+END_TEST
+
+/* The sides of a box that the source stands in the plane of, and any direction: the sum over pixels of weights times the derivative is
+ * the gradient of the weights, along that direction. */
+START_TEST(a_derivative_of_sides_is_along_the_gradient) {
+    static double adjoint[PIXELS], found[PIXELS];
+    const double x = 21.3, y = 17.9, pitch = 4;
+    double twist[6] = {0.3, -0.8, 0.4, 0.01, -0.02, 0.03}, moves[24], source[3] = {0.5, 1.1, -0.7};
+    double detector[6] = {-0.2, 0.6, 0.9, 0.02, 0.01, -0.03};
+    double poses[6], vertices[24], of_source[3], of_detector[6], sum = 0, size = 0, expected = 0;
+    double *const of_parts[1] = {vertices};
+    const double *const moves_of_parts[1] = {moves};
+    skg_direction moving;
+    skg_gradient gradient;
+    solid box = solid_box(x, y, 33);
+    skg_view view = run_view(SIDE, pitch);
+    if (_i & 1)
+        view.projection = SKG_PROJECTION_PARALLEL;
+    else
+        view.source[0] = x / 2, view.source[1] = -y / 2;
+    scene = run_scene(&box, NULL);
+    skg_plan *plan = run_plan(
+        scene, &view,
+        (run_choice){.precision = _i & 2 && run_has_double() ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                     .quantity = SKG_QUANTITY_ATTENUATION});
+    skg_direction_init(&moving);
+    skg_gradient_init(&gradient);
+    fill_adjoint(PIXELS, adjoint);
+    const skg_adjoint given = adjoint_of(adjoint);
+    for (int k = 0; k < 24; k++) moves[k] = sin(k);
+    moving.poses = twist, moving.source = source, moving.detector = detector;
+    moving.vertices = moves_of_parts;
+    gradient.poses = poses, gradient.source = of_source, gradient.detector = of_detector;
+    gradient.vertices = of_parts;
+    ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
+    ck_skg(skg_plan_derivative(plan, NULL, &moving, found, NULL));
+    for (int k = 0; k < 6; k++) expected += twist[k] * poses[k] + detector[k] * of_detector[k];
+    for (int k = 0; k < 3; k++) expected += source[k] * of_source[k];
+    for (int k = 0; k < 24; k++) expected += moves[k] * vertices[k];
+    for (int p = 0; p < PIXELS; p++) sum += adjoint[p] * found[p], size += fabs(adjoint[p] * found[p]);
+    ck_assert_double_gt(size, 1);
+    /* Weights and slopes in the precision of the plan; a few faces are lines to the one and not to the other */
+    ck_assert_double_eq_tol(sum, expected, (_i & 2 && run_has_double() ? 1e-9 : 1e-5) * size);
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+    solid_free(&box);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_loop_test(tests, gradients_are_those_of_differences, 0, sizeof settings / sizeof *settings);
     tcase_add_test(tests, values_change_by_the_integral_of_the_gradient);
     tcase_add_loop_test(tests, sides_of_a_box_change_the_mean, 0, 2);
+    tcase_add_loop_test(tests, sides_of_a_box_change_pixels_along_a_direction, 0, 2);
+    tcase_add_loop_test(tests, a_derivative_of_sides_is_along_the_gradient, 0, 4);
 }
 
 SKG_SUITE_MAIN("gradient", add_tests)

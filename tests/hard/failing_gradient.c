@@ -2,7 +2,7 @@
 
 #include <stddef.h>
 
-enum { PARTS = 3, VERTICES = 512, PIXELS = 24 * 18, CHANNELS = 2 };
+enum { PARTS = 3, VERTICES = 512, PIXELS = 24 * 18, CHANNELS = 2, NODES = 256 };
 
 #define TRY(call)                                                                                            \
     do {                                                                                                     \
@@ -11,7 +11,8 @@ enum { PARTS = 3, VERTICES = 512, PIXELS = 24 * 18, CHANNELS = 2 };
     } while (0)
 
 /* In static memory: Check would allocate. */
-static double poses[PARTS][6], vertices[3 * VERTICES], densities[PARTS], source[3], detector[6];
+static double poses[PARTS][6], vertices[3 * VERTICES], densities[PARTS], source[3], detector[6],
+    attenuations[PARTS * NODES];
 
 static skg_status by_everything(skg_plan *plan, const skg_view *view, void *weights, int64_t channels) {
     double *const of_parts[PARTS] = {NULL, vertices, NULL};
@@ -29,6 +30,9 @@ static skg_status by_everything(skg_plan *plan, const skg_view *view, void *weig
     gradient.detector = detector;
     gradient.vertices = of_parts;
     gradient.densities = densities;
+    TRY(skg_plan_node_count(plan, &gradient.nodes));
+    if (gradient.nodes > NODES) return SKG_ERR_ARGUMENT;
+    gradient.attenuations = attenuations;
     return skg_plan_gradient(plan, NULL, &adjoint, &gradient);
 }
 

@@ -257,7 +257,7 @@ static int draw_picture(skg_context *context, const skg_scene *scene, const skg_
 }
 
 /* The gradient of the sum of an image: whatever moves with everything else changes nothing. */
-static int makes_gradient(skg_plan *plan, const group *g) {
+static int makes_gradient(skg_plan *plan) {
     static double adjoint[PIXELS];
     double poses[12], source[3], detector[6], densities[2];
     skg_adjoint given;
@@ -275,9 +275,9 @@ static int makes_gradient(skg_plan *plan, const group *g) {
     direction.poses = twists;
     TRY(skg_plan_derivative(plan, NULL, &direction, along, NULL));
     for (int p = 0; p < PIXELS; p++) sum += along[p];
-    /* The same hits, added up in another order in single precision. The sides of a box that contain rays count in one alone. */
+    /* The same hits, added up in another order in single precision. */
     const double error = 1e-4 * (fabs(sum) + fabs(source[0]));
-    if (!g->parallel && !(fabs(sum - poses[0]) <= error)) return 0;
+    if (!(fabs(sum - poses[0]) <= error)) return 0;
     for (int k = 0; k < 3; k++) {
         const double size = fabs(poses[k]) + fabs(poses[6 + k]) + fabs(source[k]) + fabs(detector[k]);
         /* Single precision: each of some dozen faces is known to 1e-6 of its place in the picture. */
@@ -310,7 +310,7 @@ int main(int count, char **words) {
     const double most = g->quantity == SKG_QUANTITY_ATTENUATION ? 104 : 2 * 10500;
     const int good =
         lies_between(image, g->bands ? g->bands * PIXELS : PIXELS, g->noise ? -100 : -1e-3, most);
-    const int also_good = !g->gradient || makes_gradient(plan, g);
+    const int also_good = !g->gradient || makes_gradient(plan);
     skg_plan_release(&plan);
     skg_scene_release(&scene);
     skg_context_release(&context);

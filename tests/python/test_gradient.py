@@ -54,6 +54,19 @@ def test_vertices_add_up_to_the_translation(scene):
                                    rtol=1e-9, atol=1e-9 * np.abs(found["poses"][label]).max())
 
 
+def test_coefficients_make_up_the_density(scene):
+    scene.beam = sk.Beam([40, 60, 90], [50, 80, 30])
+    given = weights((24, 32))
+    for label, material in (("inner", "Al"), ("inner", "Cu")):
+        scene[label].material = material
+        found = scene.gradient(given, wrt=("density", "mu"), precision="double")
+        energies = [kev for kev, _ in scene.plan(precision="double")["energies"]]
+        assert energies == [40, 60, 90] and found["mu"]["outer"].shape == (3,)
+        for name, matter in (("outer", "water"), ("inner", material)):
+            # a density scales the coefficients of all energies; attenuation() is in 1/cm
+            assert found["mu"][name] @ sk.Material(matter).attenuation(energies) / 10 == pytest.approx(found["density"][name], rel=1e-6)
+
+
 def test_forward_and_reverse_agree(scene):
     given = weights((24, 32))
     rng = np.random.default_rng(2)

@@ -187,7 +187,10 @@ def test_costs_are_the_commands(path):
         pytest.skip("the command skiagraph is not on the path")
     scene = sk.Scene(path, settings={"Detector.NumberOfPixels": [8, 8]})
     cost = scene.cost(quick=True)
-    assert {"points", "advice"} <= cost.keys()
+    assert {"points", "advice"} <= cost.keys() and cost["sensitivity"] is None
+    found = scene.cost(quick=True, within=1, sensitivity=True)["sensitivity"]["parts"]
+    assert sorted(part["part"] for part in found) == sorted(part.label for part in scene)
+    assert found[0]["largest"] > found[-1]["largest"] >= 0  # the skin's sides are beside the image
     scene["bone"].material = "water"
     with pytest.raises(sk.SceneError, match="was changed"):
         scene.cost()

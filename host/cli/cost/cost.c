@@ -90,6 +90,7 @@ static int read_flags(cost_study *study) {
     const cli_arguments *arguments = study->arguments;
     double within = 60;
     study->quick = cli_given(arguments, &cli_flag_cost_quick);
+    study->sensitivity.wanted = cli_given(arguments, &cli_flag_cost_sensitivity);
     study->frames = 1;
     int exit_status = cli_number(arguments, &cli_flag_cost_within, 1, 86400, &within);
     if (exit_status == CLI_DONE)
@@ -136,7 +137,9 @@ int cli_cost(const cli_arguments *arguments) {
         cli_stop_gently();
         cli_progress_forecast("opening the scene", 0, 0, study->within_ms);
         exit_status = cost_open(study);
-        study->begun_ms = cli_now_ms(); /* opening takes the time that every image of the scene takes once */
+        if (exit_status == CLI_DONE) exit_status = cost_measure_sensitivity(study);
+        study->begun_ms =
+            cli_now_ms(); /* opening takes the time that every image takes once; sensitivities take their own */
         if (exit_status == CLI_DONE) exit_status = measure(study);
         cli_progress_end();
         if (exit_status == CLI_DONE) exit_status = write_outputs(study);

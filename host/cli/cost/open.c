@@ -96,6 +96,7 @@ void cost_close(cost_study *study) {
         free(study->sources[i].command);
         free(study->coarse[i].difference);
     }
+    free(study->sensitivity.parts);
     free(study->batch);
     free(study->pulse_ms);
     for (int i = 0; i < COST_TOLERANCES; i++) {

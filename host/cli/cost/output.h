@@ -15,6 +15,9 @@ json_t *cost_json(const cost_study *study);
 /* The object under the key "scatter". */
 json_t *cost_scatter_json(const cost_study *study);
 
+/* The object under the key "sensitivity"; null: it was not asked for. */
+json_t *cost_sensitivity_json(const cost_study *study);
+
 /* The table of all points as .csv. The caller frees the text; NULL if memory is exhausted. */
 char *cost_csv(const cost_study *study);
 

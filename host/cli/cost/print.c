@@ -82,9 +82,37 @@ static void print_trust(const cost_study *study) {
                1e-3 * study->within_ms);
 }
 
+/* To three decimals, and 0 without a sign. */
+static double steady(double value) {
+    return round(1e3 * value) / 1e3 + 0.0;
+}
+
+/* How much the image changes when a part moves. */
+static void print_sensitivity(const cost_study *study) {
+    const cost_sensitivity *s = &study->sensitivity;
+    char text[4][48];
+    if (!s->wanted) return;
+    printf("\n  %-21s %13s %13s %13s %13s  %s\n", "rms change for a mm", "along x", "along y", "along z",
+           "at most", "along");
+    for (int64_t i = 0; i < s->count && s->parts[i].is_known; i++) {
+        const cost_part_sensitivity *its = &s->parts[i];
+        const char *label = "";
+        skg_scene_part_label_get(study->session.scene, its->part, &label);
+        for (int k = 0; k < 4; k++)
+            cost_percent(k < 3 ? its->along[k] : its->largest, text[k], sizeof text[k]);
+        printf("  %-21s %13s %13s %13s %13s  (%.3f, %.3f, %.3f)\n", label, text[0], text[1], text[2], text[3],
+               steady(its->direction[0]), steady(its->direction[1]), steady(its->direction[2]));
+    }
+    if (*s->refusal) print_wrapped(s->refusal);
+    if (s->saturated)
+        printf("  %" PRId64 " slopes of faces were cut off, and the changes are larger than printed\n",
+               s->saturated);
+}
+
 void cost_print(const cost_study *study) {
     print_wrapped(study->summary);
     print_sources(study);
+    print_sensitivity(study);
     printf("\n  %-7s %-18s %s\n", "error", study->frames > 1 ? "ms a frame" : "ms an image",
            study->priced ? "fastest setting" : "a setting with that error");
     for (int i = 0; i < COST_TOLERANCES; i++) print_advice(study, &study->advice[i]);

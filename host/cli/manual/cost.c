@@ -18,6 +18,13 @@ const cli_flag cli_flag_cost_frames = {
     "Times batches of N images, 1 to 4096 (default 1), and gives the time of one: what an image costs in a sequence or a scan.",
     NULL, CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_cost_sensitivity = {
+    "--sensitivity", NULL,
+    "Also prints how much the image changes when each part moves: the root mean square over all pixels of the derivative, as a "
+    "share of the open beam for a mm along x, y and z and along the direction that changes it most. Takes three derivatives for "
+    "each part, before SECONDS begin.",
+    NULL, CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Computes the scene's image at many settings and compares each with the best that the device can give. "
     "Precision, tolerance and the tube's bins are compared with double precision and every energy, with the "
@@ -30,7 +37,7 @@ static const char *const text[] = {
     "spread of the times of one image that is computed again and again meanwhile. Above an unrest of 50 % no price is given; errors need "
     "no quiet machine.",
     "Ctrl-C stops the measurement, and what is done is kept and written.",
-    "--json prints {summary, sources, unrest, priced, settings, references, points, advice, notes, ...}; advice names points by their "
+    "--json prints {summary, sources, sensitivity, unrest, priced, settings, references, points, advice, notes, ...}; advice names points by their "
     "number.",
     NULL};
 
@@ -38,6 +45,7 @@ static const cli_flag *const flags[] = {&cli_flag_cost_output,
                                         &cli_flag_cost_within,
                                         &cli_flag_cost_frames,
                                         &cli_flag_cost_quick,
+                                        &cli_flag_cost_sensitivity,
                                         &cli_flag_device,
                                         &cli_flag_strategy,
                                         &cli_flag_set,
@@ -51,6 +59,7 @@ static const cli_flag *const flags[] = {&cli_flag_cost_output,
 static const cli_item examples[] = {
     {"skiagraph cost scene.json -o cost.html", "writes cost.html and cost.csv and prints the result"},
     {"skiagraph cost scene.json --within 10", "measures for 10 seconds"},
+    {"skiagraph cost scene.json --sensitivity --within 1", "which part's place shows most in the image"},
     {"skiagraph cost scene.json --frames 32", "the time of an image of a sequence"},
     {NULL, NULL}};
 

@@ -68,7 +68,8 @@ extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_
     cli_flag_image_band_weight, cli_flag_image_scatter, cli_flag_image_scatter_image,
     cli_flag_image_scatter_sigma;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
-extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames;
+extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames,
+    cli_flag_cost_sensitivity;
 extern const cli_flag cli_flag_devices_test, cli_flag_devices_warm;
 extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output;
 extern const cli_flag cli_flag_distance_map, cli_flag_distance_output, cli_flag_distance_high,

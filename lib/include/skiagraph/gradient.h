@@ -72,6 +72,13 @@ typedef struct {
     /** [parts] by the density of each part over that of its material; NULL: not wanted. In a world, for frames with densities of
      * their own, and for parts that compete by priority it costs an image of path lengths a part. */
     double *densities;
+    /** [parts][nodes] by the attenuation coefficient of the material of each part at each energy of the plan (skg_plan_node_count,
+     * skg_plan_node_get), per 1/mm; NULL: not wanted. It costs an image of path lengths a part, and for each energy a pass over the
+     * image and 8 bytes for each of its rays. A pixel of an attenuation above 87, in precision double above 700, counts as
+     * constant if the plan has several energies. */
+    double *attenuations;
+    /** Number of energies that `attenuations` has memory for: that of the plan. */
+    int64_t nodes;
 } skg_gradient;
 
 SKG_INIT(skg_gradient)
@@ -117,7 +124,7 @@ SKG_INIT(skg_direction)
  *     derivative   result: [channels][rows][columns], in the plan's quantity for a unit of the direction
  *     saturated    result: number of slopes of faces at their corners that were cut off at 2^24 times the mean slope, because the
  *                  sums over hits are 64-bit integers; may be NULL
- *     limits       faces that contain rays add nothing, unlike in skg_plan_gradient
+ *     limits       as above: faces that contain rays change the means of their pixels
  *     errors       as of skg_plan_gradient; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
 SKG_API skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                        double *derivative, int64_t *saturated);

@@ -44,6 +44,17 @@ function list() {
     percent(p.rms_open)]) + "</tr>").join("");
 }
 
+/* How much the image changes when a part moves. */
+function listSensitivity() {
+  const its = study.sensitivity;
+  byId("sensitive").hidden = !its;
+  if (!its) return;
+  document.querySelector("#sensitivity tbody").innerHTML = its.parts.map(p => "<tr>" + [p.part, ...[p.x, p.y, p.z, p.largest].map(percent),
+    p.direction.map(d => d.toFixed(3)).join(", ")].map(cell => "<td>" + plain(cell) + "</td>").join("") + "</tr>").join("");
+  byId("insensitive").textContent = (its.reason || "") + (its.saturated ? its.saturated + " slopes of faces were cut off, and the changes are larger than shown. " : "") +
+    (!its.reason && its.parts.length < its.of ? "Stopped by hand: " + (its.of - its.parts.length) + " parts are missing." : "");
+}
+
 /* Channels of a colour of the style sheet. */
 const channels = name => getComputedStyle(document.documentElement).getPropertyValue(name).trim().match(/^#(..)(..)(..)$/)?.slice(1).map(h => parseInt(h, 16)) || [255, 255, 255];
 
@@ -173,6 +184,7 @@ function listen() {
 head();
 advise();
 list();
+listSensitivity();
 listen();
 listenToKeys();
 setDark(matchMedia("(prefers-color-scheme: dark)").matches);
