@@ -115,7 +115,7 @@ START_TEST(a_gradient_chains_to_the_amplitude_of_the_breath) {
     skg_device_info info;
     skg_device_info_init(&info);
     ck_skg(skg_context_device_get(context, &info));
-    if (!info.has_double) return;
+    if (!info.double_precision) return;
     for (int b = 0; b < 5; b++) render(amplitude + shares[b] * step, &bodies[b]);
     const int64_t used = differentiate(bodies, step, slope);
     for (int p = 0; p < PIXELS; p++) {
