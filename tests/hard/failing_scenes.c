@@ -103,10 +103,10 @@ const effects failing_runs[] = {
      .strategy = SKG_STRATEGY_COPIES,
      .shared = 1,
      .derives = 1},
-    /* and of a parallel beam, along which faces lie; densities of nested parts without priorities; -ln */
+    /* and of a parallel beam, in double, along which faces lie; densities of nested parts without priorities; -ln */
     {.file = "scene.json",
      .settings = {"Samples.sheet.Path=bone.obj", "Samples.sheet.Transform=[[\"Scaling\",0.5,0.5,0.5]]",
-                  "World=Vacuum", "Source.Shape=ParallelBeam"},
+                  "World=Vacuum", "Source.Shape=ParallelBeam", "Precision=double"},
      .strategy = SKG_STRATEGY_COPIES,
      .shared = 1,
      .ratio = 1,
