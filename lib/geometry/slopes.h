@@ -17,7 +17,7 @@ typedef struct {
  * that of the ray there; with a parallel beam n . (v - ray) / (n . d). Times `factor`.
  *
  * edge_on   [triangles] result: 1 for faces that are seen as lines, whose slopes are 0: skg_slopes_spread adds them. They are those
- *           of kernels/gradient.cl, and a few that are slightly wider
+ *           of kernels/gradient.cl, and a few that are slightly wider. Of a part that does not move against the rays: 0
  * rounding  of the places of corners on the device, relative */
 void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
                      double rounding, double *slopes, uint8_t *edge_on);
