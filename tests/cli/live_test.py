@@ -214,8 +214,14 @@ def second_page(path):
         assert "another page" in second.text("refused")["refused"]
         first.frame()
         wish = first.wish(settings={"Source.Position": [8, -400, 4, "mm"]})
-        assert first.frame(wish).wish == second.frame(wish).wish == wish
-        first.find(lambda m: isinstance(m, dict) and "shot" in m and m["wish"] == wish)
+        frame = shot = None
+        while not (frame and shot):  # in either order
+            message = first.receive()
+            if isinstance(message, Frame):
+                frame = frame or (message if message.wish >= wish else None)
+            elif "shot" in message and message["wish"] == wish:
+                shot = message
+        assert frame.wish == second.frame(wish).wish == wish
         third = Page(server)  # is told where source and detector are, without another frame
         assert third.text("shot")["view"]["source"] == [8, -400, 4]
         first.close()

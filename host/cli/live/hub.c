@@ -298,11 +298,16 @@ void live_hub_greeting_set(live_hub *hub, const char *text) {
     replace(hub, &hub->greeting, strdup(text));
 }
 
-void live_hub_tell(live_hub *hub, const char *text) {
-    pthread_mutex_lock(&hub->lock);
+/* Under the lock. */
+static void tell_all(live_hub *hub, const char *text) {
     for (int i = 0; i < LIVE_PAGES_MAX; i++)
         if (hub->clients[i] && hub->clients[i]->sends) tell(hub->clients[i], text);
     pthread_cond_broadcast(&hub->sent);
+}
+
+void live_hub_tell(live_hub *hub, const char *text) {
+    pthread_mutex_lock(&hub->lock);
+    tell_all(hub, text);
     pthread_mutex_unlock(&hub->lock);
 }
 
@@ -317,8 +322,11 @@ void live_hub_shot_tell(live_hub *hub, json_t *object) {
     char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
     json_decref(object);
     if (!text) return;
-    live_hub_tell(hub, text);
-    replace(hub, &hub->shot, text);
+    pthread_mutex_lock(&hub->lock); /* once, so that a page that begins meanwhile misses no text */
+    tell_all(hub, text);
+    free(hub->shot);
+    hub->shot = text;
+    pthread_mutex_unlock(&hub->lock);
 }
 
 void live_hub_show(live_hub *hub, int64_t number, unsigned char *bytes, size_t size) {
