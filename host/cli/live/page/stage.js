@@ -146,6 +146,7 @@ function markAt(x, y) {
 // Chooses what stands at a place of the view, the source and the detector's middle before the parts; or measures from there.
 function pick(x, y) {
   if (tape.on) return addEnd(x, y);
+  draw(); // as addEnd
   const mark = markAt(x, y), part = mark ? -1 : partAt(x, y);
   choose(mark || (part >= 0 ? 'part' : ''), part);
 }

@@ -34,6 +34,7 @@ const placeOfEnd = end => end.kind === 'source' ? scene.view.source : end.kind =
 const nameOfEnd = end => end.kind || scene.parts[end.part].label;
 
 function addEnd(x, y) {
+  draw(); // a key or click may come before the view is drawn as it has just been turned
   const kind = markAt(x, y), found = kind ? null : surfaceAt(x, y);
   if (!kind && !found) return showSentence('There is no part at this place; click parts, the source or the middle of the detector.');
   if (tape.ends.length > 1) tape.ends = [];
