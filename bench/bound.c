@@ -55,7 +55,7 @@ static void work(const settings *set) {
         bench_try(skg_plan_image(plan, &output), "image");
         bench_add(&times, bench_now() - start);
     }
-    printf("%.17g\n", bench_least(&times));
+    printf("%.17g\n", bench_min(&times));
     free(output.data);
     skg_plan_release(&plan);
     scene_close(&scene);
@@ -89,16 +89,16 @@ int main(int count, char **words) {
         bench_add(&bound, measure("true", count, words));
         bench_add(&unbound, measure("false", count, words));
     }
-    const double ratio = bench_least(&bound) / bench_least(&unbound);
+    const double ratio = bench_min(&bound) / bench_min(&unbound);
     printf(
         "Least time of %ld images in each of %ld processes, ms, minimum / median. Target: a ratio of minima within 5 %% of "
         "1.\n\n| OMP_PROC_BIND | ms |\n|---|---:|\n| true | %.4g / %.4g |\n| false | %.4g / %.4g |\n| ratio | %.3f |\n",
-        set.frames, set.repeats, bench_least(&bound), bench_median(&bound), bench_least(&unbound),
+        set.frames, set.repeats, bench_min(&bound), bench_median(&bound), bench_min(&unbound),
         bench_median(&unbound), ratio);
     FILE *csv = set.csv ? bench_open(set.csv) : NULL;
     if (csv)
-        fprintf(csv, "binding,min_ms,median_ms\ntrue,%.5g,%.5g\nfalse,%.5g,%.5g\n", bench_least(&bound),
-                bench_median(&bound), bench_least(&unbound), bench_median(&unbound));
+        fprintf(csv, "binding,min_ms,median_ms\ntrue,%.5g,%.5g\nfalse,%.5g,%.5g\n", bench_min(&bound),
+                bench_median(&bound), bench_min(&unbound), bench_median(&unbound));
     if (csv && fclose(csv) != 0) bench_die("%s could not be written", set.csv);
     return 0;
 }

@@ -142,7 +142,7 @@ static void measure(const settings *set, skg_context *context, contender *base, 
         void *const who[2] = {base, self};
         bench_times times[2] = {0};
         bench_interleave(2, frames, who, (int)(set->repeats + 4) / 5, 5, times);
-        const double without = bench_least(&times[0]), with = bench_least(&times[1]);
+        const double without = bench_min(&times[0]), with = bench_min(&times[1]);
         printf("| %s | %s | %.4g | %.4g / %.4g | %.4g / %.4g | %+.3f | %.2f |\n", kind->name, kind->what,
                self->plan_ms, without, bench_median(&times[0]), with, bench_median(&times[1]), with - without,
                with / without);

@@ -216,14 +216,14 @@ static void compare_exponentials(skg_context *context, skg_scene *scene, const s
     }
     printf("| attenuation of %d energies, %d materials | min ms | median ms | Gexp/s |\n|---|---|---|---|\n",
            ENERGIES, MATERIALS);
-    printf("| library | %.2f | %.2f | %.2f |\n", bench_least(&ours), bench_median(&ours),
-           exponentials / bench_least(&ours) * 1e-6);
-    printf("| OpenCL's exp of eight pixels | %.2f | %.2f | %.2f |\n", bench_least(&theirs),
-           bench_median(&theirs), exponentials / bench_least(&theirs) * 1e-6);
-    printf("\nlibrary over OpenCL's exp: %.2f (target: 1.5)\n\n", bench_least(&theirs) / bench_least(&ours));
+    printf("| library | %.2f | %.2f | %.2f |\n", bench_min(&ours), bench_median(&ours),
+           exponentials / bench_min(&ours) * 1e-6);
+    printf("| OpenCL's exp of eight pixels | %.2f | %.2f | %.2f |\n", bench_min(&theirs),
+           bench_median(&theirs), exponentials / bench_min(&theirs) * 1e-6);
+    printf("\nlibrary over OpenCL's exp: %.2f (target: 1.5)\n\n", bench_min(&theirs) / bench_min(&ours));
     if (csv)
-        fprintf(csv, "attenuate,library,%g,%g\nattenuate,opencl_exp,%g,%g\n", bench_least(&ours),
-                bench_median(&ours), bench_least(&theirs), bench_median(&theirs));
+        fprintf(csv, "attenuate,library,%g,%g\nattenuate,opencl_exp,%g,%g\n", bench_min(&ours),
+                bench_median(&ours), bench_min(&theirs), bench_median(&theirs));
     close_rival(&other);
     close_frames(&own);
 }
@@ -250,10 +250,10 @@ static void compare_tolerances(skg_context *context, skg_scene *scene, const set
         skg_plan_report_init(&report);
         bench_try(skg_plan_report_get(plans[i].plan, &report), "report");
         printf("| %g | %d | %d | %.2g | %.2f | %.2f | %.2f |\n", tolerances[i], (int)report.nodes,
-               (int)report.planes, report.bound, bench_least(&times[i]), bench_median(&times[i]),
-               bench_least(&times[0]) / bench_least(&times[i]));
+               (int)report.planes, report.bound, bench_min(&times[i]), bench_median(&times[i]),
+               bench_min(&times[0]) / bench_min(&times[i]));
         if (csv)
-            fprintf(csv, "tolerance_%g,library,%g,%g\n", tolerances[i], bench_least(&times[i]),
+            fprintf(csv, "tolerance_%g,library,%g,%g\n", tolerances[i], bench_min(&times[i]),
                     bench_median(&times[i]));
         close_frames(&plans[i]);
     }

@@ -119,10 +119,10 @@ int main(int count, char **words) {
     FILE *csv = set.csv ? bench_open(set.csv) : NULL;
     if (csv) fprintf(csv, "stage,first_process_ms,min_ms,median_ms\n");
     for (int k = 0; k < STAGES; k++) {
-        printf("| %s | %.4g | %.4g | %.4g |\n", stages[k], cold[k], bench_least(&times[k]),
+        printf("| %s | %.4g | %.4g | %.4g |\n", stages[k], cold[k], bench_min(&times[k]),
                bench_median(&times[k]));
         if (csv)
-            fprintf(csv, "\"%s\",%.5g,%.5g,%.5g\n", stages[k], cold[k], bench_least(&times[k]),
+            fprintf(csv, "\"%s\",%.5g,%.5g,%.5g\n", stages[k], cold[k], bench_min(&times[k]),
                     bench_median(&times[k]));
     }
     if (csv)

@@ -149,7 +149,7 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
     printf("| what | minimum, ms | median, ms | images |\n|---|---:|---:|---:|\n");
     if (csv) fprintf(csv, "what,min_ms,median_ms,images\n");
     for (int k = 0; k < 4; k++) {
-        const double least = bench_least(&times[k]), images = least / bench_least(&times[0]);
+        const double least = bench_min(&times[k]), images = least / bench_min(&times[0]);
         printf("| %s | %.4g | %.4g | %.2f |\n", names[k], least, bench_median(&times[k]), images);
         if (csv) fprintf(csv, "\"%s\",%.5g,%.5g,%.3f\n", names[k], least, bench_median(&times[k]), images);
         free(all[k].output.data);
@@ -185,14 +185,14 @@ static void compare_volume(const settings *set, const bench_thorax *thorax, skg_
     ours.adjoint.channels = 1, ours.adjoint.rows = ours.adjoint.columns = SMALL, ours.adjoint.data = adjoint;
     ours.gradient.poses = bench_alloc((size_t)(6 * thorax->parts), sizeof(double));
     bench_interleave(2, frames, who, (int)(set->repeats + 4) / 5, 5, times);
-    const double ratio = bench_least(&times[1]) / bench_least(&times[0]);
+    const double ratio = bench_min(&times[1]) / bench_min(&times[0]);
     printf(
         "\n%d x %d pixels: image and gradient of all poses %.4g ms; of one pose of a volume with %d points a ray %.4g ms, "
         "%.1f times.\n",
-        SMALL, SMALL, bench_least(&times[0]), VOLUME_POINTS, bench_least(&times[1]), ratio);
+        SMALL, SMALL, bench_min(&times[0]), VOLUME_POINTS, bench_min(&times[1]), ratio);
     if (csv)
-        fprintf(csv, "\"volume, 200 x 200\",%.5g,%.5g,%.3f\n", bench_least(&times[1]),
-                bench_median(&times[1]), ratio);
+        fprintf(csv, "\"volume, 200 x 200\",%.5g,%.5g,%.3f\n", bench_min(&times[1]), bench_median(&times[1]),
+                ratio);
     free(ours.gradient.poses);
     free(volume.cells);
     free(image);

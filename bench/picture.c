@@ -73,9 +73,8 @@ int main(int count, char **words) {
     FILE *table = csv ? bench_open(csv) : NULL;
     if (table) fprintf(table, "picture,minimum_ms,median_ms\n");
     for (int k = 0; k < PICTURES; k++) {
-        printf("| %s | %.4g | %.4g |\n", names[k], bench_least(&times[k]), bench_median(&times[k]));
-        if (table)
-            fprintf(table, "%s,%.6g,%.6g\n", names[k], bench_least(&times[k]), bench_median(&times[k]));
+        printf("| %s | %.4g | %.4g |\n", names[k], bench_min(&times[k]), bench_median(&times[k]));
+        if (table) fprintf(table, "%s,%.6g,%.6g\n", names[k], bench_min(&times[k]), bench_median(&times[k]));
     }
     if (table) fclose(table);
     free(colours);

@@ -192,7 +192,7 @@ static void print(const settings *set, const bench_times *times) {
                                                   [CACHED] = "the disk, through the page cache",
                                                   [DIRECT] = "the disk, past it"};
     double rates[CONTENDERS];
-    for (int c = 0; c < CONTENDERS; c++) rates[c] = 1e3 * (double)set->projections / bench_least(&times[c]);
+    for (int c = 0; c < CONTENDERS; c++) rates[c] = 1e3 * (double)set->projections / bench_min(&times[c]);
     const double slower = fmin(rates[SCAN], fmax(rates[CACHED], rates[DIRECT]));
     const double ratios[CONTENDERS] = {
         [IMAGES] = 1, [SCAN] = rates[SCAN] / rates[IMAGES], [TO_FILE] = rates[TO_FILE] / slower};

@@ -114,12 +114,12 @@ static void measure(const settings *set, const char *name, long threads, FILE *c
     }
     stop(&two[0]), stop(&two[1]);
     const double ratio = bench_median(&together) / bench_median(&alone);
-    printf("| %s | %ld | %.4g / %.4g | %.4g / %.4g | %.2f |\n", name, threads, bench_least(&alone),
-           bench_median(&alone), bench_least(&together), bench_median(&together), ratio);
+    printf("| %s | %ld | %.4g / %.4g | %.4g / %.4g | %.2f |\n", name, threads, bench_min(&alone),
+           bench_median(&alone), bench_min(&together), bench_median(&together), ratio);
     fflush(stdout);
     if (csv)
-        fprintf(csv, "%s,%ld,%.5g,%.5g,%.5g,%.5g,%.3f\n", name, threads, bench_least(&alone),
-                bench_median(&alone), bench_least(&together), bench_median(&together), ratio);
+        fprintf(csv, "%s,%ld,%.5g,%.5g,%.5g,%.5g,%.3f\n", name, threads, bench_min(&alone),
+                bench_median(&alone), bench_min(&together), bench_median(&together), ratio);
 }
 
 int main(int count, char **words) {

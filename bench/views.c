@@ -117,7 +117,7 @@ static void measure(const settings *set, skg_context *context, long size, FILE *
     check(&all);
     void *const who[2] = {&all, &all};
     bench_interleave(2, frames, who, (int)set->repeats, 1, times);
-    const double single = bench_least(&times[0]), together = bench_least(&times[1]);
+    const double single = bench_min(&times[0]), together = bench_min(&times[1]);
     printf("| %lld x %lld | %ld | %.4g / %.4g | %.4g / %.4g | %.3f |\n", (long long)scene.view.columns,
            (long long)scene.view.rows, set->views, single, bench_median(&times[0]), together,
            bench_median(&times[1]), together / single);

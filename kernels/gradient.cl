@@ -188,7 +188,7 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     g.args = &args;
     g.reference = parts[range.number].reference;
 #if SKG_PRIORITY
-    g.slot = slots[range.number] % SKG_HITS_OTHER;
+    g.slot = slots[range.number] % SKG_HITS_BACKGROUND;
     g.shift = g.slot < 0 ? 0 : shifts[g.slot];
     g.counts = counts, g.starts = starts, g.hits = hits, g.slopes = slopes;
 #endif

@@ -15,7 +15,7 @@ typedef struct {
 } skg_listed;
 
 typedef struct {
-    __global const int *slots;       /* [parts] -1: the part does not compete; see SKG_HITS_OTHER */
+    __global const int *slots;       /* [parts] -1: the part does not compete; see SKG_HITS_BACKGROUND */
     __global const skg_real *shifts; /* [slots] the part's reference minus the common one */
     __global int *counts;            /* [rows][columns] */
     __global const uint *starts;
@@ -26,8 +26,8 @@ typedef struct {
 /* The slot of a part whose hits this launch takes; -1: it does not take them. */
 static int skg_slot_of(const skg_lists *lists, int part) {
     const int slot = lists->slots[part];
-    const int other = slot >= SKG_HITS_OTHER;
-    return slot < 0 || other != (lists->task / SKG_HITS_OF_OTHERS) ? -1 : other ? slot - SKG_HITS_OTHER : slot;
+    const int background = slot >= SKG_HITS_BACKGROUND;
+    return slot < 0 || background != (lists->task / SKG_HITS_OF_BACKGROUND) ? -1 : background ? slot - SKG_HITS_BACKGROUND : slot;
 }
 
 /* Whether a hit at a pixel is listed. Winners are the parts that displace another one; their hits always are. Hits of the other
@@ -36,7 +36,7 @@ static int skg_slot_of(const skg_lists *lists, int part) {
  * holds the place of each pixel's list, which is SKG_HITS_MAX if there are none. */
 static int skg_is_listed(const skg_lists *lists, int pixel) {
     const uint none = (lists->task & SKG_HITS_LIST) == 0 ? 0 : SKG_HITS_MAX;
-    return !(lists->task & SKG_HITS_OF_OTHERS) || lists->starts[pixel] != none;
+    return !(lists->task & SKG_HITS_OF_BACKGROUND) || lists->starts[pixel] != none;
 }
 
 /* Counts or lists one hit. q: its depth as skg_depth returns it. */
@@ -59,7 +59,7 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
  * competitor only those from the first column in which a winner was hit (span[0]) to the last (span[1] - 1). */
 static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int task) {
     skg_box seen = *box;
-    if (task & SKG_HITS_OF_OTHERS) {
+    if (task & SKG_HITS_OF_BACKGROUND) {
         seen.i0 = max(seen.i0, span[0] - pixel_i);
         seen.i1 = min(seen.i1, span[1] - pixel_i);
     }

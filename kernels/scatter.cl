@@ -188,7 +188,7 @@ static void skg_roulette(const skg_scatter_args *args, skg_photons *p, skg_fv wo
     const skg_fv chance = min(p->weight * (skg_fv)(1.0f / SKG_SCATTER_LEAST), (skg_fv)(1.0f));
     const skg_intv stays = word < chance;
     p->weight = p->weight / max(chance, (skg_fv)(1e-30f));
-    p->alive &= stays & (p->kev > (skg_fv)(args->least_kev)) & (p->order < (skg_uv)(SKG_SCATTER_ORDERS));
+    p->alive &= stays & (p->kev > (skg_fv)(args->min_kev)) & (p->order < (skg_uv)(SKG_SCATTER_ORDERS));
 }
 
 /* Number `dimension` of a history's point of a lattice, from 0 to below 1, shifted for each batch at random. */

@@ -143,12 +143,12 @@ typedef struct {
 #define SKG_EDGE_ON ((SKG_LONG)1 << 62)
 
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
-#define SKG_HITS_OTHER 0x10000
+#define SKG_HITS_BACKGROUND 0x10000
 
-/* What a launch that lists hits does, summed: counts those of winners; lists instead of counting; takes the others. */
+/* What a launch that lists hits does, summed: counts those of winners; lists instead of counting; takes background parts. */
 #define SKG_HITS_COUNT 0
 #define SKG_HITS_LIST 1
-#define SKG_HITS_OF_OTHERS 2
+#define SKG_HITS_OF_BACKGROUND 2
 
 /* The length of the ray to pixel (i, j) is |centre + i column + j row| mm; with a parallel beam |centre|. i and j count from
  * the pixel of `centre`. */
@@ -240,8 +240,8 @@ typedef struct {
         far; /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
     float log_low, per_log; /* of the table by energy */
     float per_momentum, per_log_momentum;
-    float angle_rows;       /* rows of the table of angles for one of that by energy */
-    float least_kev, scale; /* photons below are given up; of sums */
+    float angle_rows;     /* rows of the table of angles for one of that by energy */
+    float min_kev, scale; /* photons below are given up; of sums */
     float strips[3],
         focus; /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */
     float strips_u, strips_v;    /* mm across the strips along the sides of the detector */

@@ -79,10 +79,10 @@ static void compare(const char *label, const char *tissue, skg_chain *chain, int
         for (int64_t n = 0; n < 3 * chain->nodes; n++) apart = fmax(apart, fabs(s[i].u[n] - s[0].u[n]));
         double share = 100 * (double)broken / (double)(chain->first[chain->nodes] / 2);
         printf("| %-10s | %-13s | %-12s | %6d %5.1f %% | %9.2g | %9.2g | %9.3f | %9.3f |\n", label, tissue,
-               s[i].name, (int)broken, share, worst, apart, bench_least(times + i), bench_median(times + i));
+               s[i].name, (int)broken, share, worst, apart, bench_min(times + i), bench_median(times + i));
         if (csv)
             fprintf(csv, "%s,%s,%s,%d,%g,%g,%g,%g\n", label, tissue, s[i].name, (int)broken, worst, apart,
-                    bench_least(times + i), bench_median(times + i));
+                    bench_min(times + i), bench_median(times + i));
         if (i == 0 && broken > 0) bench_die("the exact solution breaks %d links", (int)broken);
     }
     for (int i = 0; i < SOLVERS; i++) {
@@ -123,10 +123,10 @@ static void steps(long triangles, int turns, FILE *csv) {
         bench_times times = {0};
         for (int turn = 0; turn < turns; turn++) bench_turn(breathe, &b, 120, &times);
         printf("%d threads: a step of the body %.3f ms (median; least %.3f): %.0f steps/s\n", threads,
-               bench_median(&times), bench_least(&times), 1000 / bench_median(&times));
+               bench_median(&times), bench_min(&times), 1000 / bench_median(&times));
         if (csv)
             fprintf(csv, "body,%ld vertices,%d threads,,,,%g,%g\n", (long)deformable, threads,
-                    bench_least(&times), bench_median(&times));
+                    bench_min(&times), bench_median(&times));
         if (threads == most) break;
     }
     skg_body_release(&b.body);
@@ -195,9 +195,9 @@ static void frames(const bench_thorax *thorax, int turns, FILE *csv) {
     printf("\nA pose and its 512 x 512 image, 5 materials, 10 energies, no file written:\n");
     for (int w = 0; w < WAYS; w++) {
         printf("%-16s %.3f ms (median; least %.3f): %.0f a second\n", names[w], bench_median(times + w),
-               bench_least(times + w), 1000 / bench_median(times + w));
+               bench_min(times + w), 1000 / bench_median(times + w));
         if (csv)
-            fprintf(csv, "frame,,%s,,,,%g,%g\n", names[w], bench_least(times + w), bench_median(times + w));
+            fprintf(csv, "frame,,%s,,,,%g,%g\n", names[w], bench_min(times + w), bench_median(times + w));
     }
     free(output.data);
     skg_plan_release(&f.plan);

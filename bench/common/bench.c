@@ -56,7 +56,7 @@ void bench_add(bench_times *times, double ms) {
     if (times->count < BENCH_SAMPLES) times->ms[times->count++] = ms;
 }
 
-double bench_least(const bench_times *times) {
+double bench_min(const bench_times *times) {
     double least = times->ms[0];
     for (int i = 1; i < times->count; i++)
         if (times->ms[i] < least) least = times->ms[i];

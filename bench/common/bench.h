@@ -35,7 +35,7 @@ typedef struct {
 } bench_times;
 
 void bench_add(bench_times *times, double ms);
-double bench_least(const bench_times *times);
+double bench_min(const bench_times *times);
 double bench_median(const bench_times *times);
 
 /* Computes one frame of a contender. */

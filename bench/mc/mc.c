@@ -82,19 +82,19 @@ typedef struct {
     double ncc, mean, worst; /* mean and largest |ours / reference - 1| */
 } comparison;
 
-/* Prints a row and writes it to the CSV. least_ncc, most: the targets of the NCC and of the mean error; 0:
+/* Prints a row and writes it to the CSV. min_ncc, most: the targets of the NCC and of the mean error; 0:
  * none. Returns 1 if a target is missed. */
 static int compare(const char *what, const double *ours, const double *reference, int64_t count,
-                   double least_ncc, double most, FILE *csv) {
+                   double min_ncc, double most, FILE *csv) {
     comparison c = {.ncc = reference_ncc(ours, reference, count)};
     for (int64_t p = 0; p < count; p++) {
         const double error = fabs(ours[p] / reference[p] - 1);
         c.mean += error / (double)count;
         c.worst = fmax(c.worst, error);
     }
-    const int missed = c.ncc < least_ncc || (most > 0 && !(c.mean <= most));
+    const int missed = c.ncc < min_ncc || (most > 0 && !(c.mean <= most));
     printf("| %s | %.7f | %.3g | %.3g | ", what, c.ncc, c.mean, c.worst);
-    if (least_ncc > 0) printf("NCC at least %g: %s", least_ncc, missed ? "MISSED" : "met");
+    if (min_ncc > 0) printf("NCC at least %g: %s", min_ncc, missed ? "MISSED" : "met");
     if (most > 0) printf("mean error at most %g: %s", most, missed ? "MISSED" : "met");
     printf(" |\n");
     if (csv) fprintf(csv, "\"%s\",%.8f,%.4g,%.4g\n", what, c.ncc, c.mean, c.worst);

@@ -141,7 +141,7 @@ static void print_picture(const paper_study *study, const contender *c, const co
                           int64_t triangles) {
     const picture *p = c->what;
     printf("| %" PRId64 " | %s | %ld x %ld | %.4g | %.4g to %.4g | %.2f | ", triangles, c->name,
-           study->series, c->images, bench_median(&c->rates), bench_least(&c->rates), greatest(&c->rates),
+           study->series, c->images, bench_median(&c->rates), bench_min(&c->rates), greatest(&c->rates),
            bench_median(&c->rates) / bench_median(&base->rates));
     if (isnan(p->worst))
         printf("- | - | ");
@@ -230,7 +230,7 @@ static void breathing(const paper_study *study) {
         thorax[0].triangles);
     for (int k = 0; k < ROWS; k++) {
         printf("| %s | %ld x %ld | %s | %.4g | %.4g to %.4g | %g to %g |\n", rows[k].name, study->series,
-               all[k].images, rows[k].unit, bench_median(&all[k].rates), bench_least(&all[k].rates),
+               all[k].images, rows[k].unit, bench_median(&all[k].rates), bench_min(&all[k].rates),
                greatest(&all[k].rates), rows[k].printed[0], rows[k].printed[1]);
         write_rates(study, "breathing", &all[k], thorax[k].triangles, rows[k].unit);
     }

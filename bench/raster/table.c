@@ -21,7 +21,7 @@ void table_free(table *rows) {
 
 /* The minimum time of contender a over that of contender b. */
 static double ratio(const table_row *row, int a, int b) {
-    return bench_least(&row->times[a]) / bench_least(&row->times[b]);
+    return bench_min(&row->times[a]) / bench_min(&row->times[b]);
 }
 
 #if BENCH_EMBREE
@@ -47,7 +47,7 @@ void table_head(void) {
 void table_print(const table_row *row) {
     printf("| %s | %lld | %ld | ", shape_name(row->shape), (long long)row->triangles, row->size);
     for (int k = 0; k < CONTENDERS; k++)
-        printf("%.3g / %.3g | ", bench_least(&row->times[k]), bench_median(&row->times[k]));
+        printf("%.3g / %.3g | ", bench_min(&row->times[k]), bench_median(&row->times[k]));
     printf("%.2f |", ratio(row, PLAIN, OURS));
 #if BENCH_EMBREE
     printf(" %.1f | %.1f |", ratio(row, EMBREE, OURS), ratio(row, EMBREE, PLAIN));
@@ -99,7 +99,7 @@ void table_write(const table *rows, const char *path) {
         fprintf(file, "%s,%lld,%ld,%d", shape_name(row->shape), (long long)row->triangles, row->size,
                 row->times[OURS].count);
         for (int c = 0; c < CONTENDERS; c++)
-            fprintf(file, ",%.5g,%.5g", bench_least(&row->times[c]), bench_median(&row->times[c]));
+            fprintf(file, ",%.5g,%.5g", bench_min(&row->times[c]), bench_median(&row->times[c]));
         fprintf(file, ",%.3f", ratio(row, PLAIN, OURS));
 #if BENCH_EMBREE
         fprintf(file, ",%.2f,%.2f", ratio(row, EMBREE, OURS), ratio(row, EMBREE, PLAIN));

@@ -104,7 +104,7 @@ static double clear_rate(void) {
         bench_add(&times, bench_now() - start);
     }
     free((char *)bytes);
-    return CLEARED / (bench_least(&times) * 1e6);
+    return CLEARED / (bench_min(&times) * 1e6);
 }
 
 /* Solves a x + b y = c for two rows (a, b, c). A negative result is set to 0, and the other is fitted to the first row. */

@@ -108,7 +108,7 @@ static void end_process(process *it) {
     if (status != 0) bench_die("a contender ended with status %d", status);
 }
 
-static double least_of(const double *ms, long count) {
+static double min_of(const double *ms, long count) {
     double least = ms[0];
     for (long i = 1; i < count; i++) least = ms[i] < least ? ms[i] : least;
     return least;
@@ -131,7 +131,7 @@ static void take_turns(const versus_settings *set, const process *both, const ch
             bench_die("a contender has gone");
         get(both[who].from, &turns[who], sizeof turns[who], folders[who]);
         for (long f = 0; f < frames; f++) bench_add(&all->times[kind][who], turns[who].ms[f]);
-        least[who] = least_of(turns[who].ms, frames);
+        least[who] = min_of(turns[who].ms, frames);
     }
     add_ratio(all, kind, least);
     all->differ[kind] |= turns[OLD].hash != turns[NEW].hash;
@@ -172,7 +172,7 @@ static int print_results(const char *scene, results *all, FILE *csv) {
         "| | old, ms | new, ms | new / old | median of ratios | images |\n|---|---:|---:|---:|---:|---|\n");
     for (int kind = 0; kind < VERSUS_COUNT; kind++) {
         const bench_times *times = all->times[kind];
-        const double old = bench_least(&times[OLD]), now = bench_least(&times[NEW]);
+        const double old = bench_min(&times[OLD]), now = bench_min(&times[NEW]);
         const double median = median_of(all->ratios[kind], all->ratio_count[kind]);
         const char *images = kind < VERSUS_ONCE ? "" : all->differ[kind] ? "differ" : "same bits";
         differ |= all->differ[kind];

@@ -5,7 +5,7 @@
 #include <math.h>
 
 /* Nothing leaves the anode along its face. */
-static const double LEAST_ANGLE = 0.5;
+static const double MIN_ANGLE = 0.5;
 
 /* The tube with its own angle, and with another one, which may be below the least that a tube has. */
 static skg_status make_both(const skg_heel_tube *heel, double angle_deg, skg_spectrum **centre,
@@ -24,7 +24,7 @@ skg_status skg_heel_losses(const skg_heel_tube *heel, double angle_deg, const sk
                            double *losses) {
     skg_spectrum *there = NULL, *centre = NULL;
     skg_status status = SKG_OK;
-    if (!(angle_deg >= LEAST_ANGLE && angle_deg < 90))
+    if (!(angle_deg >= MIN_ANGLE && angle_deg < 90))
         return skg_fail(
             SKG_ERR_BEAM,
             "heel effect: photons would leave the anode at %.3g degrees, that is, along its face or "

@@ -26,10 +26,10 @@ static skg_status create(skg_device *device, int64_t bytes, cl_mem_flags flags, 
     return SKG_OK;
 }
 
-void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
+void skg_buffer_prefetch(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges) {
     skg_device *device = context->device;
     skg_pages_drop(&device->pages);
-    if (device->info.cpu && !device->simulates) skg_pages_expect(bytes, count, ranges, &device->pages);
+    if (device->info.cpu && !device->simulates) skg_pages_prefetch(bytes, count, ranges, &device->pages);
 }
 
 void skg_buffer_forget(skg_context *context) {

@@ -31,7 +31,7 @@ void skg_platform_trust(const char *store, cl_platform_id platform);
 
 /* --- identity (identity.c) --- */
 
-/* The digest under which programs and verdicts of a device are kept: of the names and versions of platform, device and driver; of
+/* The digest under which programs and verdicts of a device are cached: of the names and versions of platform, device and driver; of
  * the processor's name and features if the device is a CPU, because a folder may be shared by machines; of the environment
  * variables that change what the driver compiles; and of the version of this library. A part of a device (threads=) has that of
  * the whole. */

@@ -263,7 +263,7 @@ static skg_status no_device(const survey *s) {
         return skg_fail(
             SKG_ERR_NO_DEVICE,
             "no device of a known platform fits device=%s; the platform \"%s\" is not known, and no "
-            "verdict is kept of a device of it that passed its test. `skiagraph devices` tests such devices in "
+            "verdict is cached of a device of it that passed its test. `skiagraph devices` tests such devices in "
             "processes of their own",
             s->device ? s->device : "auto", name);
     if (s->all == 0 && !untrusted)

@@ -4,7 +4,7 @@
 #ifndef SKG_DEVICE_H
 #define SKG_DEVICE_H
 
-#include "core/aside.h"
+#include "core/async.h"
 #include "core/context.h"
 #include "core/digest.h"
 #include "driver/driver.h"
@@ -22,7 +22,7 @@ typedef struct skg_device {
     skg_device_info info;
     char *kernel_dir; /* folder that kernels are read from; NULL: those that are built in are used */
     struct skg_program *programs; /* by files and options */
-    skg_aside loading;            /* loads prefetched programs */
+    skg_async loading;            /* loads prefetched programs */
     skg_pages *pages;             /* of the prefetched buffer; NULL: none */
     int64_t builds;   /* programs compiled so far; a second scene with the same effects adds none */
     int64_t launched; /* value of builds when a job was last complete; later programs may not have run yet */
@@ -69,15 +69,15 @@ void CL_CALLBACK skg_driver_says(const char *sentence, const void *data, size_t 
 
 /* The program made of these kernel files, in this order, compiled with these options ("-D SKG_PARALLEL=1 ...").
  * It comes from the cache of the context or is built. The cache owns it; do not release it. If it does not
- * compile, the sentence of SKG_ERR_BUILD holds the build log. program: NULL: it is only prefetched (skg_expected_begin). */
+ * compile, the sentence of SKG_ERR_BUILD holds the build log. program: NULL: it is only prefetched (skg_prefetch_begin). */
 skg_status skg_program_get(skg_context *context, int32_t files, const char *const *names, const char *options,
                            cl_program *program);
 
-/* Prefetches in a thread of its own, until skg_expected_wait: loads the programs that were asked for with NULL from the user's
+/* Prefetches in a thread of its own, until skg_prefetch_wait: loads the programs that were asked for with NULL from the user's
  * folder, and writes to the pages of the prefetched buffer. Meanwhile the context must not be used. It reports no error: a program
  * or buffer that it could not prefetch is made by skg_program_get or skg_buffer_reserve. */
-void skg_expected_begin(skg_context *context);
-void skg_expected_wait(skg_context *context);
+void skg_prefetch_begin(skg_context *context);
+void skg_prefetch_wait(skg_context *context);
 
 /* To be called after skg_work_end, when all programs have been launched: saves them in the user's folder, unless other work is under
  * way (driver.h). */
@@ -103,9 +103,9 @@ skg_status skg_buffer_reserve(skg_context *context, skg_buffer *buffer, int64_t 
                               const char *what);
 void skg_buffer_release(skg_buffer *buffer);
 
-/* Prefetches the memory of a buffer of this size, of which kernels will soon write these ranges (skg_expected_begin), until
+/* Prefetches the memory of a buffer of this size, of which kernels will soon write these ranges (skg_prefetch_begin), until
  * skg_buffer_forget. */
-void skg_buffer_expect(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges);
+void skg_buffer_prefetch(skg_context *context, int64_t bytes, int64_t count, const skg_byte_range *ranges);
 void skg_buffer_forget(skg_context *context);
 
 /* Makes a buffer that kernels read, with these bytes in it. The queue is not used, so nothing is waited for. */

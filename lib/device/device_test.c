@@ -89,7 +89,7 @@ skg_status skg_device_test_keep(const char *config, int64_t test, const skg_devi
     skg_device_test_init(&ours);
     SKG_TRY(skg_struct_read(result, "skg_device_test", &ours, sizeof ours));
     if (ours.verdict != SKG_TEST_WRONG && ours.verdict != SKG_TEST_FAILED)
-        return skg_fail(SKG_ERR_ARGUMENT, "a verdict of %" PRId32 " is not kept; only WRONG and FAILED are",
+        return skg_fail(SKG_ERR_ARGUMENT, "a verdict of %" PRId32 " is not cached; only WRONG and FAILED are",
                         ours.verdict);
     SKG_TRY(skg_device_locate(config, &platform, &device, &info));
     skg_verdict verdict = {.failed = ours.verdict == SKG_TEST_FAILED};

@@ -11,7 +11,7 @@ struct skg_program {
     cl_program program; /* NULL: it is to be prefetched */
     char *options;      /* for the compiler, until it is prefetched */
     skg_digest digest;  /* key in the cache */
-    int32_t kept;       /* 1: it is in the user's folder, or this process has been counted there */
+    int32_t cached;     /* 1: it is in the user's folder, or this process has been counted there */
 };
 
 static skg_status make_key(int32_t files, const char *const *names, const char *options, char **key) {
@@ -74,8 +74,8 @@ static skg_status build_text(skg_context *context, const skg_program_text *text,
 static skg_status build(skg_context *context, const skg_program_text *text, struct skg_program *entry) {
     skg_device *device = context->device;
     entry->program = skg_binary_load(device, &entry->digest, text->options);
-    entry->kept = entry->program != NULL;
-    if (entry->kept) {
+    entry->cached = entry->program != NULL;
+    if (entry->cached) {
         device->loads++;
         return SKG_OK;
     }
@@ -117,7 +117,7 @@ cleanup:
     return status;
 }
 
-static void prepare_expected(void *user) {
+static void prefetch(void *user) {
     skg_device *device = user;
     for (struct skg_program *entry = device->programs; entry; entry = entry->next)
         if (!entry->program && entry->options)
@@ -125,19 +125,19 @@ static void prepare_expected(void *user) {
     skg_pages_enter(device->pages);
 }
 
-void skg_expected_begin(skg_context *context) {
+void skg_prefetch_begin(skg_context *context) {
     skg_device *device = context->device;
-    int expected = device->pages != NULL;
+    int wanted = device->pages != NULL;
     for (const struct skg_program *entry = device->programs; entry; entry = entry->next)
-        expected |= entry->options != NULL;
-    if (expected) skg_aside_begin(&device->loading, prepare_expected, device);
+        wanted |= entry->options != NULL;
+    if (wanted) skg_async_begin(&device->loading, prefetch, device);
 }
 
-void skg_expected_wait(skg_context *context) {
+void skg_prefetch_wait(skg_context *context) {
     skg_device *device = context->device;
-    skg_aside_end(&device->loading);
+    skg_async_end(&device->loading);
     for (struct skg_program *entry = device->programs; entry; entry = entry->next) {
-        if (entry->program && entry->options) entry->kept = 1, device->loads++;
+        if (entry->program && entry->options) entry->cached = 1, device->loads++;
         skg_free(&entry->options);
     }
 }
@@ -146,9 +146,9 @@ static void keep_programs(void *data) {
     const skg_device *device = data;
     for (struct skg_program *entry = device->programs; entry; entry = entry->next) {
         if (!entry->program) continue;
-        if (!entry->kept && skg_binary_pays(device, &entry->digest))
+        if (!entry->cached && skg_binary_pays(device, &entry->digest))
             skg_binary_save(device, &entry->digest, entry->program);
-        entry->kept = 1;
+        entry->cached = 1;
     }
 }
 

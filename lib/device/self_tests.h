@@ -1,5 +1,5 @@
 /* Self-tests of a device: small scenes whose images are known, rendered when their kernels are first needed. Each device, driver
- * and version of the kernels is tested once; the verdict is kept in the user's folder. Private.
+ * and version of the kernels is tested once; the verdict is cached in the user's folder. Private.
  *
  * The rooms below lib/selftest ask for self-tests, and lib/selftest renders them with these rooms. The way up is one constant,
  * skg_self_tests. */
@@ -43,7 +43,7 @@ typedef enum {
 /* The kernels that are tested, such as "strategy tiles". Static storage. */
 const char *skg_self_test_name(skg_self_test number);
 
-/* The result of a self-test, as it is kept. */
+/* The result of a self-test, as it is cached. */
 typedef struct {
     int32_t good;     /* 1: every pixel is right */
     int32_t failed;   /* 1: the driver failed, or ended or blocked the process that tested it */
@@ -63,15 +63,15 @@ extern const skg_self_test_hook skg_self_tests;
  * makes need none. SKG_ERR_DEVICE with a sentence that names the kernels, the device and its driver if it has failed. */
 skg_status skg_self_test_need(skg_context *context, skg_self_test number);
 
-/* Runs a self-test. Nothing is kept. */
+/* Runs a self-test. Nothing is cached. */
 skg_status skg_self_test_run(skg_context *context, skg_self_test number, skg_verdict *verdict);
 
-/* Runs a self-test, whatever verdict is kept, and keeps the new one. */
+/* Runs a self-test, whatever verdict is cached, and keeps the new one. */
 skg_status skg_self_test_repeat(skg_context *context, skg_self_test number, skg_verdict *verdict);
 
 /* --- verdicts in the user's folder (verdict.c) --- */
 
-/* Reads the verdict of a test on a device with its driver, for the kernels that are built in. 0: none is kept. */
+/* Reads the verdict of a test on a device with its driver, for the kernels that are built in. 0: none is cached. */
 int skg_verdict_known(const char *store, const skg_digest *identity, const char *test, skg_verdict *verdict);
 
 void skg_verdict_keep(const char *store, const skg_digest *identity, const char *test,

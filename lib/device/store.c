@@ -117,7 +117,7 @@ static int read_content(int file, const skg_digest *key, skg_kept kind, void **d
         head.kind != (uint32_t)kind || !skg_digest_same(&head.key, key))
         return 0;
     if (head.bytes > BYTES_MAX || (uint64_t)status.st_size != sizeof head + head.bytes) return 0;
-    if (skg_alloc((int64_t)head.bytes + 1, 1, "kept kernels", data) != SKG_OK) return 0;
+    if (skg_alloc((int64_t)head.bytes + 1, 1, "cached kernels", data) != SKG_OK) return 0;
     *bytes = (int64_t)head.bytes;
     if (read_whole(file, *data, (size_t)head.bytes) && head.checksum == checksum_of(&head, *data)) return 1;
     skg_free(data);

@@ -53,7 +53,7 @@ static int64_t list_files(int folder, DIR *entries, kept_file **files) {
         }
         if (count == capacity) {
             capacity = 2 * capacity + 64;
-            if (skg_realloc(capacity, sizeof **files, "kept kernels", files) != SKG_OK) break;
+            if (skg_realloc(capacity, sizeof **files, "cached kernels", files) != SKG_OK) break;
         }
         snprintf((*files)[count].name, LONGEST_NAME, "%s", entry->d_name);
         (*files)[count].bytes = (int64_t)status.st_size;

@@ -5,7 +5,7 @@
 
 enum { LONGEST = 256 };
 
-/* Name of the test whose verdict is kept under the identity of a platform. */
+/* Name of the test whose verdict is cached under the identity of a platform. */
 static const char test[] = "platform";
 
 /* The digest of its names and versions and of the version of this library. Its devices are not asked. */

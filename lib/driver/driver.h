@@ -167,7 +167,7 @@ typedef struct skg_pages skg_pages;
 
 /* Plans memory for a buffer of which kernels will write these ranges. *pages stays NULL if they are too few or too many, or there
  * is no memory. */
-void skg_pages_expect(int64_t bytes, int64_t count, const skg_byte_range *ranges, skg_pages **pages);
+void skg_pages_prefetch(int64_t bytes, int64_t count, const skg_byte_range *ranges, skg_pages **pages);
 
 /* Allocates the memory, and writes to each page of the ranges. pages: NULL does nothing. */
 void skg_pages_enter(skg_pages *pages);

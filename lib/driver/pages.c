@@ -6,7 +6,7 @@
 #include <unistd.h>
 
 /* Less is a page; much more takes longer than all else in a plan. */
-static const int64_t LEAST_BYTES = 4 << 10, BYTES_MAX = 64 << 20;
+static const int64_t MIN_BYTES = 4 << 10, BYTES_MAX = 64 << 20;
 
 struct skg_pages {
     int64_t bytes, count;
@@ -24,7 +24,7 @@ static void CL_CALLBACK dropped(cl_mem memory, void *user) {
     unmap(user);
 }
 
-void skg_pages_expect(int64_t bytes, int64_t count, const skg_byte_range *ranges, skg_pages **pages) {
+void skg_pages_prefetch(int64_t bytes, int64_t count, const skg_byte_range *ranges, skg_pages **pages) {
     skg_pages *made = NULL;
     *pages = NULL;
     int64_t written = 0;
@@ -32,7 +32,7 @@ void skg_pages_expect(int64_t bytes, int64_t count, const skg_byte_range *ranges
         if (ranges[i].from < 0 || ranges[i].to > bytes) return;
         if (ranges[i].to > ranges[i].from) written += ranges[i].to - ranges[i].from;
     }
-    if (written < LEAST_BYTES || written > BYTES_MAX) return;
+    if (written < MIN_BYTES || written > BYTES_MAX) return;
     if (skg_alloc(1, sizeof *made, "pages", &made) != SKG_OK) return;
     *made = (skg_pages){.bytes = bytes, .count = count};
     if (skg_alloc(count, sizeof *ranges, "pages", &made->ranges) != SKG_OK) {

@@ -16,7 +16,7 @@ static int by_size(const void *a, const void *b) {
 
 /* The change, as a share of the flat field, that PIXELS_MAX of the pixels of all channels do not exceed. change:
  * workspace. */
-static double most_change(const skg_recipe *recipe, const float *before, const float *after, float *change) {
+static double max_change(const skg_recipe *recipe, const float *before, const float *after, float *change) {
     const skg_model *model = &recipe->model;
     const int64_t size = recipe->view.rows * recipe->view.columns, count = size * model->channels;
     const int is_ratio =
@@ -60,7 +60,7 @@ static skg_status double_samples(const skg_recipe *recipe, skg_machine *machine,
     for (int turn = 1; small < 2 && 2 * samples <= spot->samples_max; turn++) {
         samples *= 2;
         SKG_TRY(render(recipe, machine, outcome, samples, images[turn % 2]));
-        *error = most_change(recipe, images[1 - turn % 2], images[turn % 2], change);
+        *error = max_change(recipe, images[1 - turn % 2], images[turn % 2], change);
         small = *error < spot->tolerance ? small + 1 : 0;
     }
     *found = samples < spot->samples_max ? samples : spot->samples_max;

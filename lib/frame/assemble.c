@@ -70,8 +70,8 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
     SKG_TRY(
         skg_buffer_reserve(context, &machine->negative, 3 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
     SKG_TRY(skg_leaky_memory_create(context, recipe->leaky_count, &machine->leaky));
-    SKG_TRY(skg_pass_memory_create(recipe->scene->count, skg_recipe_most_fine(recipe) * recipe->view.columns,
-                                   skg_recipe_most_fine(recipe) * recipe->view.rows, &machine->pass));
+    SKG_TRY(skg_pass_memory_create(recipe->scene->count, skg_recipe_max_fine(recipe) * recipe->view.columns,
+                                   skg_recipe_max_fine(recipe) * recipe->view.rows, &machine->pass));
     machine->pass.placement = &machine->placement;
     return SKG_OK;
 }

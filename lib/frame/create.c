@@ -14,10 +14,10 @@
 
 /* Finds overlaps while programs are loaded and nodes are searched. */
 static skg_status find_overlaps(skg_plan *plan, skg_plan_overlaps *found) {
-    skg_frame_expect(plan->recipe, &plan->machine);
-    skg_expected_begin(plan->context);
+    skg_frame_prefetch(plan->recipe, &plan->machine);
+    skg_prefetch_begin(plan->context);
     const skg_status status = skg_plan_overlaps_find(plan->recipe, found);
-    skg_expected_wait(plan->context);
+    skg_prefetch_wait(plan->context);
     return status;
 }
 

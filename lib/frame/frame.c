@@ -84,18 +84,18 @@ static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machi
     cl_int *extents = NULL;
     SKG_TRY(skg_alloc(4 * pass->planes, sizeof *extents, "extents", &extents));
     skg_pass_extents(pass, extents);
-    const skg_status status = skg_raster_expect(machine->context, &options, extents);
+    const skg_status status = skg_raster_prefetch(machine->context, &options, extents);
     skg_free(&extents);
     SKG_TRY(status);
-    if (pass->priority.count) SKG_TRY(skg_hits_expect(machine->context, pass));
+    if (pass->priority.count) SKG_TRY(skg_hits_prefetch(machine->context, pass));
     const int more = skg_recipe_averages(recipe) && skg_samples_passes(&recipe->samples) > 1;
     for (place.add = 0; place.add <= more; place.add++)
-        SKG_TRY(skg_attenuate_expect(machine->attenuator, &options, &sums, &pass->camera, &shape,
-                                     recipe->model.range != NULL, &place));
+        SKG_TRY(skg_attenuate_prefetch(machine->attenuator, &options, &sums, &pass->camera, &shape,
+                                       recipe->model.range != NULL, &place));
     return SKG_OK;
 }
 
-void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine) {
+void skg_frame_prefetch(const skg_recipe *recipe, const skg_machine *machine) {
     skg_pass pass;
     if (fill_first(recipe, machine, &pass) == SKG_OK) (void)expect_pass(recipe, machine, &pass);
     skg_pass_release(&pass);

@@ -4,9 +4,9 @@
 
 #include "frame/job.h"
 
-/* Expects the programs of images of the recipe's view (skg_expected_begin), as far as they are known before a frame. What fails
+/* Prefetches the programs of images of the recipe's view (skg_prefetch_begin), as far as they are known before a frame. What fails
  * here fails again, and is reported, where it is needed. */
-void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine);
+void skg_frame_prefetch(const skg_recipe *recipe, const skg_machine *machine);
 
 /* Compiles and allocates for images of the recipe's view. */
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome);

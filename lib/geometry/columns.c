@@ -248,7 +248,7 @@ void skg_columns_bound(skg_columns *grid, int64_t count, const skg_solid *solids
     for (int k = 0; k < 2; k++) grid->step[k] = (grid->high[k] - grid->low[k]) / (double)grid->side;
 }
 
-double skg_columns_expect(const skg_columns *grid, int64_t count, const skg_solid *solids) {
+double skg_columns_hits_estimate(const skg_columns *grid, int64_t count, const skg_solid *solids) {
     double twice = 0; /* mm2 */
     for (int64_t i = 0; i < count; i++)
         for (int64_t t = 0; t < solids[i].triangles; t++) {

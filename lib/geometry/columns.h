@@ -34,7 +34,7 @@ typedef struct {
 void skg_columns_bound(skg_columns *grid, int64_t count, const skg_solid *solids);
 
 /* How many hits the columns of the whole grid will have, from the areas of the triangles across z. */
-double skg_columns_expect(const skg_columns *grid, int64_t count, const skg_solid *solids);
+double skg_columns_hits_estimate(const skg_columns *grid, int64_t count, const skg_solid *solids);
 
 /* Finds the rows of the whole grid that meet each triangle, numbered through all solids, by several threads. The caller
  * frees *rows. */

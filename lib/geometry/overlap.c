@@ -226,7 +226,7 @@ static int worst_first(const void *a, const void *b) {
 /* Columns along each side: as many as have HITS_MAX, but whole bands. */
 static int64_t choose_side(const skg_columns *grid, int64_t count, const skg_solid *solids) {
     int64_t side = SIDE;
-    const double hits = skg_columns_expect(grid, count, solids); /* of SIDE x SIDE columns */
+    const double hits = skg_columns_hits_estimate(grid, count, solids); /* of SIDE x SIDE columns */
     while (side > BANDS && hits * (double)(side * side) > HITS_MAX * SIDE * SIDE) side -= BANDS;
     return side;
 }

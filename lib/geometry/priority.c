@@ -39,8 +39,8 @@ static int meet(const skg_extent *a, const skg_extent *b) {
            p->low_depth <= q->high_depth && q->low_depth <= p->high_depth;
 }
 
-/* Whether a part wins over none. With clipping any part may make another fall, by its absence. */
-static int is_other(const skg_scene *scene, int32_t clip, int64_t part) {
+/* Whether a part is a background part, which wins over none. With clipping any part may make another fall, by its absence. */
+static int is_background(const skg_scene *scene, int32_t clip, int64_t part) {
     if (clip) return 0;
     for (int64_t q = 0; q < scene->count; q++)
         if (may_win(&scene->parts[part], &scene->parts[q])) return 0;
@@ -128,7 +128,7 @@ skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_cam
         for (int64_t p = 0; p < scene->count; p++)
             if (levels[p] == level && marks[p] & LISTED) {
                 priority->parts[priority->count++] = p;
-                priority->others += is_other(scene, clip, p);
+                priority->background += is_background(scene, clip, p);
             }
 cleanup:
     skg_free(&marks);
@@ -174,20 +174,20 @@ void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priorit
             if (slots[up] >= 0) add_to_set(entry + 2 + words, slots[up]);
     }
     for (int64_t s = 0; s < priority->count; s++)
-        if (is_other(scene, clip, priority->parts[s])) slots[priority->parts[s]] += SKG_HITS_OTHER;
+        if (is_background(scene, clip, priority->parts[s])) slots[priority->parts[s]] += SKG_HITS_BACKGROUND;
 }
 
 void skg_priority_runs(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *runs,
                        int64_t triangles[2]) {
-    for (int others = 0; others < 2; others++) {
-        triangles[others] = 0;
+    for (int background = 0; background < 2; background++) {
+        triangles[background] = 0;
         for (int64_t s = 0; s < priority->count; s++) {
             const int64_t part = priority->parts[s];
-            if (is_other(scene, clip, part) != others) continue;
-            *runs++ = (int32_t)triangles[others];
+            if (is_background(scene, clip, part) != background) continue;
+            *runs++ = (int32_t)triangles[background];
             *runs++ = (int32_t)part;
             *runs++ = (int32_t)s;
-            triangles[others] += scene->parts[part].mesh->triangles;
+            triangles[background] += scene->parts[part].mesh->triangles;
         }
     }
 }

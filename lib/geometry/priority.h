@@ -14,8 +14,8 @@
 
 typedef struct {
     int64_t count; /* of parts that compete, or fall with a part that does */
-    int64_t
-        others; /* of these that win over none, and are not clipped; their hits matter where a winner is */
+    /* Of these, background parts: they win over none, and are not clipped. Their hits matter only where a winner is. */
+    int64_t background;
     int64_t *parts; /* [count] numbers of the parts, parents before children */
     /* Pixels where parts may compete: rows from, to, columns from, to. The whole detector if children are clipped. */
     int32_t window[4];
@@ -36,14 +36,14 @@ int64_t skg_priority_entry(const skg_priority *priority);
 
 /* Fills the tables of hits.cl.
  *
- * slots   [parts of the scene] the competitor that a part is, plus SKG_HITS_OTHER if it wins over none; or -1
+ * slots   [parts of the scene] the competitor that a part is, plus SKG_HITS_BACKGROUND if it wins over none; or -1
  * table   [competitors][entry] part, slot of the parent that it is clipped to or -1, the set of slots that displace
  *         it, the set of slots of its ancestors */
 void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
                          int32_t *table);
 
-/* Fills `runs` [competitors][3]: the triangles of the competitors, first of those that win over others or are clipped, then of
- * the others: number of the first triangle (each of the two begins with 0), part, slot. triangles: of both. */
+/* Fills `runs` [competitors][3]: the triangles of the competitors, first of winners and clipped parts, then of background
+ * parts: number of the first triangle (each of the two begins with 0), part, slot. triangles: of both. */
 void skg_priority_runs(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *runs,
                        int64_t triangles[2]);
 

@@ -25,7 +25,7 @@ static int64_t cell_of(double pixel, int64_t count) {
     return cell < -1 ? -1 : cell > (double)count ? count : (int64_t)cell;
 }
 
-static double most_of(const skg_scale_part *part) {
+static double max_of(const skg_scale_part *part) {
     return part->weight * (part->high_depth - part->low_depth) * part->multiplicity;
 }
 
@@ -42,7 +42,7 @@ static int add_rectangle(const skg_scale_grid *grid, const skg_scale_part *part)
     if (c1 >= grid->columns) c1 = grid->columns - 1;
     if (r1 >= grid->rows) r1 = grid->rows - 1;
     const int64_t stride = grid->columns + 1;
-    const double most = most_of(part);
+    const double most = max_of(part);
     grid->sums[r0 * stride + c0] += most;
     grid->sums[r0 * stride + c1 + 1] -= most;
     grid->sums[(r1 + 1) * stride + c0] -= most;
@@ -69,7 +69,7 @@ void skg_scale_find(const skg_scale_grid *grid, int64_t count, const skg_scale_p
     double total = 0, weight = 0, low = HUGE_VAL, high = -HUGE_VAL;
     for (int64_t i = 0; i < count; i++) {
         if (!add_rectangle(grid, &parts[i])) continue;
-        total += most_of(&parts[i]);
+        total += max_of(&parts[i]);
         weight = fmax(weight, parts[i].weight);
         low = fmin(low, parts[i].low_depth);
         high = fmax(high, parts[i].high_depth);

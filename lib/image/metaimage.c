@@ -11,14 +11,14 @@
 
 /* The largest cosine between the steps that counts as a right angle: the far corner of a detector of 32768 pixels is
  * then off by a thirtieth of a pixel. */
-static const double most_skew = 1e-6;
+static const double max_skew = 1e-6;
 
 skg_status skg_metaimage_check(const skg_picture *picture, const char *path) {
     const skg_view *view = picture->view;
     if (!view) return SKG_OK;
     const double *u = view->column_step, *v = view->row_step;
     double cosine = skg_dot(u, v) / sqrt(skg_dot(u, u) * skg_dot(v, v));
-    if (fabs(cosine) <= most_skew) return SKG_OK;
+    if (fabs(cosine) <= max_skew) return SKG_OK;
     return skg_fail(SKG_ERR_UNSUPPORTED,
                     "%s: the detector's columns and rows meet at %.4g degrees, and a MetaImage can only say "
                     "90; write .tif instead",

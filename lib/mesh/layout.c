@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Merging pays where it saves at least this share of the vertices: a mesh without it is copied as it is. */
-enum { LEAST_SHARE = 8 };
+enum { MIN_SHARE = 8 };
 
 static int is_together(const skg_mesh *mesh, int64_t v) {
     double mine[3], first[3];
@@ -24,7 +24,7 @@ int64_t skg_mesh_parted(const skg_mesh *mesh) {
 
 static int pays_to_merge(const skg_mesh *mesh) {
     const int64_t saved = mesh->vertices - mesh->health.welded_vertices;
-    return mesh->weld && LEAST_SHARE * saved >= mesh->vertices && (mesh->closed || skg_mesh_parted(mesh) < 0);
+    return mesh->weld && MIN_SHARE * saved >= mesh->vertices && (mesh->closed || skg_mesh_parted(mesh) < 0);
 }
 
 static double distance(const float *a, const float *b) {

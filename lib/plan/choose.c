@@ -159,7 +159,7 @@ int64_t skg_fine_choose(const skg_fine_request *request, const char **why) {
 /* clang-format on */
 enum { MIXED_MAX = 32, MIXED_BYTES = 128 << 20 }; /* accumulators; bytes of all of them */
 
-int32_t skg_most_mixed(const skg_fine_request *request, int32_t planes) {
+int32_t skg_max_mixed(const skg_fine_request *request, int32_t planes) {
     const double fit = MIXED_BYTES / accumulator_bytes(request);
     const int32_t most = fit < MIXED_MAX ? (int32_t)fit : MIXED_MAX;
     const int32_t few = planes + planes / 2;

@@ -53,7 +53,7 @@ typedef struct {
 int64_t skg_fine_choose(const skg_fine_request *request, const char **why);
 
 /* The most accumulators that so many planes are mixed from (spectral/mix.h). The request's own number does not count. */
-int32_t skg_most_mixed(const skg_fine_request *request, int32_t planes);
+int32_t skg_max_mixed(const skg_fine_request *request, int32_t planes);
 
 /* What decides how many passes of a frame are drawn together. */
 typedef struct {

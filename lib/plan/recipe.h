@@ -69,7 +69,7 @@ double skg_recipe_exposure(const skg_recipe *recipe, const skg_view *view);
 int skg_recipe_averages(const skg_recipe *recipe);
 
 /* The most pixels that passes have along each side of a pixel of the image, for any materials of the parts. */
-int64_t skg_recipe_most_fine(const skg_recipe *recipe);
+int64_t skg_recipe_max_fine(const skg_recipe *recipe);
 
 /* How many accumulator planes the raster of an image has. */
 int64_t skg_recipe_accumulators(const skg_recipe *recipe);

@@ -88,10 +88,10 @@ static skg_status choose_mix(skg_recipe *recipe) {
     recipe->mixed = 0;
     if (recipe->options.precision == SKG_PRECISION_HALF) return SKG_OK; /* a plane per material */
     return skg_mix_choose(recipe->scene->count, model->planes, model->contributions,
-                          model->first_contribution, skg_most_mixed(&request, model->planes), &recipe->mixed);
+                          model->first_contribution, skg_max_mixed(&request, model->planes), &recipe->mixed);
 }
 
-int64_t skg_recipe_most_fine(const skg_recipe *recipe) {
+int64_t skg_recipe_max_fine(const skg_recipe *recipe) {
     const skg_fine_request request = fine_request(recipe, 1);
     const char *why = NULL;
     return skg_fine_choose(&request, &why);

@@ -9,7 +9,7 @@ static const double PI = 3.14159265358979323846;
 
 /* Order of the cosines that show how the variance changes over the detector, and the least share of its mean. */
 enum { BROAD = 12 };
-static const double LEAST_SHARE = 0.25;
+static const double MIN_SHARE = 0.25;
 
 /* Orthonormal cosines at the middles of `count` places: [k][i]. */
 static skg_status make_cosines(int64_t count, double **table) {
@@ -232,7 +232,7 @@ static skg_status make_shown(int64_t count, int64_t kept, int64_t pixels, double
 skg_status skg_cosines_show(const skg_cosines *c, int squares, int64_t rows, int64_t columns, double *image) {
     const double share = (double)(c->rows * c->columns) / (double)(rows * columns);
     const double *from = squares ? c->spread : c->value;
-    const double least = squares ? LEAST_SHARE * c->spread[0] / sqrt((double)(c->rows * c->columns)) : 0;
+    const double least = squares ? MIN_SHARE * c->spread[0] / sqrt((double)(c->rows * c->columns)) : 0;
     const int64_t across_kept = squares ? (c->columns < BROAD ? c->columns : BROAD) : c->kept[0],
                   down_kept = squares ? (c->rows < BROAD ? c->rows : BROAD) : c->kept[1];
     double *across = NULL, *down = NULL, *half = NULL;

@@ -112,7 +112,7 @@ static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *
     args->per_log_momentum = (float)((double)(p->momenta - 1) / log1p(p->momentum_high / p->momentum_scale));
     args->angle_last = SKG_ANGLE_ROWS - 1;
     args->angle_rows = (float)((double)(SKG_ANGLE_ROWS - 1) / (double)(p->energies - 1));
-    args->least_kev = (float)(p->low_kev * 1.0001);
+    args->min_kev = (float)(p->low_kev * 1.0001);
     args->scale = (float)(1 / UNIT);
 }
 

@@ -9,7 +9,7 @@
 
 /* The least weight of an energy, as a share of the greatest: no energy is left out, and those that hardly arrive
  * count for little. */
-static const double LEAST_WEIGHT = 1e-4;
+static const double MIN_WEIGHT = 1e-4;
 
 void skg_basis_release(skg_basis *basis) {
     skg_free(&basis->material);
@@ -30,7 +30,7 @@ skg_status skg_basis_weigh(const skg_polychromatic *beam, const skg_lengths *poi
                 weight[b] += passed[b] * beam->shares[b * beam->sets + s] / fmax(exact[s], beam->floor);
     }
     for (int32_t b = 0; b < beam->bins; b++) greatest = fmax(greatest, weight[b]);
-    for (int32_t b = 0; b < beam->bins; b++) weight[b] = sqrt(fmax(weight[b], LEAST_WEIGHT * greatest));
+    for (int32_t b = 0; b < beam->bins; b++) weight[b] = sqrt(fmax(weight[b], MIN_WEIGHT * greatest));
     skg_free(&passed);
     return SKG_OK;
 }

@@ -1,6 +1,6 @@
 #include "spectral/compress.h"
 
-#include "core/aside.h"
+#include "core/async.h"
 #include "spectral/basis.h"
 #include "spectral/nodes.h"
 #include "spectral/quantity.h"
@@ -38,7 +38,7 @@ typedef struct skg_compressing {
     double *shares, *sums; /* [nodes][sets], [sets] */
     skg_basis basis;
     original_planes before;
-    skg_aside aside; /* searches: */
+    skg_async async; /* searches: */
     skg_compression found;
     skg_status status;
     char message[512];
@@ -291,7 +291,7 @@ static void restore_planes(compressing *c, skg_model *model) {
 static void release(compressing **compressed) {
     compressing *c = *compressed;
     if (!c) return;
-    skg_aside_end(&c->aside);
+    skg_async_end(&c->async);
     skg_ranges_release(&c->ranges);
     skg_basis_release(&c->basis);
     skg_nodes_release(&c->found.nodes);
@@ -331,7 +331,7 @@ skg_status skg_compress_begin(const skg_scene *scene, const skg_view *view, cons
     SKG_TRY_CLEANUP(choose_planes(c, model));
     SKG_TRY_CLEANUP(find_range(c, model));
     SKG_TRY_CLEANUP(rewrite_contributions(c, model));
-    skg_aside_begin(&c->aside, find_nodes, c);
+    skg_async_begin(&c->async, find_nodes, c);
     model->search = c;
     return SKG_OK;
 cleanup:
@@ -343,7 +343,7 @@ skg_status skg_compress_end(skg_model *model, int *restored) {
     compressing *c = model->search;
     *restored = 0;
     if (!c) return SKG_OK;
-    skg_aside_end(&c->aside);
+    skg_async_end(&c->async);
     const skg_status status = c->status == SKG_OK ? SKG_OK : skg_fail(c->status, "%s", c->message);
     if (status == SKG_OK && c->found.nodes.count > 0) {
         c->found.bound *= c->errors;

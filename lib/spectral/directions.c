@@ -9,7 +9,7 @@
 /* Directions are taken until what is left of any state is below this, in the logarithm of what is transmitted. */
 static const double LEFT = 2e-4;
 /* The least weight of an energy in the squares, as a share of the greatest. */
-static const double LEAST_WEIGHT = 1e-4;
+static const double MIN_WEIGHT = 1e-4;
 
 static void weigh(const skg_spectrum *spectrum, double *weight) {
     double most = 0, sum = 0;
@@ -17,7 +17,7 @@ static void weigh(const skg_spectrum *spectrum, double *weight) {
         weight[b] = spectrum->photons[b] * spectrum->energy_kev[b];
         most = fmax(most, weight[b]);
     }
-    for (int64_t b = 0; b < spectrum->count; b++) sum += weight[b] = fmax(weight[b], LEAST_WEIGHT * most);
+    for (int64_t b = 0; b < spectrum->count; b++) sum += weight[b] = fmax(weight[b], MIN_WEIGHT * most);
     for (int64_t b = 0; b < spectrum->count; b++) weight[b] = sqrt(weight[b] / sum);
 }
 

@@ -32,7 +32,7 @@ static const double SHIFT_HELPS = 0.999, ROUND_HELPS = 0.9;
 static const double GOOD = 0.5, HOPELESS = 20;
 
 /* Added to each relative error when weights are raised, so that no point loses its weight at once. */
-static const double LEAST_FACTOR = 0.05;
+static const double MIN_FACTOR = 0.05;
 
 typedef struct {
     const skg_polychromatic *beam;
@@ -221,7 +221,7 @@ static double fit_set(search *s, int32_t set, int32_t used, fitting *f) {
             keep_weights(s, set, used);
         }
         if (best < GOOD * s->aim || best > HOPELESS * s->aim) break;
-        for (int64_t p = 0; p < points; p++) s->row_weight[p] *= s->rest[p] / worst + LEAST_FACTOR;
+        for (int64_t p = 0; p < points; p++) s->row_weight[p] *= s->rest[p] / worst + MIN_FACTOR;
     }
     return best;
 }

@@ -224,10 +224,10 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
                         .defines = {DEFINES(DEFINE)}};
 }
 
-skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_raster_options *options,
-                                const skg_sums *sums, const skg_camera *camera,
-                                const skg_attenuation *attenuation, int32_t ranged,
-                                const skg_image_place *place) {
+skg_status skg_attenuate_prefetch(const skg_attenuator *attenuator, const skg_raster_options *options,
+                                  const skg_sums *sums, const skg_camera *camera,
+                                  const skg_attenuation *attenuation, int32_t ranged,
+                                  const skg_image_place *place) {
     const skg_raster raster = {.context = attenuator->context, .options = *options};
     skg_sums own = *sums;
     own.raster = &raster;

@@ -116,12 +116,12 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
                                    const skg_attenuation *attenuation, double factor, int32_t of_planes,
                                    cl_mem adjoint, cl_mem weights, cl_mem most, skg_stage_log *log);
 
-/* Expects the program of skg_attenuate (skg_expected_begin) with sums of a raster with these options. sums: without a
+/* Prefetches the program of skg_attenuate (skg_prefetch_begin) with sums of a raster with these options. sums: without a
  * raster; attenuation: its shape; ranged: 1: it will have a range. */
-skg_status skg_attenuate_expect(const skg_attenuator *attenuator, const skg_raster_options *options,
-                                const skg_sums *sums, const skg_camera *camera,
-                                const skg_attenuation *attenuation, int32_t ranged,
-                                const skg_image_place *place);
+skg_status skg_attenuate_prefetch(const skg_attenuator *attenuator, const skg_raster_options *options,
+                                  const skg_sums *sums, const skg_camera *camera,
+                                  const skg_attenuation *attenuation, int32_t ranged,
+                                  const skg_image_place *place);
 
 /* Enqueues the flat field: what is shown without parts and noise. sums: of a frame of the same shape; they are not
  * read. */

@@ -123,7 +123,7 @@ static skg_status read_reals(const skg_raster *raster, cl_mem memory, int64_t fi
 }
 
 /* The largest weight of each plane. */
-static skg_status find_most(const gather_run *run, double *most) {
+static skg_status find_max(const gather_run *run, double *most) {
     const int64_t planes = run->args.planes, items = layout_of(run->pass).items;
     double *of_items = NULL;
     SKG_TRY(skg_staging_take(run->staging, planes * items, sizeof *of_items, "gradient", &of_items));
@@ -312,7 +312,7 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *units, "gradient", &units));
     if (!memory->gathered)
         SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *memory->gathered, "gradient", &memory->gathered));
-    SKG_TRY(find_most(&run, most));
+    SKG_TRY(find_max(&run, most));
     find_scales(&run, most, scales, units);
     SKG_TRY(upload_reals(&run, pass->scene->count, scales, &memory->scales));
     SKG_TRY(run_slopes(&run));
@@ -360,7 +360,7 @@ skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geomet
     SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "derivative", &most));
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "derivative", &scales));
     SKG_TRY(skg_staging_take(staging, pixels, sizeof *sums, "derivative", &sums));
-    SKG_TRY(find_most(&run, most));
+    SKG_TRY(find_max(&run, most));
     const double scale = find_scale(&run, most, cut_slopes(count, slopes, saturated), scales);
     for (int64_t p = 0; p < pixels; p++) values[p] = 0;
     if (scale == 0) return SKG_OK;

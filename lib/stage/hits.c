@@ -45,7 +45,7 @@ typedef struct {
     skg_staging *staging;
     skg_context *context;
     cl_program program;
-    int64_t triangles[2]; /* of parts that win over others, of the others */
+    int64_t triangles[2]; /* of winners and clipped parts, of background parts */
     int32_t is_double;
     int32_t reserved;
 } hits_run;
@@ -126,13 +126,13 @@ static skg_hits_args scalars_of(const hits_run *run, SKG_INT task) {
 /* Lists the hits of triangles in front of the source. */
 static skg_status list_hits(const hits_run *run, SKG_INT task) {
     const skg_priority *priority = &run->pass->priority;
-    const SKG_INT winners = (SKG_INT)(priority->count - priority->others), all = (SKG_INT)priority->count;
-    const int others = (task & SKG_HITS_OF_OTHERS) != 0;
+    const SKG_INT winners = (SKG_INT)(priority->count - priority->background), all = (SKG_INT)priority->count;
+    const int background = (task & SKG_HITS_OF_BACKGROUND) != 0;
     const skg_work_size work = {
-        2, {run->triangles[others], run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
+        2, {run->triangles[background], run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
     skg_hits_args args = scalars_of(run, task);
-    args.chosen[0] = others ? winners : 0;
-    args.chosen[1] = others ? all : winners;
+    args.chosen[0] = background ? winners : 0;
+    args.chosen[1] = background ? all : winners;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_LIST, args, args),
         SKG_ARGUMENT(HITS_LIST, corners, run->geometry->corners.memory),
@@ -142,7 +142,7 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
         SKG_ARGUMENT(HITS_LIST, spans, run->memory->spans.memory),
         LIST_ARGUMENTS(HITS_LIST, run->memory),
     };
-    if (run->triangles[others] == 0) return SKG_OK;
+    if (run->triangles[background] == 0) return SKG_OK;
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_list", "priority", &work, arguments,
                            &run->staging->log);
 }
@@ -240,19 +240,19 @@ static skg_status clear(const hits_run *run) {
     return SKG_OK;
 }
 
-/* Others are counted where the counts of winners, kept as starts, are not 0. */
-static skg_status count_others(const hits_run *run) {
+/* Background parts are counted where the counts of winners, kept as starts, are not 0. */
+static skg_status count_background(const hits_run *run) {
     const skg_hits_memory *m = run->memory;
     const cl_int4 window = window_of(run);
     const size_t row = (size_t)run->raster->layout.columns * sizeof(cl_int),
                  first = (size_t)window.s[1] * row;
-    if (run->pass->priority.others == 0) return SKG_OK;
+    if (run->pass->priority.background == 0) return SKG_OK;
     SKG_CL_TRY(clEnqueueCopyBuffer(run->context->device->queue, m->counts.memory, m->starts.memory, first,
                                    first, (size_t)(window.s[3] - window.s[1]) * row, 0, NULL, NULL));
-    return list_all(run, SKG_HITS_COUNT + SKG_HITS_OF_OTHERS);
+    return list_all(run, SKG_HITS_COUNT + SKG_HITS_OF_BACKGROUND);
 }
 
-skg_status skg_hits_expect(skg_context *context, const skg_pass *pass) {
+skg_status skg_hits_prefetch(skg_context *context, const skg_pass *pass) {
     const skg_raster raster = {.context = context, .options.kernels = pass->kernels};
     const hits_run run = {.pass = pass, .raster = &raster, .context = context};
     return compile(&run, NULL);
@@ -274,10 +274,10 @@ skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_
     SKG_TRY(upload_tables(&run));
     SKG_TRY(clear(&run));
     SKG_TRY(list_all(&run, SKG_HITS_COUNT));
-    SKG_TRY(count_others(&run));
+    SKG_TRY(count_background(&run));
     SKG_TRY(place_hits(&run));
     SKG_TRY(reserve_hits(&run));
     SKG_TRY(list_all(&run, SKG_HITS_LIST));
-    if (pass->priority.others > 0) SKG_TRY(list_all(&run, SKG_HITS_LIST + SKG_HITS_OF_OTHERS));
+    if (pass->priority.background > 0) SKG_TRY(list_all(&run, SKG_HITS_LIST + SKG_HITS_OF_BACKGROUND));
     return settle(&run);
 }

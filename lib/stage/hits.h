@@ -20,8 +20,8 @@ int64_t skg_hits_memory_bytes(const skg_hits_memory *memory);
  * SKG_ERR_DEVICE_MEMORY. */
 skg_status skg_hits_bytes(const skg_hit_count *count, int32_t is_double, int64_t *bytes);
 
-/* Expects the program of the stage (skg_expected_begin). */
-skg_status skg_hits_expect(skg_context *context, const skg_pass *pass);
+/* Prefetches the program of the stage (skg_prefetch_begin). */
+skg_status skg_hits_prefetch(skg_context *context, const skg_pass *pass);
 
 /* Enqueues the stage behind the raster of the closed parts, whose tables the device has. Waits for the count of hits. */
 skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,

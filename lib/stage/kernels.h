@@ -38,7 +38,7 @@ typedef struct {
     (&(const skg_program_options){.count = (int32_t)(sizeof(table) / sizeof *(table)), .defines = (table)})
 
 /* The program of these kernel files, behind the headers that all need, from the context's cache or built. more: NULL: no -D
- * names but those of the options; program: NULL: it is only expected (skg_expected_begin). */
+ * names but those of the options; program: NULL: it is only prefetched (skg_prefetch_begin). */
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
                            const char *const *names, const skg_program_options *more, cl_program *program);
 

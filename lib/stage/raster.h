@@ -33,8 +33,9 @@ typedef struct skg_raster skg_raster;
 skg_status skg_raster_create(skg_context *context, const skg_raster_options *options, skg_raster **raster);
 void skg_raster_release(skg_raster **raster);
 
-/* Expects the programs and the accumulators of a raster with these options (skg_expected_begin). extents: as of skg_raster_run */
-skg_status skg_raster_expect(skg_context *context, const skg_raster_options *options, const cl_int *extents);
+/* Prefetches the programs and the accumulators of a raster with these options (skg_prefetch_begin). extents: as of skg_raster_run */
+skg_status skg_raster_prefetch(skg_context *context, const skg_raster_options *options,
+                               const cl_int *extents);
 
 /* The kernel that projects vertices for this raster. It is of the same program, because each program takes time to compile. */
 cl_kernel skg_raster_projection(const skg_raster *raster);

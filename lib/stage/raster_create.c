@@ -72,9 +72,9 @@ static skg_status make_extents(skg_raster *raster) {
 
 static skg_status compile_strategy(skg_raster *raster) {
     const skg_raster_strategy *strategy = raster->strategy;
-    cl_program program = NULL, *wanted = raster->expected ? NULL : &program;
+    cl_program program = NULL, *wanted = raster->only_prefetch ? NULL : &program;
     SKG_TRY((strategy->get_program ? strategy->get_program : skg_raster_get_program)(raster, wanted));
-    if (raster->expected) return SKG_OK;
+    if (raster->only_prefetch) return SKG_OK;
     SKG_TRY(skg_kernel_create(program, "skg_project", &raster->project));
     for (int k = 0; k < SKG_STRATEGY_KERNELS && strategy->kernels[k]; k++)
         SKG_TRY(skg_kernel_create(program, strategy->kernels[k], &raster->kernels[k]));
@@ -87,8 +87,9 @@ static skg_status compile(skg_raster *raster) {
     cl_program program = NULL;
     SKG_TRY(compile_strategy(raster));
     if (!options->source_plane || options->parallel || options->half) return SKG_OK;
-    SKG_TRY(skg_kernels_get(raster->context, options, 2, source, NULL, raster->expected ? NULL : &program));
-    if (raster->expected) return SKG_OK;
+    SKG_TRY(
+        skg_kernels_get(raster->context, options, 2, source, NULL, raster->only_prefetch ? NULL : &program));
+    if (raster->only_prefetch) return SKG_OK;
     return skg_kernel_create(program, "skg_source_plane", &raster->source);
 }
 
@@ -107,13 +108,14 @@ static skg_status expect_sums(const skg_raster *raster, const cl_int *extents) {
         rows[k] = (skg_byte_range){(k * layout->plane + (int64_t)extent[0] * layout->stride) * bytes,
                                    (k * layout->plane + end * layout->stride) * bytes};
     }
-    skg_buffer_expect(raster->context, bytes_of_sums(raster), count, rows);
+    skg_buffer_prefetch(raster->context, bytes_of_sums(raster), count, rows);
     skg_free(&rows);
     return SKG_OK;
 }
 
-skg_status skg_raster_expect(skg_context *context, const skg_raster_options *options, const cl_int *extents) {
-    skg_raster none = {.context = context, .options = *options, .expected = 1};
+skg_status skg_raster_prefetch(skg_context *context, const skg_raster_options *options,
+                               const cl_int *extents) {
+    skg_raster none = {.context = context, .options = *options, .only_prefetch = 1};
     SKG_TRY(lay_out(&none));
     SKG_TRY(expect_sums(&none, extents));
     return compile(&none);

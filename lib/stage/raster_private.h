@@ -20,7 +20,7 @@ typedef struct {
     /* Sets what the layout has beside the sizes of detector and planes: copies, shape of tiles, entries of a queue. */
     skg_status (*lay_out)(skg_raster *raster);
     skg_status (*allocate)(skg_raster *raster); /* buffers beside sums and used */
-    /* Its program, instead of skg_raster_get_program. program: NULL: it is only expected. */
+    /* Its program, instead of skg_raster_get_program. program: NULL: it is only prefetched. */
     skg_status (*get_program)(const skg_raster *raster, cl_program *program);
     /* Enqueues one frame. */
     skg_status (*run)(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
@@ -50,7 +50,7 @@ struct skg_raster {
     cl_kernel project;                       /* of the same program */
     cl_kernel source;                        /* for the source's plane; NULL: no triangle reaches it */
     cl_kernel bad_rows, bad;                 /* made on demand */
-    int32_t expected;                        /* 1: its programs are only expected */
+    int32_t only_prefetch;                   /* 1: its programs are only prefetched */
     int32_t reserved;
     int64_t state; /* of the geometry whose sums it holds, all of them; 0: not known */
 };
@@ -66,7 +66,7 @@ int64_t skg_raster_plane_bytes(const skg_raster *raster);
 skg_status skg_raster_reserve(skg_raster *raster, skg_buffer *buffer, int64_t bytes, const char *what);
 skg_status skg_raster_reserve_lists(skg_raster *raster);
 
-/* The program of the strategy's files. program: NULL: it is only expected. */
+/* The program of the strategy's files. program: NULL: it is only prefetched. */
 skg_status skg_raster_get_program(const skg_raster *raster, cl_program *program);
 
 /* The sizes of launches: a work-group of one work-item for each worker; a work-item for each triangle; whole work-groups. */

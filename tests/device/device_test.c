@@ -190,9 +190,9 @@ START_TEST(expected_buffers_hold_what_is_written_and_are_given_back) {
         const size_t bytes = k % 3 ? BYTES : BYTES / 2 + 4;
         skg_buffer buffer = {0};
         if (k == 6) before = address_space_pages();
-        skg_buffer_expect(context, BYTES, 2, written);
-        skg_expected_begin(context);
-        skg_expected_wait(context);
+        skg_buffer_prefetch(context, BYTES, 2, written);
+        skg_prefetch_begin(context);
+        skg_prefetch_wait(context);
         if (k % 2) {
             ck_skg(skg_buffer_reserve(context, &buffer, (int64_t)bytes, CL_MEM_READ_WRITE, "values"));
             ck_assert_int_eq(buffer.bytes, (int64_t)bytes);

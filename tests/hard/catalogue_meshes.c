@@ -11,7 +11,7 @@ enum { SIDE = 96, PIXELS = SIDE * SIDE };
 
 /* Lengths of a mesh that may be open: right where the signed hits cancel, finite elsewhere, and as many
  * pixels told as do not cancel. */
-static void judge_open(hard_outcome *o, const solid *s, int64_t least_bad) {
+static void judge_open(hard_outcome *o, const solid *s, int64_t min_bad) {
     const skg_view view = run_view(SIDE, 1.7);
     static double truth[PIXELS];
     double longest = 0;
@@ -23,7 +23,7 @@ static void judge_open(hard_outcome *o, const solid *s, int64_t least_bad) {
         if (truth[p] > longest) longest = truth[p];
     }
     caster_free(c);
-    if (bad < least_bad) hard_fault(o, "the case has %lld open pixels only", (long long)bad);
+    if (bad < min_bad) hard_fault(o, "the case has %lld open pixels only", (long long)bad);
     o->unit = "of the longest path, where hits cancel";
     skg_scene *scene = run_scene(s, NULL);
     for (int32_t precision = 0; precision <= run_has_double(); precision++) {

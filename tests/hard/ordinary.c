@@ -129,12 +129,12 @@ void hard_compare_time(hard_outcome *o, const skg_scene *scene, skg_plan *plan, 
     ordinary.rows = view->rows;
     skg_scene *other_scene = ordinary_scene(size, &ordinary);
     skg_plan *other = run_plan(other_scene, &ordinary, (run_choice){0});
-    double least = HUGE_VAL, other_least = HUGE_VAL;
+    double least = HUGE_VAL, other_min = HUGE_VAL;
     for (int n = 0; n < ROUNDS; n++) { /* alternately: both see the same machine */
         least = fmin(least, frame_ms(plan, view));
-        other_least = fmin(other_least, frame_ms(other, &ordinary));
+        other_min = fmin(other_min, frame_ms(other, &ordinary));
     }
-    o->slower = least / other_least;
+    o->slower = least / other_min;
     skg_plan_release(&other);
     skg_scene_release(&other_scene);
 }

@@ -9,7 +9,7 @@
 /* The least that OpenCL 1.2 allows a device to have is 32 KiB; with 8 KiB, tiles have to shrink. */
 static const size_t local_bytes[] = {32 * 1024, 8 * 1024};
 
-static size_t most_local; /* of any kernel that was launched */
+static size_t max_local; /* of any kernel that was launched */
 static int launched, asked_double;
 static cl_device_id device;
 
@@ -50,7 +50,7 @@ cl_int __wrap_clEnqueueNDRangeKernel(cl_command_queue queue, cl_kernel kernel, c
             (size_t)own; /* a driver may count the arguments, too: then the sum is too high, never too low */
     for (int i = 0; i < LIMIT; i++)
         if (arguments[i].kernel == kernel) sum += arguments[i].bytes;
-    if (sum > most_local) most_local = sum;
+    if (sum > max_local) max_local = sum;
     return __real_clEnqueueNDRangeKernel(queue, kernel, dimensions, offset, global, local, count, waits,
                                          event);
 }
@@ -88,8 +88,8 @@ START_TEST(a_small_gpu_gets_what_it_can_do) {
         ck_assert_msg(verdict.good, "%s: %s", skg_self_test_name((skg_self_test)test), verdict.reason);
     }
     ck_assert_int_gt(launched, 0);
-    ck_assert_uint_gt(most_local, 0); /* the tiles of a GPU stand in local memory */
-    ck_assert_uint_le(most_local, local_bytes[_i]);
+    ck_assert_uint_gt(max_local, 0); /* the tiles of a GPU stand in local memory */
+    ck_assert_uint_le(max_local, local_bytes[_i]);
     ck_assert_int_eq(asked_double, 0);
     skg_context_release(&context);
 }

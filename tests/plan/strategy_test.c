@@ -49,12 +49,12 @@ END_TEST
 /* Planes are mixed from at most 32 accumulators and 128 MiB, but from half as many again as planes in any case. */
 START_TEST(planes_are_mixed_from_what_fits) {
     skg_fine_request request = {.shifts = 1, .columns = 512, .rows = 512};
-    ck_assert_int_eq(skg_most_mixed(&request, 5), 32);
+    ck_assert_int_eq(skg_max_mixed(&request, 5), 32);
     request.shifts = 3; /* 9 MiB each */
-    ck_assert_int_eq(skg_most_mixed(&request, 5), 14);
+    ck_assert_int_eq(skg_max_mixed(&request, 5), 14);
     request.precision = SKG_PRECISION_DOUBLE;
-    ck_assert_int_eq(skg_most_mixed(&request, 5), 7);
-    ck_assert_int_eq(skg_most_mixed(&request, 16), 24);
+    ck_assert_int_eq(skg_max_mixed(&request, 5), 7);
+    ck_assert_int_eq(skg_max_mixed(&request, 16), 24);
 }
 END_TEST
 

@@ -28,8 +28,8 @@ static int64_t cell_of(const vertex_grid *grid, const double p[3]) {
 
 /* Sets the number of cells, at most a few for each vertex. Beyond LIMIT of them on an axis, the last holds the rest. */
 static int64_t lay_out(const skg_body_organ *o, vertex_grid *grid) {
-    enum { LEAST_CELLS = 4096, CELLS_OF_VERTEX = 64, LIMIT = 1 << 20 };
-    const double wanted = fmax(LEAST_CELLS, CELLS_OF_VERTEX * (double)o->vertices);
+    enum { MIN_CELLS = 4096, CELLS_OF_VERTEX = 64, LIMIT = 1 << 20 };
+    const double wanted = fmax(MIN_CELLS, CELLS_OF_VERTEX * (double)o->vertices);
     double cells;
     grid->width = thickest / 2;
     do {

@@ -75,8 +75,7 @@ static void restart(skg_search *s) {
     const int is_near = s->counters[SEARCH_RESTARTS] % 2 == 1;
     for (int64_t k = 0; k < s->dimensions; k++) mean[k] = is_near ? s->best[k] : skg_draw_uniform(&key, k);
     s->counters[SEARCH_POPULATION] = skg_cma_population(s->dimensions, 0);
-    for (int64_t d = 0; d < doublings && !is_near && 2 * s->counters[SEARCH_POPULATION] <= s->most_points;
-         d++)
+    for (int64_t d = 0; d < doublings && !is_near && 2 * s->counters[SEARCH_POPULATION] <= s->max_points; d++)
         s->counters[SEARCH_POPULATION] *= 2;
     reset(s, mean, is_near ? NEAR_SIGMA : FIRST_SIGMA);
 }

@@ -22,13 +22,13 @@ static double *members(skg_search *s) {
 }
 
 static double *values_of(skg_search *s) {
-    return s->own + s->most_points * s->dimensions;
+    return s->own + s->max_points * s->dimensions;
 }
 
 void skg_de_begin(skg_search *s) {
     const int64_t n = s->dimensions;
-    s->counters[SEARCH_POPULATION] = s->most_points;
-    for (int64_t i = 0; i < s->most_points; i++) {
+    s->counters[SEARCH_POPULATION] = s->max_points;
+    for (int64_t i = 0; i < s->max_points; i++) {
         const skg_draw_key key = {s->seed, 0, (int32_t)i, PURPOSE_BEGIN};
         for (int64_t k = 0; k < n; k++)
             members(s)[n * i + k] = i == 0 ? s->start[k] : skg_draw_uniform(&key, k);
@@ -41,7 +41,7 @@ static void choose(const skg_search *s, int64_t i, int64_t chosen[3]) {
     const skg_draw_key key = {s->seed, s->counters[SEARCH_GENERATION], (int32_t)i, PURPOSE_PARENTS};
     int64_t draws = 0;
     for (int c = 0; c < 3;) {
-        const int64_t one = (int64_t)(skg_draw_uniform(&key, draws++) * (double)s->most_points);
+        const int64_t one = (int64_t)(skg_draw_uniform(&key, draws++) * (double)s->max_points);
         int known = one == i;
         for (int d = 0; d < c; d++) known |= chosen[d] == one;
         if (!known) chosen[c++] = one;
@@ -50,7 +50,7 @@ static void choose(const skg_search *s, int64_t i, int64_t chosen[3]) {
 
 void skg_de_ask(skg_search *s) {
     const int64_t n = s->dimensions, generation = s->counters[SEARCH_GENERATION];
-    for (int64_t i = 0; i < s->most_points; i++) {
+    for (int64_t i = 0; i < s->max_points; i++) {
         double *point = s->points + n * i;
         const double *own = members(s) + n * i;
         int64_t p[3];
@@ -73,7 +73,7 @@ void skg_de_ask(skg_search *s) {
 
 void skg_de_tell(skg_search *s, const double *values) {
     const int64_t n = s->dimensions;
-    for (int64_t i = 0; i < s->most_points; i++) {
+    for (int64_t i = 0; i < s->max_points; i++) {
         if (!(values[i] <= values_of(s)[i])) continue;
         values_of(s)[i] = values[i];
         memcpy(members(s) + n * i, s->points + n * i, (size_t)n * sizeof *s->points);

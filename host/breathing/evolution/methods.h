@@ -21,7 +21,7 @@ enum {
 
 typedef struct {
     int method;
-    int64_t dimensions, most_points, seed;
+    int64_t dimensions, max_points, seed;
     int64_t counters[SEARCH_COUNTERS];
     int64_t number_count;
     double *numbers;     /* [number_count] what the pointers below point into */
@@ -29,8 +29,8 @@ typedef struct {
     double *best;        /* [dimensions] its point */
     double *start;       /* [dimensions] */
     double *own;         /* the method's */
-    double *points;      /* [most_points][dimensions] after ask: where f is wanted, in the box */
-    double *free_points; /* [most_points][dimensions] of CMA: the same before they were moved into the box */
+    double *points;      /* [max_points][dimensions] after ask: where f is wanted, in the box */
+    double *free_points; /* [max_points][dimensions] of CMA: the same before they were moved into the box */
 } skg_search;
 
 /* CMA-ES. */

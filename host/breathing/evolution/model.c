@@ -17,7 +17,7 @@ static const double KEPT = 3, FITTED = 1.5;
 static const double LEAST = 1.2;
 
 /* Of a point at the edge of those that are fitted; one at the mean has 1. */
-static const double LEAST_WEIGHT = 1e-3;
+static const double MIN_WEIGHT = 1e-3;
 
 /* Added to the diagonal of the normal equations, as a share of it, so that rounding leaves them positive. */
 static const double RIDGE = 1e-10;
@@ -181,7 +181,7 @@ static int fit(const skg_search *s, const double *memory, const skg_model_frame 
     for (int64_t i = 0; i < used; i++) {
         const double *row = memory + (n + 1) * order[i].row, inward = 1 - order[i].square / far;
         transform(n, frame, row, z);
-        add_point(e, n, z, *reach, inward * inward + LEAST_WEIGHT, row[n] - nearest);
+        add_point(e, n, z, *reach, inward * inward + MIN_WEIGHT, row[n] - nearest);
     }
     return solve(e);
 }

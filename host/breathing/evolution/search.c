@@ -11,7 +11,7 @@
 enum { DOUBLINGS = 4 };
 
 static skg_status allocate(skg_search *s) {
-    const int64_t n = s->dimensions, points = s->most_points;
+    const int64_t n = s->dimensions, points = s->max_points;
     const int64_t own = s->method == SKG_SEARCH_CMA ? skg_cma_numbers(n) : points * (n + 1);
     s->number_count = 1 + 2 * n + own;
     SKG_TRY(skg_alloc(s->number_count, sizeof *s->numbers, "search", &s->numbers));
@@ -35,7 +35,7 @@ skg_status skg_search_create(int method, int64_t dimensions, const double *start
     if (dimensions < 1 || dimensions > SKG_SEARCH_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "a search of %" PRId64 " dimensions; 1 to %d are possible",
                         dimensions, SKG_SEARCH_MAX);
-    search->most_points =
+    search->max_points =
         method == SKG_SEARCH_CMA ? skg_cma_population(dimensions, DOUBLINGS) : skg_de_population(dimensions);
     const skg_status status = allocate(search);
     if (status != SKG_OK) {

@@ -68,7 +68,7 @@ static int read_state(const skg_fit *fit, FILE *stream, int64_t *counters, doubl
     for (int64_t i = 0; i < fit->search.number_count; i++)
         if (fscanf(stream, "%la", numbers + i) != 1) return 0;
     return fscanf(stream, "%7s", word) == 1 && strcmp(word, "end") == 0 && counters[SEARCH_POPULATION] >= 1 &&
-           counters[SEARCH_POPULATION] <= fit->search.most_points;
+           counters[SEARCH_POPULATION] <= fit->search.max_points;
 }
 
 static skg_status read_file(skg_fit *fit, FILE *stream, const char *path, double *numbers) {

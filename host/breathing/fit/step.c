@@ -107,7 +107,7 @@ static skg_status say_progress(const skg_fit *fit) {
 static skg_status step(skg_fit *fit) {
     double *values;
     SKG_TRY(say_progress(fit));
-    SKG_TRY(skg_alloc(fit->search.most_points, sizeof *values, "fit", &values));
+    SKG_TRY(skg_alloc(fit->search.max_points, sizeof *values, "fit", &values));
     skg_status status = skg_search_ask(&fit->search);
     if (status == SKG_OK) status = evaluate_all(fit, values);
     if (status == SKG_OK) status = skg_search_tell(&fit->search, values);

@@ -153,7 +153,7 @@ static void add_run(const cost_study *study, json_t *object) {
     json_object_set_new(object, "stopped", json_boolean(study->stopped));
     json_object_set_new(object, "left_out", json_integer(study->left_out));
     json_object_set_new(object, "unrest", cli_json_number(study->unrest));
-    json_object_set_new(object, "most_unrest", cli_json_number(cost_most_unrest));
+    json_object_set_new(object, "most_unrest", cli_json_number(cost_max_unrest));
     json_object_set_new(object, "priced", json_boolean(study->priced));
     json_object_set_new(object, "reference_error", cli_json_number(study->reference_error));
     json_object_set_new(object, "grey_levels",

@@ -11,8 +11,8 @@ void cost_close(cost_study *study);
 /* Which settings are worth measuring, and in which order. */
 
 /* The setting of the reference COST_OF_ALL but for its rays, which are the scene's: the best of every dial, as far as an image
- * of it takes at most `most_ms`. */
-cost_setting cost_best_of_all(const cost_study *study, double most_ms);
+ * of it takes at most `max_ms`. */
+cost_setting cost_best_of_all(const cost_study *study, double max_ms);
 
 /* Adds the points of all dials to the study, without measuring them, and the settings of their references. */
 void cost_choose_settings(cost_study *study);

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const float LEAST_SHOWN = 1e-12f; /* of the flat field */
+static const float MIN_SHOWN = 1e-12f; /* of the flat field */
 
 extern const char cost_page[]; /* page.html, as built in */
 
@@ -42,7 +42,7 @@ static int small_json(const cost_study *study, const float *small, double *low, 
     float *dense = calloc((size_t)places, sizeof *dense);
     skg_picture picture;
     if (!dense) return cli_error(CLI_DEVICE, "out of host memory");
-    for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(small[i], LEAST_SHOWN));
+    for (int64_t i = 0; i < places; i++) dense[i] = -logf(fmaxf(small[i], MIN_SHOWN));
     skg_picture_init(&picture);
     picture.columns = study->thumb_columns;
     picture.rows = study->thumb_rows;

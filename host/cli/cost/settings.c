@@ -181,9 +181,9 @@ static void add_breath(cost_study *study) {
     }
 }
 
-cost_setting cost_best_of_all(const cost_study *study, double most_ms) {
-    const int32_t most_side = study->quick ? 8 : 16;
-    const int64_t most_samples = study->quick ? 256 : 4096;
+cost_setting cost_best_of_all(const cost_study *study, double max_ms) {
+    const int32_t max_side = study->quick ? 8 : 16;
+    const int64_t max_samples = study->quick ? 256 : 4096;
     cost_setting its = study->own;
     its.meshing = study->meshing_count - 1;
     if (study->has_leaky) its.repair = SKG_REPAIR_EXACT;
@@ -191,11 +191,10 @@ cost_setting cost_best_of_all(const cost_study *study, double most_ms) {
         cost_setting more = its;
         grown = 0;
         more.supersampling *= 2;
-        if (more.supersampling <= most_side && cost_estimate_ms(study, &more) <= most_ms)
-            its = more, grown = 1;
+        if (more.supersampling <= max_side && cost_estimate_ms(study, &more) <= max_ms) its = more, grown = 1;
         more = its;
         more.samples *= 4;
-        if (more.samples > 0 && more.samples <= most_samples && cost_estimate_ms(study, &more) <= most_ms)
+        if (more.samples > 0 && more.samples <= max_samples && cost_estimate_ms(study, &more) <= max_ms)
             its = more, grown = 1;
     }
     return its;

@@ -308,7 +308,7 @@ void cost_find_unrest(cost_study *study) {
     const double *ms = study->pulse_ms;
     const int64_t n = study->pulse_count;
     study->unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];
-    study->priced = study->unrest <= cost_most_unrest;
+    study->priced = study->unrest <= cost_max_unrest;
     for (int i = 0; i < study->shot_count; i++) {
         cost_shot *shot = &study->shots[i];
         if (isnan(shot->spread_ms)) shot->spread_ms = study->unrest * shot->min_ms;

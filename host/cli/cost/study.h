@@ -261,7 +261,7 @@ typedef struct {
     double *pulse_ms; /* [pulse_count] times of the scene's own image between visits: the machine's unrest */
     int64_t pulse_count, pulse_capacity;
     double unrest; /* their interquartile range over their median; NaN: fewer than 4 */
-    int priced;    /* 1: the unrest is at most cost_most_unrest; 0: neither times nor prices are given */
+    int priced;    /* 1: the unrest is at most cost_max_unrest; 0: neither times nor prices are given */
     double
         reference_error; /* of the reference COST_OF_ALL, root mean square, estimated from its neighbours; NaN: not known */
     double grey_levels; /* of 256 in a PNG of transmission, for a whole flat field; 0: not known */
@@ -276,7 +276,7 @@ typedef struct {
 
 extern const char *const cost_source_names[COST_SOURCES];
 extern const char *const cost_repair_names[3]; /* by SKG_REPAIR_ value */
-extern const double cost_most_unrest;          /* for prices */
+extern const double cost_max_unrest;           /* for prices */
 extern const double cost_tolerances[COST_TOLERANCES];
 
 /* The dials that are compared with a reference: "precision, tolerance, bins". */

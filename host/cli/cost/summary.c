@@ -221,7 +221,7 @@ static void refuse_prices(cost_study *study) {
             study->summary, sizeof study->summary,
             " No price: the time of the same image varied by %.0f %%, more than the %.0f %% up to which prices "
             "are given; repeat this on an idle machine.",
-            100 * study->unrest, 100 * cost_most_unrest);
+            100 * study->unrest, 100 * cost_max_unrest);
 }
 
 void cost_summarise(cost_study *study) {

@@ -25,7 +25,7 @@ static skg_mesh *mesh_of(const skg_thorax *thorax, const char *label) {
 
 /* Whether two closed meshes have about the same bounds. A scanned organ with the same label has others. */
 static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
-    static const double most_mm =
+    static const double max_mm =
         10; /* more than the number of triangles changes the bounds of a coarse part */
     skg_mesh_health healths[2];
     skg_mesh_health_init(&healths[0]);
@@ -34,7 +34,7 @@ static int has_same_bounds(const skg_mesh *a, const skg_mesh *b) {
         return 0;
     if (!healths[0].closed || !healths[1].closed) return 0;
     for (int k = 0; k < 6; k++)
-        if (!(fabs(healths[0].bounds[k] - healths[1].bounds[k]) < most_mm)) return 0;
+        if (!(fabs(healths[0].bounds[k] - healths[1].bounds[k]) < max_mm)) return 0;
     return 1;
 }
 

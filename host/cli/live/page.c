@@ -15,7 +15,7 @@ enum { MOMENTS = 12 };
 /* Surfaces of the scene, over its breath. */
 static int take_shapes(const live_scene *scene, view_shapes *shapes) {
     const int64_t frames = scene->motion ? MOMENTS : 1;
-    int exit_status = view_shapes_make(scene->session.scene, frames, view_most_triangles(frames), shapes);
+    int exit_status = view_shapes_make(scene->session.scene, frames, view_max_triangles(frames), shapes);
     for (int64_t f = 0; f < frames && exit_status == CLI_DONE; f++) {
         if (frames > 1) {
             const skg_status status = skg_motion_pose_at_phase(scene->motion, (double)f / (double)frames);

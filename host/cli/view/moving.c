@@ -17,7 +17,7 @@ enum { KEY_FRAMES_MAX = 100, FRAMES_MAX = 1000000 };
 enum { TRIANGLES_MAX = 100000, BYTES_MAX = 3000000, PIXELS_MAX = 600000, SIDE_MAX = 512 };
 
 /* A triangle has 3 corners of 2 bytes; for each triangle there is half a vertex, of 6 bytes in each frame. */
-int64_t view_most_triangles(int64_t frames) {
+int64_t view_max_triangles(int64_t frames) {
     const double most = (double)BYTES_MAX / (6 + 3 * (double)frames);
     return most < TRIANGLES_MAX ? (int64_t)most : TRIANGLES_MAX;
 }
@@ -68,10 +68,10 @@ static void tell_size(const view_shapes *shapes, const char *path) {
     if (shapes->triangles < shapes->of)
         cli_note("%s: shows %lld of the scene's %lld triangles", path, (long long)shapes->triangles,
                  (long long)shapes->of);
-    else if (!view_can_thin && shapes->of > view_most_triangles(shapes->frames))
+    else if (!view_can_thin && shapes->of > view_max_triangles(shapes->frames))
         cli_note(
             "%s: shows all %lld triangles, which makes it large; built with libmeshoptimizer-dev, skiagraph shows %lld",
-            path, (long long)shapes->of, (long long)view_most_triangles(shapes->frames));
+            path, (long long)shapes->of, (long long)view_max_triangles(shapes->frames));
 }
 
 int view_write_page(view_work *w, const char *path) {
@@ -87,7 +87,7 @@ int view_write_page(view_work *w, const char *path) {
                       .image_frames = frames};
     uint8_t *image = malloc((size_t)(frames * page.image_columns * page.image_rows));
     cli_progress_begin("making the page, moments", frames);
-    int exit_status = view_shapes_make(w->session.scene, frames, view_most_triangles(frames), &shapes);
+    int exit_status = view_shapes_make(w->session.scene, frames, view_max_triangles(frames), &shapes);
     if (exit_status == CLI_DONE && !image)
         exit_status = cli_error(CLI_DEVICE, "out of host memory for the page");
     for (int64_t f = 0; f < frames && exit_status == CLI_DONE; f++) {

@@ -28,7 +28,7 @@ int view_page_texts(const view_page *page, char **scene, char **bytes);
 int view_page_view(const view_page *page, json_t *object);
 
 /* The triangles of a page with so many moments. */
-int64_t view_most_triangles(int64_t frames);
+int64_t view_max_triangles(int64_t frames);
 
 /* Writes the page. */
 int view_page_write(const view_page *page, const char *path);

@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* No part loses all of its shape. */
-enum { LEAST_TRIANGLES = 100, ROUNDS_MAX = 3 };
+enum { MIN_TRIANGLES = 100, ROUNDS_MAX = 3 };
 
 static skg_status get_part(const skg_scene *scene, int64_t id, skg_part *part) {
     skg_part_init(part);
@@ -40,7 +40,7 @@ static int make_shape(const skg_scene *scene, int64_t id, int64_t frames, double
     if (status != SKG_OK) return cli_fail(status);
     const int64_t wanted = (int64_t)(share * (double)triangles);
     const int exit_status =
-        view_thin(&part, wanted > LEAST_TRIANGLES ? wanted : LEAST_TRIANGLES, &shape->surface);
+        view_thin(&part, wanted > MIN_TRIANGLES ? wanted : MIN_TRIANGLES, &shape->surface);
     if (exit_status != CLI_DONE) return exit_status;
     shape->positions = malloc((size_t)(frames * shape->surface.vertices + 1) * 3 * sizeof *shape->positions);
     return shape->positions ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for %s", part.label);

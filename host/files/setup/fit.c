@@ -59,9 +59,9 @@ typedef struct {
     const skg_view *view;
     double origin[3]; /* the source; of a beam from infinity, the centre of the parts */
     double axis[3], right[3], up[3];
-    double least_depth, most_depth; /* along the axis from the origin */
-    double plane;                   /* depth of the detector; 0: not decided so far */
-    double half[2];                 /* half extents on the detector along right and up */
+    double min_depth, max_depth; /* along the axis from the origin */
+    double plane;                /* depth of the detector; 0: not decided so far */
+    double half[2];              /* half extents on the detector along right and up */
 } beam_frame;
 
 static void measure_depth(void *user, const double x[3]) {
@@ -69,8 +69,8 @@ static void measure_depth(void *user, const double x[3]) {
     double way[3];
     skg_add_scaled(x, -1, frame->origin, way);
     const double depth = skg_dot(way, frame->axis);
-    frame->least_depth = fmin(frame->least_depth, depth);
-    frame->most_depth = fmax(frame->most_depth, depth);
+    frame->min_depth = fmin(frame->min_depth, depth);
+    frame->max_depth = fmax(frame->max_depth, depth);
 }
 
 static void measure_shadow(void *user, const double x[3]) {
@@ -109,18 +109,17 @@ static skg_status aim(skg_setup_reader *reader, const skg_json_node *node, const
             "the source is at the centre of the parts, so no detector can be fitted; move the "
             "source, or give Detector.Position");
     skg_scale_vector(1 / distance, frame->axis, frame->axis);
-    frame->least_depth = HUGE_VAL, frame->most_depth = -HUGE_VAL;
+    frame->min_depth = HUGE_VAL, frame->max_depth = -HUGE_VAL;
     SKG_TRY(visit_vertices(reader->setup->scene, measure_depth, frame));
-    if (view->projection == SKG_PROJECTION_POINT && !(frame->least_depth > 1e-3 * distance))
+    if (view->projection == SKG_PROJECTION_POINT && !(frame->min_depth > 1e-3 * distance))
         return skg_json_fail(
             node, SKG_ERR_SCENE,
             "the parts reach to the source or behind it, so no detector can be fitted; move the "
             "source, or give Detector.Position");
     /* Behind the last part, with a little room. */
-    const double depth = frame->most_depth - frame->least_depth;
-    frame->plane =
-        fmax(from_infinity ? 0 : (1 + DETECTOR_SHARE) * distance, frame->most_depth + 0.05 * depth);
-    if (from_infinity && frame->plane == frame->most_depth)
+    const double depth = frame->max_depth - frame->min_depth;
+    frame->plane = fmax(from_infinity ? 0 : (1 + DETECTOR_SHARE) * distance, frame->max_depth + 0.05 * depth);
+    if (from_infinity && frame->plane == frame->max_depth)
         frame->plane += 1; /* a flat part, across the beam */
     return SKG_OK;
 }

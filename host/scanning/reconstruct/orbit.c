@@ -6,7 +6,7 @@
 #include <math.h>
 
 /* The largest cosine between the rows of the detector and the axis. */
-static const double most_oblique = 0.1;
+static const double max_oblique = 0.1;
 
 static void normalise(double *v) {
     skg_scale_vector(1 / skg_length(v), v, v);
@@ -36,7 +36,7 @@ static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose
     const skg_view *view = &pose->view;
     const double length = skg_length(view->column_step);
     double to_detector[3];
-    if (fabs(skg_dot(view->column_step, axis)) > most_oblique * length)
+    if (fabs(skg_dot(view->column_step, axis)) > max_oblique * length)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "projection %lld: the rows of the detector do not run across the axis of rotation",
                         (long long)index);

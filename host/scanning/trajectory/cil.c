@@ -10,7 +10,7 @@
 #include <string.h>
 
 /* mm: how far a pose may be from that of a circle to be one. */
-static const double most_deviation = 1e-9;
+static const double max_deviation = 1e-9;
 
 /* z along the axis of rotation, y from the source to it: CIL's own axes. */
 static int choose_world(const skg_scan *scan, skg_tool_turn *turn, skg_tool_world *world) {
@@ -44,7 +44,7 @@ static skg_status is_circle(const skg_scan *scan, const skg_tool_turn *turn, int
         const double apart = difference(view.source, first->source) + difference(view.centre, first->centre) +
                              (double)view.columns * difference(view.column_step, first->column_step) +
                              (double)view.rows * difference(view.row_step, first->row_step);
-        if (!(apart < most_deviation)) return SKG_OK;
+        if (!(apart < max_deviation)) return SKG_OK;
     }
     *result = 1;
     return SKG_OK;

@@ -9,7 +9,7 @@
 
 /* The largest cosine between the detector's steps that counts as a right angle, and the largest relative difference
  * between pixels that counts as none. */
-static const double most_skew = 1e-6, most_difference = 1e-9;
+static const double max_skew = 1e-6, max_difference = 1e-9;
 
 void skg_tool_world_init(skg_tool_world *world) {
     *world = (skg_tool_world){.axes = {{1, 0, 0}, {0, 1, 0}, {0, 0, 1}}};
@@ -60,7 +60,7 @@ skg_status skg_tool_detector(const skg_tool_world *world, const skg_view *view, 
                              const char *tool, double axes[3][3]) {
     skg_scale_vector(1 / skg_length(view->column_step), view->column_step, axes[0]);
     skg_scale_vector(1 / skg_length(view->row_step), view->row_step, axes[1]);
-    if (fabs(skg_dot(axes[0], axes[1])) > most_skew)
+    if (fabs(skg_dot(axes[0], axes[1])) > max_skew)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "projection %" PRId64 ": the geometry of %s has no skewed detector; write .csv",
                         index, tool);
@@ -77,7 +77,7 @@ skg_status skg_tool_pixel(const skg_scan *scan, const char *tool, double pixel_m
         const double now[2] = {skg_length(view.column_step), skg_length(view.row_step)};
         if (k == 0) memcpy(pixel_mm, now, sizeof now);
         for (int i = 0; i < 2; i++)
-            if (fabs(now[i] - pixel_mm[i]) > most_difference * pixel_mm[i])
+            if (fabs(now[i] - pixel_mm[i]) > max_difference * pixel_mm[i])
                 return skg_fail(SKG_ERR_UNSUPPORTED,
                                 "projection %" PRId64
                                 ": its pixels have another size than those of the first "

@@ -3,10 +3,10 @@
  *
  * Making a context takes about 200 ms, and the first plan on it compiles kernels. Make one and keep it.
  *
- * Compiled kernels are kept for later processes in the folder that the environment variable SKG_CACHE_DIR names, by
+ * Compiled kernels are cached for later processes in the folder that the environment variable SKG_CACHE_DIR names, by
  * default skiagraph in $XDG_CACHE_HOME or .cache/skiagraph in $HOME; SKG_CACHE_DIR=none keeps nothing. The folder has to
  * belong to the user, and nobody else may write to it. It is made if need be, and holds at most 256 MiB. A folder that
- * cannot be used is no failure: kernels are compiled then. Kernels are kept when the first job that used them is done.
+ * cannot be used is no failure: kernels are compiled then. Kernels are cached when the first job that used them is done.
  * PoCL keeps kernels itself, in the folder that POCL_CACHE_DIR names, and would have to compile them a second time for ours;
  * there, the 20th process that uses a kernel keeps it, or the first if POCL_KERNEL_CACHE=0 turns PoCL's folder off. When
  * compiling takes longer than a second, the log gets a line of level SKG_LOG_PROGRESS.
@@ -78,7 +78,7 @@ typedef struct skg_context skg_context;
  *
  * Some drivers end, crash or block the process that calls them. Therefore a device of a platform that this version of the
  * library does not know (skg_device_info.known) is chosen without being named, or for device=cpu or device=gpu, only if
- * it has passed its test on this machine and the verdict is kept in SKG_CACHE_DIR; until then the library reads no
+ * it has passed its test on this machine and the verdict is cached in SKG_CACHE_DIR; until then the library reads no
  * more of such a platform than its name. `skiagraph devices` tests such devices in processes of their own, each for 30 s at
  * most. Naming one by number or name is the caller's decision: if it was not tested (skg_device_untested), its driver is tested in
  * the caller's process, and may end or block it. The same holds for skg_device_count, skg_device_get and
@@ -86,10 +86,10 @@ typedef struct skg_context skg_context;
  * for its platforms and devices; the environment variable OCL_ICD_VENDORS restricts it to one driver.
  *
  * Some drivers compute wrongly and report no error. The first time that a device with its driver is used, a small
- * scene whose path lengths are known is rendered, its speed is measured, and the verdict is kept in SKG_CACHE_DIR.
+ * scene whose path lengths are known is rendered, its speed is measured, and the verdict is cached in SKG_CACHE_DIR.
  * A device that fails is refused with a sentence, and the next one that the words allow is taken, with a warning.
  * Kernels that not every plan needs are tested when skg_plan_create needs them first; if they fail, it returns
- * SKG_ERR_DEVICE. Where nothing can be kept, every context tests its device. Not tested are a device that is given
+ * SKG_ERR_DEVICE. Where nothing can be cached, every context tests its device. Not tested are a device that is given
  * to skg_context_create_cl, as far as every plan's kernels are concerned, simulators, and kernels from kernels=. */
 SKG_API skg_status skg_context_create(const char *config, skg_context **context);
 
@@ -243,7 +243,7 @@ SKG_API skg_status skg_device_test_name_get(int64_t test, const char **name);
  *     errors   SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
 SKG_API skg_status skg_device_test_run(int64_t device, int64_t test, skg_device_test *result);
 
-/** Keeps what a test in another process found out, for instance that the driver ended it. A passing verdict is kept by the
+/** Keeps what a test in another process found out, for instance that the driver ended it. A passing verdict is cached by the
  * process that tests.
  *
  *     config   the words of skg_context_create that name the device

@@ -1,6 +1,6 @@
 /* Work that one thread does beside the caller's. Private. */
-#ifndef SKG_ASIDE_H
-#define SKG_ASIDE_H
+#ifndef SKG_ASYNC_H
+#define SKG_ASYNC_H
 
 #include "core/core.h"
 
@@ -12,14 +12,14 @@ typedef struct {
     void *user;
     pthread_t thread;
     int32_t begun, has_thread;
-} skg_aside;
+} skg_async;
 
 /* Begins work(user) in a thread of its own, which has default arithmetic and the C locale, and blocks the signals that are
- * sent to the process. Nothing else may use what it uses until skg_aside_end. If there is no thread to be had, or only one CPU,
- * skg_aside_end does the work. It must not log. */
-void skg_aside_begin(skg_aside *aside, void (*work)(void *user), void *user);
+ * sent to the process. Nothing else may use what it uses until skg_async_end. If there is no thread to be had, or only one CPU,
+ * skg_async_end does the work. It must not log. */
+void skg_async_begin(skg_async *async, void (*work)(void *user), void *user);
 
 /* Waits until the work is done. Nothing happens if none was begun. */
-void skg_aside_end(skg_aside *aside);
+void skg_async_end(skg_async *async);
 
 #endif
