@@ -337,7 +337,7 @@ SKG_APART void skg_attenuate_strip(const skg_strip *whole) {
  * lists          [accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p; SKG_SUMS
  * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range; SKG_RANGED
  * polynomials    [shades of heel and oblique scintillator][SKG_TERMS] coefficients of 1, z, z^2, ...
- * tables         of bow-tie and grid (lib/spectral/shades.h)
+ * tables         of bow-tie and grid (lib/spectral/shading.h)
  * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `args.limit` (the exponent
  *                is below -limit): more was subtracted for children than their parent has there
  *                negative[2] counts the values that are not finite

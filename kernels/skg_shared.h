@@ -157,7 +157,7 @@ typedef struct {
     real middle_i, middle_j; /* the pixel of `centre` */                                                     \
     real unit;               /* 1 / scale of the plane */
 
-/* How the amounts of shades follow from a ray (lib/spectral/shades.h). "Along the ray" means (a[0] + a[1] i + a[2] j) for pixel
+/* How the amounts of shades follow from a ray (lib/spectral/shading.h). "Along the ray" means (a[0] + a[1] i + a[2] j) for pixel
  * (i, j), with the ray's length |ray| as above. */
 #define SKG_SHADE_MEMBERS(real)                                                                              \
     real heel[4];    /* z is heel[0..2] along the ray / |ray| + heel[3] */                                   \

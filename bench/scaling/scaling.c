@@ -3,7 +3,7 @@
 #include "scaling/prediction.h"
 
 #include "affinity/affinity.h"
-#include "plan/choose.h"
+#include "plan/decisions.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -3,7 +3,7 @@
 #include "beam/spectrum.h"
 #include "common/bench.h"
 #include "material/material.h"
-#include "spectral/nnls.h"
+#include "spectral/compression.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 #include "beam/grid.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <math.h>
 

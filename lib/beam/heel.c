@@ -1,6 +1,6 @@
 /* The heel effect: how the spectrum of a tube changes with the angle at which photons leave the anode. */
 #include "beam/spectrum.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <math.h>
 

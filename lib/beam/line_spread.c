@@ -4,7 +4,7 @@
 #include "beam/line_spread.h"
 
 #include "core/maths.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 /* A response from pulse-height distributions. */
 #include "beam/spectrum.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

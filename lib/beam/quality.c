@@ -1,5 +1,5 @@
 #include "beam/spectrum.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 void skg_quality_init_sized(void *quality, int32_t size) {
     const skg_quality defaults = {0};

@@ -1,9 +1,8 @@
 /* The energy that a detector records of a photon. */
 #include "beam/escape.h"
 #include "beam/spectrum.h"
-#include "core/columns.h"
-#include "core/plain.h"
-#include "core/units.h"
+#include "core/files.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 #include "beam/spectrum.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "material/material.h"
 
 #include <inttypes.h>

@@ -1,8 +1,6 @@
 #include "beam/spectrum.h"
-#include "core/columns.h"
-#include "core/input.h"
-#include "core/plain.h"
-#include "core/units.h"
+#include "core/files.h"
+#include "core/text.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 /* The spectrum of an X-ray tube: model, calibration, filters, output. */
 #include "beam/spectrum.h"
 #include "core/context.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "material/material.h"
 
 #include <inttypes.h>

@@ -1,6 +1,5 @@
-#include "core/async.h"
-#include "core/parallel.h"
-#include "core/plain.h"
+#include "core/text.h"
+#include "core/threads.h"
 
 static void *run(void *given) {
     SKG_PLAIN;

@@ -1,5 +1,4 @@
-#include "core/columns.h"
-#include "core/input.h"
+#include "core/files.h"
 
 #include <ctype.h>
 #include <errno.h>

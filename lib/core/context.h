@@ -4,7 +4,6 @@
 
 #include "core/core.h"
 #include "core/log.h"
-#include "core/mailbox.h"
 
 #include <skiagraph/context.h>
 

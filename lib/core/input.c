@@ -1,6 +1,6 @@
-#include "core/input.h"
+#include "core/files.h"
 
-#include "core/path_hint.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,4 +1,4 @@
-#include "core/mailbox.h"
+#include "core/log.h"
 
 #include <inttypes.h>
 #include <pthread.h>

@@ -1,4 +1,4 @@
-#include "core/openmp.h"
+#include "core/threads.h"
 
 #include <omp.h>
 #include <stdatomic.h>

@@ -1,6 +1,6 @@
-#include "core/output.h"
+#include "core/files.h"
 
-#include "core/part_name.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <string.h>

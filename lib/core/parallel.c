@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* sched_getaffinity, CPU_COUNT */
-#include "core/parallel.h"
-#include "core/plain.h"
+#include "core/text.h"
+#include "core/threads.h"
 
 #include <pthread.h>
 #include <sched.h>

@@ -1,4 +1,4 @@
-#include "core/part_name.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <fcntl.h>

@@ -1,6 +1,4 @@
-#include "core/path_hint.h"
-
-#include "core/names.h"
+#include "core/text.h"
 
 #include <dirent.h>
 #include <errno.h>

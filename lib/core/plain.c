@@ -1,4 +1,4 @@
-#include "core/plain.h"
+#include "core/text.h"
 
 void skg_plain_enter(skg_plain *plain) {
     fegetenv(&plain->arithmetic);

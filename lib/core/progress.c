@@ -1,4 +1,4 @@
-#include "core/progress.h"
+#include "core/log.h"
 
 #include "core/core.h"
 

@@ -1,6 +1,4 @@
-#include "core/units.h"
-
-#include "core/names.h"
+#include "core/text.h"
 
 typedef struct {
     const char *name;

@@ -1,4 +1,4 @@
-#include "core/names.h"
+#include "core/text.h"
 #include "device/cache.h"
 #include "device/choice.h"
 #include "device/device.h"

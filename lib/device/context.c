@@ -1,5 +1,4 @@
-#include "core/names.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "device/choice.h"
 #include "device/device.h"
 #include "device/programs.h"

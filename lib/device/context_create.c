@@ -1,5 +1,5 @@
 /* skg_context_create: opens the best device that passes its self-test. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "device/choice.h"
 #include "device/self_tests.h"
 

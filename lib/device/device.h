@@ -4,9 +4,9 @@
 #ifndef SKG_DEVICE_H
 #define SKG_DEVICE_H
 
-#include "core/async.h"
 #include "core/context.h"
 #include "core/digest.h"
+#include "core/threads.h"
 #include "driver/driver.h"
 
 #include <skiagraph/opencl.h>

@@ -1,6 +1,6 @@
 /* Public calls that run a single self-test. */
 #include "core/clock.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "device/cache.h"
 #include "device/choice.h"
 #include "device/device.h"

@@ -1,4 +1,4 @@
-#include "core/input.h"
+#include "core/files.h"
 #include "device/programs.h"
 
 #include <stdio.h>

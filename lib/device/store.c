@@ -1,5 +1,5 @@
 #include "core/core.h"
-#include "core/part_name.h"
+#include "core/text.h"
 #include "device/cache.h"
 
 #include <errno.h>

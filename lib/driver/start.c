@@ -1,4 +1,4 @@
-#include "core/parallel.h"
+#include "core/threads.h"
 #include "driver/driver.h"
 
 #include <fenv.h>

@@ -1,7 +1,7 @@
 #include "frame/adapt.h"
 #include "frame/submission.h"
 #include "frame/wait.h"
-#include "spectral/quantity.h"
+#include "spectral/model.h"
 
 #include <math.h>
 #include <stdlib.h>

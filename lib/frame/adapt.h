@@ -2,7 +2,7 @@
 #ifndef SKG_ADAPT_H
 #define SKG_ADAPT_H
 
-#include "plan/outcome.h"
+#include "plan/results.h"
 #include "stage/machine.h"
 
 /* If the number of source samples is not given: doubles it until two doublings in a row change less than the tolerance at

@@ -1,8 +1,8 @@
 #include "frame/adjoint.h"
 
 #include "frame/job.h"
-#include "plan/decide.h"
-#include "spectral/quantity.h"
+#include "plan/decisions.h"
+#include "spectral/model.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,6 +1,6 @@
 #include "frame/assemble.h"
-#include "core/vector.h"
-#include "plan/decide.h"
+#include "core/maths.h"
+#include "plan/decisions.h"
 
 /* Marks the meshes with flat faces where at least two parts have one. */
 static void find_flat(const skg_recipe *recipe, skg_mesh_layout *layouts) {

@@ -1,14 +1,12 @@
 /* Makes a plan: a recipe, a machine for it, and what is known before the first frame. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "device/device.h"
 #include "frame/adapt.h"
 #include "frame/assemble.h"
 #include "frame/frame.h"
 #include "frame/plan.h"
-#include "plan/doubts.h"
-#include "plan/effects.h"
-#include "plan/overlaps.h"
-#include "plan/precision.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
 
 #include <skiagraph/plan.h>
 

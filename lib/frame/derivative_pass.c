@@ -1,11 +1,11 @@
 #include "frame/derivative_pass.h"
 
-#include "core/parallel.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/threads.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
 #include "geometry/slopes.h"
-#include "spectral/quantity.h"
+#include "spectral/model.h"
 
 #include <float.h>
 #include <string.h>

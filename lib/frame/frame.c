@@ -4,10 +4,9 @@
 #include "frame/gradient_pass.h"
 #include "frame/parts.h"
 #include "frame/scatter.h"
-#include "plan/choose.h"
-#include "plan/decide.h"
-#include "plan/unseen.h"
-#include "spectral/quantity.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
+#include "spectral/model.h"
 
 #include <string.h>
 

@@ -1,12 +1,12 @@
-#include "core/plain.h"
+#include "core/text.h"
 #include "device/self_tests.h"
 #include "frame/adjoint.h"
 #include "frame/gradient_work.h"
 #include "frame/submission.h"
 #include "frame/wait.h"
-#include "geometry/collimation.h"
-#include "plan/decide.h"
-#include "spectral/quantity.h"
+#include "geometry/optics.h"
+#include "plan/decisions.h"
+#include "spectral/model.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "frame/gradient_nodes.h"
 
-#include "core/parallel.h"
+#include "core/threads.h"
 #include "frame/adjoint.h"
 
 #include <string.h>

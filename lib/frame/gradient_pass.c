@@ -1,12 +1,12 @@
 #include "frame/gradient_pass.h"
 
-#include "core/parallel.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/threads.h"
 #include "frame/adjoint.h"
 #include "frame/gradient_density.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_nodes.h"
-#include "spectral/quantity.h"
+#include "spectral/model.h"
 
 #include <string.h>
 

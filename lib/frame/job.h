@@ -5,7 +5,7 @@
 
 #include "frame/outputs.h"
 #include "frame/plan.h"
-#include "plan/report.h"
+#include "plan/results.h"
 
 #include <stdatomic.h>
 

@@ -1,6 +1,6 @@
 #include "frame/parts.h"
 #include "frame/overrides.h"
-#include "geometry/collimation.h"
+#include "geometry/optics.h"
 
 #include <math.h>
 

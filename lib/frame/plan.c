@@ -1,6 +1,6 @@
 #include "frame/plan.h"
 
-#include "core/plain.h"
+#include "core/text.h"
 #include "frame/assemble.h"
 #include "frame/quiet.h"
 

@@ -3,7 +3,7 @@
 #define SKG_PLAN_PRIVATE_H
 
 #include "frame/caller.h"
-#include "plan/outcome.h"
+#include "plan/results.h"
 #include "scatter/scatterer.h"
 #include "stage/machine.h"
 

@@ -1,4 +1,4 @@
-#include "core/plain.h"
+#include "core/text.h"
 #include "device/self_tests.h"
 #include "frame/caller.h"
 #include "frame/submission.h"

@@ -1,6 +1,6 @@
 /* The scatter of a plan's images from few histories, on a coarse detector, by a plan of its own. */
 #include "core/clock.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "frame/plan.h"
 
 #include <math.h>

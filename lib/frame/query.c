@@ -1,8 +1,8 @@
 /* What a plan answers about itself. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "frame/plan.h"
-#include "plan/effects.h"
-#include "plan/precision.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Scatter of a series of frames: the public calls. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "device/device.h"
 #include "frame/held.h"
 #include "frame/plan.h"

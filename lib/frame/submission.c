@@ -2,7 +2,7 @@
 
 #include "frame/frame.h"
 #include "frame/held.h"
-#include "plan/choose.h"
+#include "plan/decisions.h"
 
 #include <limits.h>
 

@@ -1,6 +1,6 @@
 #include "frame/wait.h"
 
-#include "core/plain.h"
+#include "core/text.h"
 #include "driver/driver.h"
 #include "frame/submission.h"
 

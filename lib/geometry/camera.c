@@ -1,6 +1,6 @@
-#include "geometry/camera.h"
+#include "geometry/optics.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 

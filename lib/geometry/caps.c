@@ -1,4 +1,4 @@
-#include "geometry/caps.h"
+#include "geometry/retrace.h"
 
 #include <stdlib.h>
 

@@ -1,7 +1,7 @@
-#include "geometry/collimation.h"
+#include "geometry/optics.h"
 
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

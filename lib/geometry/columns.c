@@ -1,7 +1,7 @@
-#include "geometry/columns.h"
+#include "geometry/overlaps.h"
 
-#include "core/parallel.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <stdlib.h>

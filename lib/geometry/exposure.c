@@ -1,7 +1,7 @@
-#include "geometry/exposure.h"
 #include "beam/spectrum.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
+#include "geometry/optics.h"
 
 #include <skiagraph/plan.h>
 

@@ -1,6 +1,6 @@
-#include "geometry/extent.h"
+#include "geometry/bounds.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,7 +1,7 @@
 #include "geometry/forces.h"
 
-#include "core/parallel.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/threads.h"
 
 #include <string.h>
 

@@ -2,12 +2,11 @@
  * that are larger: columns through its box are swept, and the winding number of the larger ones inside of it says
  * whether it lies in the open or inside another. Components that were found to be inverted count as turned for the
  * smaller ones. */
-#include "geometry/nesting.h"
 #include "core/context.h"
+#include "geometry/overlaps.h"
 
-#include "core/plain.h"
-#include "core/vector.h"
-#include "geometry/columns.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "mesh/mesh.h"
 
 #include <inttypes.h>

@@ -1,6 +1,6 @@
-#include "geometry/overlap.h"
+#include "geometry/overlaps.h"
 
-#include "core/parallel.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <stdlib.h>

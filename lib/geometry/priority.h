@@ -8,8 +8,8 @@
 #ifndef SKG_PRIORITY_H
 #define SKG_PRIORITY_H
 
-#include "geometry/extent.h"
-#include "geometry/overlap.h"
+#include "geometry/bounds.h"
+#include "geometry/overlaps.h"
 #include "scene/scene.h"
 
 typedef struct {

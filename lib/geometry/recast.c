@@ -2,9 +2,9 @@
  * the source span a plane, which cuts two edges of a triangle; a ray hits the triangle if it passes the two cuts
  * on different sides. Each cut is computed from the ends of its edge in one order, so that neighbouring
  * triangles agree and the signed hits of a closed mesh cancel. */
-#include "geometry/recast.h"
+#include "geometry/retrace.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 

@@ -1,7 +1,6 @@
-#include "geometry/samples.h"
+#include "geometry/optics.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,4 +1,4 @@
-#include "geometry/scale.h"
+#include "geometry/bounds.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "geometry/slopes.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
-#include "geometry/solids.h"
+#include "geometry/overlaps.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 skg_status skg_solid_place(const skg_mesh *mesh, const double pose[16], int64_t inside, skg_solid *solid,
                            double **positions) {

@@ -7,7 +7,7 @@
 #ifndef SKG_STEEP_H
 #define SKG_STEEP_H
 
-#include "geometry/camera.h"
+#include "geometry/optics.h"
 
 /* A part's d loss / d t of the ray of a pixel; 0 outside of the detector. */
 typedef double (*skg_steep_weight)(const void *user, int64_t column, int64_t row);

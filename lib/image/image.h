@@ -3,7 +3,7 @@
 #define SKG_IMAGE_PRIVATE_H
 
 #include "core/core.h"
-#include "core/output.h"
+#include "core/files.h"
 
 #include <skiagraph/image.h>
 

@@ -1,7 +1,6 @@
 /* MetaImage (.mha): a text header and the values, in one file. Format as ITK's MetaIO documents it. */
-#include "core/element.h"
 #include "core/maths.h"
-#include "core/vector.h"
+#include "core/text.h"
 #include "image/image.h"
 
 #include <skiagraph/version.h>

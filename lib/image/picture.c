@@ -1,8 +1,7 @@
 /* Pictures: they are checked before a writer sees them, and the extension of the path chooses the writer. */
 #include "image/image.h"
 
-#include "core/names.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 /* TIFF: floats or doubles without conversion, one page for each channel. */
-#include "core/element.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "image/image.h"
 
 #include <skiagraph/version.h>

@@ -1,5 +1,5 @@
 /* The attenuation of materials: linear, by process, as a Hounsfield number, and where it jumps. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "material/material.h"
 
 #include <inttypes.h>

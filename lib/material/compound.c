@@ -1,5 +1,5 @@
 /* Elements, formulas and mixtures as materials. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "material/mixture.h"
 
 #include <inttypes.h>

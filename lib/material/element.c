@@ -1,4 +1,4 @@
-#include "core/names.h"
+#include "core/text.h"
 #include "material/material.h"
 #include "materials/spline.h"
 

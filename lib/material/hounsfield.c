@@ -2,7 +2,7 @@
  *
  * The density follows Schneider, Bortfeld and Schlegel, Phys. Med. Biol. 45 (2000) 459, Eq. 19, 21 and 23, with a
  * straight line from air to adipose tissue below -98 HU and a constant between the two lines of soft tissue. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "material/material.h"
 
 #include <math.h>

@@ -1,5 +1,5 @@
 #include "material/material.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

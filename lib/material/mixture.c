@@ -1,6 +1,6 @@
 #include "material/mixture.h"
 
-#include "core/names.h"
+#include "core/text.h"
 
 #include <ctype.h>
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 /* The naive way from a Hounsfield number to mu: interpolation between four materials of the tables. It is kept
  * to show its error. */
-#include "core/plain.h"
+#include "core/text.h"
 #include "material/material.h"
 
 #include <math.h>

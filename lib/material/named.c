@@ -1,6 +1,6 @@
 /* Materials by a text as people write it: a name, a formula, or "key:value". */
-#include "core/columns.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "material/mixture.h"
 
 #include <ctype.h>

@@ -1,7 +1,6 @@
 /* Materials by a table of the user: mu by energy. */
-#include "core/columns.h"
-#include "core/plain.h"
-#include "core/units.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "material/material.h"
 
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 /* The directory at the end of a ZIP archive, as PKWARE's APPNOTE 6.3.10 describes it. */
 #include "mesh/archive.h"
 
-#include "core/names.h"
+#include "core/text.h"
 #include "mesh/relations.h"
 #include "mesh/unpack.h"
 

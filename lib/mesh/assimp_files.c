@@ -1,6 +1,6 @@
 #include "mesh/assimp_files.h"
 
-#include "core/input.h"
+#include "core/files.h"
 
 typedef struct {
     struct aiFile functions; /* first: Assimp gives its address back */

@@ -1,6 +1,6 @@
 /* Test objects: line pairs and a Siemens star. */
 #include "core/maths.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "mesh/mesh.h"
 #include "mesh/pieces.h"
 

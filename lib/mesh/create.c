@@ -1,7 +1,7 @@
 #include "mesh/mesh.h"
 
 #include "core/context.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <float.h>
 #include <inttypes.h>

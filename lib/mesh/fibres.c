@@ -1,7 +1,6 @@
 /* Straight fibres through a box. */
 #include "core/maths.h"
-#include "core/plain.h"
-#include "core/random.h"
+#include "core/text.h"
 #include "mesh/mesh.h"
 #include "mesh/pieces.h"
 

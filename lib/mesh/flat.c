@@ -1,4 +1,4 @@
-#include "core/vector.h"
+#include "core/maths.h"
 #include "mesh/mesh.h"
 
 #include <math.h>

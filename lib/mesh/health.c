@@ -2,7 +2,7 @@
  * the number of triangles except for the sorting of small groups. */
 #include "mesh/mesh.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <float.h>
 #include <math.h>

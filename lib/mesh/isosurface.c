@@ -4,7 +4,7 @@
  * faces. A vertex lies on an edge of the grid and is computed from its lower end, so that all triangles that share it have
  * the same bits. */
 #include "core/maths.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "mesh/mesh.h"
 #include "mesh/pieces.h"
 

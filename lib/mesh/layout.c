@@ -1,6 +1,6 @@
 /* How a mesh lies in the memory of a device: vertices at one place are one vertex there, and vertices follow the
  * triangles that use them. No image depends on it, since sums do not depend on the order of triangles. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "mesh/mesh.h"
 
 #include <math.h>

@@ -3,9 +3,8 @@
  * numbering is gone; it keeps only floats; it accepts truncated ascii STL and PLY files as complete ones, and leaks
  * memory when it refuses one. */
 #include "core/context.h"
-#include "core/input.h"
-#include "core/names.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "mesh/archive.h"
 #include "mesh/assimp_files.h"
 #include "mesh/mesh.h"

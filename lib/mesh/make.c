@@ -3,7 +3,7 @@
 #include "mesh/pieces.h"
 
 #include "core/maths.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

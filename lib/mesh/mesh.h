@@ -40,7 +40,7 @@ typedef struct {
 } skg_loaded;
 
 /* What skg_mesh_load does, in two steps: threads may share the first one for files that are shareable (STL, PLY and OBJ:
- * Assimp's errors belong to no thread), and the second one logs. The calling thread has the C locale (plain.h). */
+ * Assimp's errors belong to no thread), and the second one logs. The calling thread has the C locale (text.h). */
 int skg_mesh_is_shareable(const char *path);
 skg_status skg_mesh_load_silently(const char *path, double unit_mm, skg_loaded *loaded);
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded);

@@ -1,10 +1,9 @@
 /* Writing of mesh files: binary PLY and binary STL, both little-endian. */
 #include "mesh/mesh.h"
 
-#include "core/names.h"
-#include "core/output.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/files.h"
+#include "core/maths.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <string.h>

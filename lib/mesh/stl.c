@@ -1,7 +1,7 @@
 /* STL, binary and ascii. Corner i of the file is vertex i. */
 #include "mesh/read.h"
 
-#include "core/names.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

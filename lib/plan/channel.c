@@ -1,5 +1,5 @@
-#include "plan/channel.h"
-#include "geometry/camera.h"
+#include "geometry/optics.h"
+#include "plan/decisions.h"
 
 #include <inttypes.h>
 #include <stdio.h>

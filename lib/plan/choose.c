@@ -1,5 +1,5 @@
-#include "plan/choose.h"
-#include "geometry/extent.h"
+#include "geometry/bounds.h"
+#include "plan/decisions.h"
 
 #include <float.h>
 #include <math.h>

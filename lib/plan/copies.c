@@ -1,4 +1,4 @@
-#include "plan/copies.h"
+#include "plan/rules.h"
 
 #include <string.h>
 

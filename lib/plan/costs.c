@@ -1,6 +1,6 @@
-#include "plan/costs.h"
-#include "plan/choose.h"
-#include "spectral/compress.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
+#include "spectral/compression.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
-#include "plan/decide.h"
-#include "geometry/collimation.h"
-#include "spectral/quantity.h"
+#include "geometry/optics.h"
+#include "plan/decisions.h"
+#include "spectral/model.h"
 
 /* Whether the weights of the model are those of a ratio already. */
 static int has_ratio_weights(const skg_plan_options *options) {

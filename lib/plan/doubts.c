@@ -1,8 +1,7 @@
-#include "plan/doubts.h"
 #include "beam/spectrum.h"
 #include "core/maths.h"
-#include "core/vector.h"
 #include "mesh/mesh.h"
+#include "plan/decisions.h"
 #include "scene/scene.h"
 
 #include <inttypes.h>

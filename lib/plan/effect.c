@@ -1,4 +1,4 @@
-#include "plan/effect.h"
+#include "plan/rules.h"
 
 #include <stdarg.h>
 #include <stdio.h>

@@ -3,11 +3,10 @@
 #include "beam/grid.h"
 #include "core/log.h"
 #include "core/maths.h"
-#include "core/names.h"
-#include "geometry/collimation.h"
-#include "plan/decide.h"
-#include "plan/effect.h"
-#include "plan/options.h"
+#include "core/text.h"
+#include "geometry/optics.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
 
 #include <inttypes.h>
 #include <math.h>

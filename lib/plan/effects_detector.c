@@ -1,10 +1,10 @@
 /* Effects of the detector: response, noise, blur. */
 #include "beam/spectrum.h"
 #include "core/log.h"
-#include "core/names.h"
-#include "plan/effect.h"
-#include "plan/options.h"
-#include "spectral/quantity.h"
+#include "core/text.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
+#include "spectral/model.h"
 
 #include <inttypes.h>
 #include <math.h>

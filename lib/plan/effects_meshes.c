@@ -1,8 +1,8 @@
 /* Effects of meshes and of where they lie. */
-#include "core/names.h"
-#include "plan/effect.h"
-#include "plan/options.h"
-#include "spectral/compress.h"
+#include "core/text.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
+#include "spectral/compression.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,8 +1,8 @@
 /* Effects of sampling: energies, source, pixels, compression. */
 #include "core/log.h"
-#include "core/names.h"
-#include "plan/effect.h"
-#include "plan/options.h"
+#include "core/text.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
 
 #include <inttypes.h>
 #include <stdio.h>

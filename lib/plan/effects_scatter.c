@@ -1,10 +1,10 @@
 /* The effect of scattered photons. */
 #include "beam/spectrum.h"
-#include "core/vector.h"
+#include "core/maths.h"
 #include "material/scattering.h"
-#include "plan/effect.h"
-#include "plan/options.h"
-#include "spectral/signal.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
+#include "spectral/model.h"
 
 #include <inttypes.h>
 #include <math.h>

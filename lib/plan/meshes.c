@@ -1,4 +1,4 @@
-#include "plan/meshes.h"
+#include "plan/decisions.h"
 
 #include "core/context.h"
 

@@ -1,4 +1,4 @@
-#include "plan/options.h"
+#include "plan/decisions.h"
 
 #include <inttypes.h>
 

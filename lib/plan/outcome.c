@@ -1,4 +1,4 @@
-#include "plan/outcome.h"
+#include "plan/results.h"
 
 void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome) {
     outcome->report.planes = recipe->model.planes;

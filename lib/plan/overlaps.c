@@ -1,10 +1,9 @@
-#include "plan/overlaps.h"
+#include "geometry/overlaps.h"
 #include "core/context.h"
-#include "core/names.h"
-#include "core/parallel.h"
-#include "geometry/nesting.h"
+#include "core/text.h"
+#include "core/threads.h"
 #include "geometry/priority.h"
-#include "geometry/solids.h"
+#include "plan/decisions.h"
 
 #include <inttypes.h>
 

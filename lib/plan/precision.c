@@ -1,6 +1,6 @@
-#include "plan/precision.h"
-#include "core/names.h"
-#include "spectral/rounding.h"
+#include "core/text.h"
+#include "plan/decisions.h"
+#include "spectral/verification.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,5 +1,5 @@
 #include "plan/recipe.h"
-#include "geometry/exposure.h"
+#include "geometry/optics.h"
 
 #include <float.h>
 #include <inttypes.h>

@@ -6,11 +6,9 @@
 #define SKG_RECIPE_H
 
 #include "core/context.h"
-#include "geometry/samples.h"
-#include "plan/channel.h"
-#include "plan/copies.h"
-#include "plan/meshes.h"
-#include "spectral/mix.h"
+#include "geometry/optics.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
 #include "spectral/model.h"
 
 typedef struct skg_recipe skg_recipe;
@@ -22,7 +20,7 @@ struct skg_recipe {
 
     skg_scene *scene;       /* retained */
     skg_spectrum *spectrum; /* retained; photons per pixel of the view that the plan was made for */
-    double exposure; /* of that view (geometry/exposure.h), if the caller's spectrum is absolute; else 0 */
+    double exposure; /* of that view (geometry/optics.h), if the caller's spectrum is absolute; else 0 */
     skg_plan_options options; /* its handles retained, its arrays copied; blur is NULL: see below */
     skg_view view;            /* of frames without a view of their own */
     int64_t structure;        /* of the scene; if it has another one the plan is stale */

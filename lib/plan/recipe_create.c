@@ -1,13 +1,10 @@
 /* Makes recipes: copies the options and decides. */
 #include "beam/spectrum.h"
 #include "device/device.h"
-#include "geometry/collimation.h"
-#include "geometry/exposure.h"
+#include "geometry/optics.h"
 #include "geometry/priority.h"
-#include "plan/choose.h"
-#include "plan/effect.h"
-#include "plan/effects.h"
-#include "plan/options.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
 
 #include <inttypes.h>
 

@@ -1,5 +1,5 @@
-#include "plan/report.h"
-#include "core/names.h"
+#include "core/text.h"
+#include "plan/results.h"
 
 #include <inttypes.h>
 #include <limits.h>

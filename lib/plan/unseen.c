@@ -1,4 +1,4 @@
-#include "plan/unseen.h"
+#include "plan/rules.h"
 
 #include <math.h>
 

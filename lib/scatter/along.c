@@ -1,4 +1,4 @@
-#include "scatter/along.h"
+#include "scatter/smoothing.h"
 
 #include <math.h>
 

@@ -1,7 +1,6 @@
-#include "scatter/angles.h"
+#include "scatter/interactions.h"
 
 #include "material/scattering.h"
-#include "scatter/shapes.h"
 #include "skg_shared.h"
 
 #include <math.h>

@@ -1,10 +1,9 @@
-#include "scatter/beam_profile.h"
+#include "scatter/beams.h"
 
 #include "beam/spectrum.h"
 #include "core/maths.h"
-#include "core/vector.h"
-#include "geometry/collimation.h"
-#include "spectral/shade_list.h"
+#include "geometry/optics.h"
+#include "spectral/shading.h"
 
 #include <math.h>
 

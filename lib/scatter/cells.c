@@ -1,6 +1,6 @@
-#include "scatter/cells.h"
+#include "scatter/subject.h"
 
-#include "core/parallel.h"
+#include "core/threads.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "scatter/columns.h"
+#include "scatter/subject.h"
 
 #include "material/scattering.h"
 

@@ -1,8 +1,8 @@
-#include "scatter/object.h"
+#include "scatter/subject.h"
 
 #include "beam/spectrum.h"
-#include "core/vector.h"
-#include "geometry/solids.h"
+#include "core/maths.h"
+#include "geometry/overlaps.h"
 
 #include <math.h>
 

@@ -1,11 +1,10 @@
-#include "scatter/open_beam.h"
+#include "scatter/beams.h"
 
 #include "beam/grid.h"
 #include "beam/spectrum.h"
-#include "core/vector.h"
-#include "geometry/camera.h"
-#include "scatter/sight.h"
-#include "spectral/signal.h"
+#include "core/maths.h"
+#include "geometry/optics.h"
+#include "spectral/model.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "scatter/order.h"
+#include "scatter/smoothing.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-#include "scatter/physics.h"
+#include "scatter/interactions.h"
 
 void skg_scatter_physics_free(skg_scatter_physics *physics) {
     skg_free(&physics->total);

@@ -1,10 +1,9 @@
-#include "scatter/physics.h"
+#include "scatter/interactions.h"
 
-#include "core/plain.h"
+#include "core/text.h"
 #include "material/scattering.h"
-#include "scatter/columns.h"
-#include "scatter/reduce.h"
-#include "scatter/shapes.h"
+#include "scatter/smoothing.h"
+#include "scatter/subject.h"
 
 #include <string.h>
 

@@ -1,7 +1,7 @@
-#include "scatter/reduce.h"
+#include "scatter/smoothing.h"
 
-#include "core/vector.h"
-#include "spectral/nnls.h"
+#include "core/maths.h"
+#include "spectral/compression.h"
 
 #include <math.h>
 #include <string.h>

@@ -3,10 +3,9 @@
 #define SKG_SCATTERER_H
 
 #include "core/digest.h"
-#include "scatter/series.h"
-#include "scatter/shown.h"
-#include "scatter/trace.h"
-#include "stage/scattered.h"
+#include "scatter/smoothing.h"
+#include "scatter/tracing.h"
+#include "stage/readout.h"
 
 /* All zero: nothing was computed yet. */
 typedef struct {

@@ -1,4 +1,4 @@
-#include "scatter/series.h"
+#include "scatter/smoothing.h"
 
 #include "core/clock.h"
 

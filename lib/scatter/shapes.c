@@ -1,4 +1,4 @@
-#include "scatter/shapes.h"
+#include "scatter/interactions.h"
 
 #include "material/scattering.h"
 

@@ -1,8 +1,8 @@
-#include "scatter/shown.h"
+#include "scatter/tracing.h"
 
-#include "core/vector.h"
-#include "scatter/open_beam.h"
-#include "spectral/quantity.h"
+#include "core/maths.h"
+#include "scatter/beams.h"
+#include "spectral/model.h"
 
 #include <math.h>
 

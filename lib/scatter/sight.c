@@ -1,9 +1,9 @@
-#include "scatter/sight.h"
+#include "scatter/beams.h"
 
 #include "beam/grid.h"
-#include "core/vector.h"
-#include "geometry/collimation.h"
-#include "spectral/grid_shades.h"
+#include "core/maths.h"
+#include "geometry/optics.h"
+#include "spectral/shading.h"
 
 #include <math.h>
 

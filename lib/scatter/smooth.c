@@ -1,6 +1,4 @@
-#include "scatter/smooth.h"
-
-#include "scatter/order.h"
+#include "scatter/smoothing.h"
 
 #include <math.h>
 #include <string.h>

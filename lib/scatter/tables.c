@@ -1,10 +1,9 @@
-#include "scatter/tables.h"
+#include "scatter/interactions.h"
 
 #include "beam/grid.h"
 #include "beam/spectrum.h"
-#include "scatter/angles.h"
 #include "skg_shared.h"
-#include "spectral/signal.h"
+#include "spectral/model.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,8 @@
-#include "scatter/trace.h"
+#include "scatter/tracing.h"
 
 #include "core/clock.h"
-#include "core/vector.h"
-#include "scatter/angles.h"
+#include "core/maths.h"
+#include "scatter/interactions.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,9 +1,8 @@
 #include "scene/scene.h"
 
 #include "core/context.h"
-#include "core/names.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 
 #include <float.h>
 #include <inttypes.h>

@@ -1,5 +1,5 @@
 #include "core/core.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <skiagraph/scene.h>
 

@@ -1,6 +1,6 @@
 #include "core/clock.h"
 #include "frame/plan.h"
-#include "geometry/samples.h"
+#include "geometry/optics.h"
 #include "selftest/selftest.h"
 
 #include <skiagraph/frame.h>

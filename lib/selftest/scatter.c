@@ -1,7 +1,6 @@
 #include "core/core.h"
 #include "material/scattering.h"
-#include "scatter/physics.h"
-#include "scatter/shapes.h"
+#include "scatter/interactions.h"
 #include "selftest/selftest.h"
 
 #include <skiagraph/report.h>

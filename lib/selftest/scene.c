@@ -136,7 +136,7 @@ static void choose_options(skg_self_test_scene *scene) {
     }
 }
 
-/* As many samples as are drawn together (plan/choose.h); on a single worker PASSES draws each by itself. */
+/* As many samples as are drawn together (plan/decisions.h); on a single worker PASSES draws each by itself. */
 static void choose_spot(const skg_context *context, skg_self_test_scene *scene) {
     const int32_t workers = context->device->info.compute_units;
     skg_spot_init(&scene->spot);

@@ -1,7 +1,6 @@
-#include "show/camera.h"
+#include "show/drawing.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <cglm/cglm.h>
 

@@ -1,4 +1,4 @@
-#include "show/draw.h"
+#include "show/drawing.h"
 
 #include "show_shared.h"
 

@@ -1,7 +1,6 @@
-#include "show/markers.h"
+#include "show/drawing.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "show/model.h"
+#include "show/drawing.h"
 
 #include <inttypes.h>
 #include <math.h>

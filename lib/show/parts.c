@@ -1,6 +1,6 @@
-#include "show/parts.h"
+#include "show/drawing.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "mesh/mesh.h"
 
 #include <inttypes.h>

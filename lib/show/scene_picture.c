@@ -1,10 +1,8 @@
 #include "core/context.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "device/self_tests.h"
-#include "show/draw.h"
-#include "show/markers.h"
-#include "show/parts.h"
+#include "show/drawing.h"
 
 #include <skiagraph/scene_picture.h>
 

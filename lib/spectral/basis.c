@@ -1,8 +1,7 @@
-#include "spectral/basis.h"
+#include "spectral/compression.h"
 
-#include "core/parallel.h"
-#include "core/vector.h"
-#include "spectral/nnls.h"
+#include "core/maths.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,8 +1,7 @@
 /* A bow-tie filter: one shade, whose amount is the path through the filter. */
-#include "spectral/bowtie_shade.h"
+#include "spectral/shading.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <math.h>
 

@@ -1,10 +1,8 @@
-#include "spectral/compress.h"
+#include "spectral/compression.h"
 
-#include "core/async.h"
-#include "spectral/basis.h"
-#include "spectral/nodes.h"
-#include "spectral/quantity.h"
-#include "spectral/ranges.h"
+#include "core/threads.h"
+#include "spectral/model.h"
+#include "spectral/verification.h"
 
 #include <math.h>
 #include <stdio.h>

@@ -2,9 +2,7 @@
 
 #include "beam/spectrum.h"
 #include "material/material.h"
-#include "spectral/compress.h"
-#include "spectral/quantity.h"
-#include "spectral/signal.h"
+#include "spectral/compression.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,6 @@
-#include "spectral/directions.h"
+#include "spectral/compression.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <math.h>
 #include <string.h>

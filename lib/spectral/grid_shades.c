@@ -1,10 +1,9 @@
 /* An anti-scatter grid. What the interspace would leave of the beam if it were everywhere is one shade, exact for any path; what
  * strips leave of this is spanned by a few directions, whose amounts are tabulated by tilt, with polynomials of the obliquity. */
-#include "spectral/grid_shades.h"
+#include "spectral/shading.h"
 
 #include "beam/grid.h"
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,7 +1,6 @@
-#include "spectral/heel_shades.h"
+#include "spectral/shading.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "spectral/mix.h"
+#include "spectral/model.h"
 
 #include <math.h>
 #include <string.h>

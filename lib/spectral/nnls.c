@@ -1,6 +1,6 @@
-#include "spectral/nnls.h"
+#include "spectral/compression.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,4 @@
-#include "spectral/nodes.h"
-
-#include "spectral/nnls.h"
+#include "spectral/compression.h"
 
 #include <math.h>
 #include <string.h>

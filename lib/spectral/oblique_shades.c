@@ -1,8 +1,8 @@
 /* Rays that cross a scintillator obliquely: its layer is longer for them. */
-#include "spectral/oblique_shades.h"
+#include "spectral/shading.h"
 
-#include "core/vector.h"
-#include "spectral/signal.h"
+#include "core/maths.h"
+#include "spectral/model.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "spectral/quantity.h"
+#include "spectral/model.h"
 
 int skg_quantity_is_absolute(const skg_plan_options *options) {
     return options->noise || options->electronic_kev > 0 || options->quantum_step_kev > 0;

@@ -1,8 +1,8 @@
-#include "spectral/ranges.h"
+#include "spectral/verification.h"
 
-#include "core/parallel.h"
-#include "core/vector.h"
-#include "geometry/extent.h"
+#include "core/maths.h"
+#include "core/threads.h"
+#include "geometry/bounds.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,9 +1,7 @@
-#include "spectral/rounding.h"
+#include "spectral/verification.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "mesh/mesh.h"
-#include "spectral/ranges.h"
-#include "spectral/verify.h"
 
 #include <math.h>
 

@@ -1,6 +1,6 @@
-#include "spectral/shade_list.h"
+#include "spectral/shading.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 #include <string.h>

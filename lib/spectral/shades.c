@@ -1,11 +1,7 @@
-#include "spectral/shades.h"
+#include "spectral/shading.h"
 
-#include "core/vector.h"
-#include "spectral/bowtie_shade.h"
-#include "spectral/grid_shades.h"
-#include "spectral/heel_shades.h"
-#include "spectral/oblique_shades.h"
-#include "spectral/quantity.h"
+#include "core/maths.h"
+#include "spectral/model.h"
 
 skg_status skg_shades_find(const skg_view *view, const skg_spectrum *spectrum,
                            const skg_plan_options *options, skg_shades *shades) {

@@ -1,7 +1,6 @@
-#include "spectral/signal.h"
+#include "spectral/model.h"
 
 #include "core/core.h"
-#include "spectral/quantity.h"
 
 skg_status skg_signal_oblique_get(const skg_plan_options *options, double energy_kev, double oblique,
                                   double *signal) {

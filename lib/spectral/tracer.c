@@ -1,6 +1,6 @@
-#include "spectral/tracer.h"
+#include "spectral/verification.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "mesh/mesh.h"
 
 #include <math.h>

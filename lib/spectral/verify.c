@@ -1,7 +1,7 @@
-#include "spectral/verify.h"
+#include "spectral/verification.h"
 
-#include "core/parallel.h"
-#include "core/random.h"
+#include "core/maths.h"
+#include "core/threads.h"
 
 #include <float.h>
 #include <math.h>

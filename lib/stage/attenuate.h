@@ -2,7 +2,7 @@
 #ifndef SKG_ATTENUATE_H
 #define SKG_ATTENUATE_H
 
-#include "spectral/shades.h"
+#include "spectral/shading.h"
 #include "stage/raster.h"
 
 /* The same numbers as SKG_SHOW_... of config.clh. */
@@ -76,7 +76,7 @@ typedef struct {
     int32_t pass; /* of the raster's passes */
     int32_t reserved;
     double scale;  /* of the sums */
-    int32_t mixed; /* accumulators that planes are mixed from (spectral/mix.h); 0: accumulators are planes */
+    int32_t mixed; /* accumulators that planes are mixed from (spectral/model.h); 0: accumulators are planes */
     int32_t fine;  /* pixels of the raster along each side of a pixel of the image, which shows their sum */
     cl_mem lists;  /* [mixed][planes] in the precision of the raster */
 } skg_sums;

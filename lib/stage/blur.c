@@ -1,5 +1,5 @@
-#include "stage/blur.h"
 #include "core/maths.h"
+#include "stage/readout.h"
 
 #include <inttypes.h>
 #include <math.h>

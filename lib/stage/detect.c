@@ -1,4 +1,4 @@
-#include "stage/detect.h"
+#include "stage/readout.h"
 
 #include <math.h>
 

@@ -1,4 +1,4 @@
-#include "stage/flat_field.h"
+#include "stage/readout.h"
 
 #include <string.h>
 

@@ -1,4 +1,4 @@
-#include "stage/layers.h"
+#include "stage/readout.h"
 
 #include "beam/line_spread.h"
 

@@ -1,6 +1,5 @@
-#include "stage/leaky.h"
+#include "stage/leaks.h"
 #include "stage/raster_private.h"
-#include "stage/repair.h"
 
 #include <skiagraph/plan.h>
 

@@ -1,4 +1,4 @@
-#include "stage/leaky_batch.h"
+#include "stage/leaks.h"
 #include "stage/raster_private.h"
 
 skg_status skg_leaky_memory_create(skg_context *context, int64_t count, skg_leaky_memory *memory) {

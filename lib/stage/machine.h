@@ -5,14 +5,12 @@
 #define SKG_MACHINE_H
 
 #include "stage/attenuate.h"
-#include "stage/detect.h"
-#include "stage/flat_field.h"
 #include "stage/gradient.h"
 #include "stage/hits.h"
-#include "stage/layers.h"
-#include "stage/leaky.h"
-#include "stage/mix_lists.h"
+#include "stage/leaks.h"
 #include "stage/place.h"
+#include "stage/readout.h"
+#include "stage/tables.h"
 
 typedef struct {
     skg_context *context;

@@ -1,4 +1,4 @@
-#include "stage/mix_lists.h"
+#include "stage/tables.h"
 
 #include "stage/kernels.h"
 

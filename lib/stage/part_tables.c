@@ -1,4 +1,4 @@
-#include "stage/part_tables.h"
+#include "stage/tables.h"
 
 #include <float.h>
 #include <math.h>

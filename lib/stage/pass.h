@@ -4,11 +4,11 @@
 #ifndef SKG_PASS_H
 #define SKG_PASS_H
 
-#include "geometry/extent.h"
+#include "geometry/bounds.h"
 #include "geometry/priority.h"
-#include "spectral/mix.h"
+#include "spectral/model.h"
 #include "stage/place.h"
-#include "stage/raster_cache.h"
+#include "stage/raster_private.h"
 
 /* Host memory for what a pass knows of its parts, kept from pass to pass: a million parts take as long to allocate as to
  * fill. All NULL: not allocated. */

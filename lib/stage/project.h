@@ -6,7 +6,7 @@
 #ifndef SKG_PROJECT_H
 #define SKG_PROJECT_H
 
-#include "stage/part_tables.h"
+#include "stage/tables.h"
 
 /* The arguments that kernels which take triangles have in common. */
 #define SKG_TRIANGLE_ARGUMENTS(kernel, raster_layout, geometry)                                              \

@@ -1,4 +1,4 @@
-#include "stage/raster_cache.h"
+#include "stage/raster_private.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
-#include "stage/repair.h"
 #include "core/maths.h"
-#include "geometry/recast.h"
+#include "geometry/retrace.h"
+#include "stage/leaks.h"
 #include "stage/raster_private.h"
 
 #include <skiagraph/plan.h>

@@ -1,4 +1,4 @@
-#include "stage/scattered.h"
+#include "stage/readout.h"
 
 /* noise: 0: none, 1: in the image, 2: apart */
 static skg_status get_kernel(skg_context *context, skg_scattered *stage, int is_double, int noise,

@@ -2,7 +2,7 @@
 #include "breather.h"
 
 #include "body/shares.h"
-#include "core/vector.h"
+#include "core/maths.h"
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>

@@ -1,5 +1,5 @@
 /* Numbers and columns of text files, whatever the locale. */
-#include "core/columns.h"
+#include "core/files.h"
 #include "suite.h"
 
 #include <float.h>

@@ -1,9 +1,8 @@
 #include "core/core.h"
-#include "core/mailbox.h"
+#include "core/files.h"
+#include "core/log.h"
 #include "core/maths.h"
-#include "core/names.h"
-#include "core/output.h"
-#include "core/part_name.h"
+#include "core/text.h"
 #include "suite.h"
 
 #include <string.h>

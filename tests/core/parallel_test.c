@@ -1,5 +1,5 @@
 /* Items shared by threads. */
-#include "core/parallel.h"
+#include "core/threads.h"
 #include "suite.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 #define _GNU_SOURCE /* memmem, mkstemps */
 /* Distances between surfaces: closed forms, and brute force that shares no code with the library. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "distance/nearest.h"
 #include "suite.h"
 #include "support/random.h"

@@ -1,7 +1,7 @@
 /* The field of a beam in the world, and the pixels that its rays reach. */
-#include "geometry/collimation.h"
+#include "geometry/optics.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "suite.h"
 
 #include <skiagraph/scene.h>

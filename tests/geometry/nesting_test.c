@@ -1,5 +1,5 @@
 /* Components whose orientation contradicts their nesting: boxes in boxes. */
-#include "geometry/nesting.h"
+#include "geometry/overlaps.h"
 #include "suite.h"
 
 #include <inttypes.h>

@@ -1,4 +1,4 @@
-#include "geometry/overlap.h"
+#include "geometry/overlaps.h"
 #include "suite.h"
 #include "support/random.h"
 

@@ -1,4 +1,4 @@
-#include "geometry/scale.h"
+#include "geometry/bounds.h"
 #include "suite.h"
 
 #include <math.h>

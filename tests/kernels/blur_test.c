@@ -1,5 +1,5 @@
 /* Blur against the sum that defines it, in double. */
-#include "stage/blur.h"
+#include "stage/readout.h"
 #include "suite.h"
 
 #include <float.h>

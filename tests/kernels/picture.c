@@ -1,6 +1,6 @@
 #include "kernels/picture.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "stage/attenuate.h"
 #include "stage/raster_private.h"
 #include "support/angles.h"

@@ -1,7 +1,7 @@
 /* Signed lengths, each pixel against each triangle, in long double. */
 #include "kernels/picture.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,5 +1,5 @@
 /* Mesh files of other programs: by Assimp and against Assimp. */
-#include "core/names.h"
+#include "core/text.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_files.h"
 

@@ -1,5 +1,5 @@
 /* The meshes of a real thorax: needs the data. */
-#include "core/names.h"
+#include "core/text.h"
 #include "data.h"
 #include "mesh/mesh.h"
 #include "mesh/mesh_files.h"

@@ -1,6 +1,6 @@
 /* The generated thorax: closed, outward, in its place, disjoint; as files too. */
 #include "body/inside.h"
-#include "geometry/overlap.h"
+#include "geometry/overlaps.h"
 #include "phantom/anatomy.h"
 #include "suite.h"
 

@@ -1,5 +1,5 @@
 /* The strategy that a scene calls for. */
-#include "plan/choose.h"
+#include "plan/decisions.h"
 #include "suite.h"
 
 #include <string.h>

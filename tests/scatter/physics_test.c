@@ -1,8 +1,7 @@
 /* What photons meet: attenuation, angles and mixtures against the materials themselves. */
-#include "scatter/physics.h"
+#include "scatter/interactions.h"
 
 #include "material/scattering.h"
-#include "scatter/shapes.h"
 #include "suite.h"
 #include "support/named.h"
 
@@ -92,7 +91,7 @@ static void compare_with_materials(int64_t count, const char *const *names) {
             const double expected[] = {exact, density * c.compton, density * c.rayleigh};
             for (int f = 0; f < 3 && !near_edge(kev); f++) {
                 const double found = at_energy(&s, m, table[f], kev);
-                /* What physics.h promises of interpolation. */
+                /* What interactions.h promises of interpolation. */
                 ck_assert_msg(fabs(found / expected[f] - 1) <= 2e-4, "%s, function %d at %g keV: %.2e",
                               names[m], f, kev, found / expected[f] - 1);
             }
@@ -263,7 +262,7 @@ START_TEST(stated_errors_are_those_of_many_materials) {
     subject s = {0};
     take(&s, 12, many, 15, 120);
     compare_errors(&s);
-    /* Of tissues: the promises of physics.h. */
+    /* Of tissues: the promises of interactions.h. */
     ck_assert_double_le(s.physics.attenuation_error, 1e-3);
     ck_assert_double_le(s.physics.error, 3e-3);
     drop(&s);

@@ -79,7 +79,7 @@ static void compare(const subject *s, const double at[3], const char *name, doub
            worst);
     fflush(stdout); /* before an assertion ends the process */
     /* A weight of 1 leaves so much for the photons that fly on; the rest of the energy is absorbed. Linear tables of 2e-4 between
-     * their points (physics.h) and single precision allow 1e-4 for sums. */
+     * their points (interactions.h) and single precision allow 1e-4 for sums. */
     ck_assert_double_eq_tol(own.photons / truth.photons, 1, 1e-4);
     ck_assert_double_eq_tol(own.kev / truth.kev, 1, 1e-4);
     /* The process is drawn: 4e-4 is a standard error of a million draws. */

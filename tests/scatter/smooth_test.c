@@ -1,5 +1,5 @@
 /* Smoothing by cosines: known functions with known noise. */
-#include "scatter/smooth.h"
+#include "scatter/smoothing.h"
 
 #include "suite.h"
 #include "support/random.h"

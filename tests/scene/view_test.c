@@ -1,5 +1,5 @@
-#include "core/vector.h"
-#include "geometry/camera.h"
+#include "core/maths.h"
+#include "geometry/optics.h"
 #include "suite.h"
 
 #include <float.h>

@@ -1,6 +1,6 @@
 /* Absolute beams made without a scene file: the same images and photon numbers as those of the file, and photons that follow
  * the view when it moves. That these numbers are right is shown by falloff_test, in closed form. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "setup/setup_files.h"
 
 #include <skiagraph/plan.h>

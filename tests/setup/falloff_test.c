@@ -1,6 +1,6 @@
 /* Falloff and absolute beams: every pixel receives the photons per steradian at the source times the solid angle that
  * it fills, in closed form, wherever on the plane of the detector the foot of the perpendicular lies. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "setup/setup_files.h"
 
 #include <skiagraph/plan.h>

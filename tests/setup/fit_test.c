@@ -1,7 +1,7 @@
 /* Detectors that a scene leaves out, and sources of which it gives the side only. */
 #include "setup/setup_files.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <float.h>
 #include <math.h>

@@ -1,5 +1,5 @@
 /* What scene files in use have, and is forgiven with a warning: always, or where a file is read leniently. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "scene/scene.h"
 #include "setup/setup_files.h"
 

@@ -1,4 +1,4 @@
-#include "core/vector.h"
+#include "core/maths.h"
 #include "setup/setup_files.h"
 
 #include <float.h>

@@ -1,7 +1,7 @@
 /* Planes: which materials are mixtures of others. */
 #include "spectral/beam_subject.h"
 
-#include "spectral/basis.h"
+#include "spectral/compression.h"
 
 #include <float.h>
 #include <math.h>

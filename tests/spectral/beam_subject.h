@@ -4,7 +4,7 @@
 
 #include "suite.h"
 
-#include "spectral/verify.h"
+#include "spectral/verification.h"
 
 #include <skiagraph/skiagraph.h>
 

@@ -1,7 +1,7 @@
 /* Accumulators that planes are mixed from. */
 #include "suite.h"
 
-#include "spectral/mix.h"
+#include "spectral/model.h"
 
 #include <string.h>
 

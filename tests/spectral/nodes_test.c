@@ -1,8 +1,7 @@
 /* Spectral nodes against the sum over all bins. */
 #include "spectral/beam_subject.h"
 
-#include "spectral/nnls.h"
-#include "spectral/nodes.h"
+#include "spectral/compression.h"
 
 #include <float.h>
 #include <math.h>

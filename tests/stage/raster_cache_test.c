@@ -1,5 +1,5 @@
 /* Rasters in use are never replaced. */
-#include "stage/raster_cache.h"
+#include "stage/raster_private.h"
 #include "suite.h"
 
 #include <skiagraph/plan.h>

@@ -1,6 +1,6 @@
 #include "body/bones.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <ctype.h>
 #include <stdlib.h>

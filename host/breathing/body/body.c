@@ -5,9 +5,9 @@
 #include "body/bones.h"
 #include "body/build.h"
 
-#include "core/openmp.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
+#include "core/threads.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "body/build.h"
 
 #include "body/links.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <string.h>
 

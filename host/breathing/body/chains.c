@@ -3,7 +3,7 @@
 #include "body/links.h"
 #include "body/posed.h"
 #include "body/shares.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <string.h>
 

@@ -1,6 +1,6 @@
 #include "body/posed.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 static const double warned_from_mm = 1; /* a choice */
 

@@ -1,6 +1,6 @@
 #include "body/posed.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 int skg_corotates(const skg_body *body, const skg_body_organ *o) {
     double mean[3] = {0}, scatter[9] = {0}, values[3], axes[9];

@@ -3,7 +3,7 @@
 #include "body/bones.h"
 #include "body/links.h"
 #include "body/shares.h"
-#include "core/openmp.h"
+#include "core/threads.h"
 
 /* The diaphragm comes first, since others take its share. */
 static skg_status make_chains(skg_body *body) {

@@ -1,7 +1,7 @@
 #include "body/shares.h"
 
 #include "body/links.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 /* Where the liver touches the dome: at most this far below it, in mm, and at most so near to the rim. Choices. */
 static const double liver_reach = 9, dome_from = 0.5;

@@ -1,8 +1,8 @@
 #include "body/posed.h"
 
 #include "body/types.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 
 void skg_body_measure_init_sized(void *measure, int32_t size) {
     const skg_body_measure defaults = {0};

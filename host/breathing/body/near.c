@@ -1,6 +1,6 @@
 #include "body/links.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "distance/nearest.h"
 
 double skg_nearest(const skg_body_organ *organ, const double p[3], double reach, skg_link *link) {

@@ -2,7 +2,6 @@
 
 #include "body/bones.h"
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,7 +1,7 @@
 #include "body/parameters.h"
 
 #include "core/core.h"
-#include "core/names.h"
+#include "core/text.h"
 
 #include <skiagraph/body.h>
 

@@ -3,9 +3,9 @@
 #include "body/links.h"
 #include "body/posed.h"
 #include "body/shares.h"
-#include "core/openmp.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
+#include "core/threads.h"
 
 #include <string.h>
 

@@ -1,7 +1,6 @@
 #include "body/bones.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <string.h>
 

@@ -2,7 +2,6 @@
 
 #include "body/links.h"
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <stdlib.h>
 

@@ -1,6 +1,6 @@
 #include "body/types.h"
 
-#include "core/names.h"
+#include "core/text.h"
 
 #include <ctype.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "body/links.h"
 
 #include "body/shares.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 /* Distances in mm below are choices. Reaches are a few mm more than the gaps that lie between organs. */
 

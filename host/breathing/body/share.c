@@ -2,7 +2,7 @@
 
 #include "body/bones.h"
 #include "body/links.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <string.h>
 

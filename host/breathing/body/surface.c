@@ -1,6 +1,6 @@
 #include "body/shares.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 /* The function f that is 1 at the given vertices and elsewhere solves f = t div grad f falls off about as exp(-d / sqrt t)
  * with the distance d (S. R. S. Varadhan, Comm. Pure Appl. Math. 20 (1967) 431). Linear finite elements. */

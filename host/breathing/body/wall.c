@@ -1,7 +1,7 @@
 #include "body/bones.h"
 
 #include "body/links.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 static int is_bone(const skg_body_organ *o, int spine) {
     if (o->role == ROLE_RIB || o->role == ROLE_STERNUM) return 1;

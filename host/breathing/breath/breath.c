@@ -2,8 +2,7 @@
 #include "breath/signal.h"
 #include "core/core.h"
 #include "core/maths.h"
-#include "core/names.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <skiagraph/breathing.h>
 

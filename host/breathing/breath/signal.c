@@ -1,7 +1,7 @@
 #include "breath/signal.h"
 
-#include "core/columns.h"
 #include "core/core.h"
+#include "core/files.h"
 
 #include <inttypes.h>
 #include <math.h>

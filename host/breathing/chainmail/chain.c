@@ -1,7 +1,7 @@
 /* Building the graph of links. */
 #include "chainmail/chainmail.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <inttypes.h>
 #include <stdlib.h>

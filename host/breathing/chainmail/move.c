@@ -1,7 +1,7 @@
 /* Moving the drivers: one search per axis and direction, largest remaining displacement first. */
 #include "chainmail/chainmail.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <inttypes.h>
 #include <string.h>

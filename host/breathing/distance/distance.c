@@ -1,9 +1,9 @@
 /* Distances between surfaces. */
 #include "core/core.h"
-#include "core/openmp.h"
-#include "core/plain.h"
-#include "core/progress.h"
-#include "core/vector.h"
+#include "core/log.h"
+#include "core/maths.h"
+#include "core/text.h"
+#include "core/threads.h"
 #include "distance/nearest.h"
 #include "distance/sample.h"
 

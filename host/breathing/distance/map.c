@@ -1,7 +1,7 @@
 /* Maps: a mesh with a distance and a colour at each vertex. */
 #include "core/core.h"
-#include "core/output.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "distance/sample.h"
 
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 #include "distance/sample.h"
 
 #include "core/core.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <inttypes.h>
 #include <math.h>

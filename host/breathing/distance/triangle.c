@@ -1,6 +1,6 @@
 #include "distance/nearest.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 

@@ -1,7 +1,7 @@
 #include "fit/types.h"
 
 #include "body/links.h"
-#include "core/vector.h"
+#include "core/maths.h"
 #include "scene/scene.h"
 #include "setup/types.h"
 

@@ -1,8 +1,6 @@
 /* Where a search is, as a file of text. */
-#include "core/input.h"
-#include "core/output.h"
-#include "core/path_hint.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "fit/types.h"
 
 #include <inttypes.h>

@@ -1,6 +1,6 @@
 /* What is known after the search: distances before and after, and how well the targets determine the parameters. */
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "fit/types.h"
 #include "scene/scene.h"
 

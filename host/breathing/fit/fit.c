@@ -1,6 +1,6 @@
 /* A fit as a handle. */
-#include "core/plain.h"
-#include "core/progress.h"
+#include "core/log.h"
+#include "core/text.h"
 #include "evolution/eigen.h"
 #include "fit/types.h"
 #include "scene/scene.h"

@@ -3,7 +3,6 @@
 #include "body/build.h"
 #include "body/links.h"
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <string.h>
 

@@ -2,8 +2,8 @@
 /* The fitted scene as a file. */
 #include "scene/scene.h"
 #include "body/links.h"
-#include "core/output.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "fit/types.h"
 #include "json/json.h"
 

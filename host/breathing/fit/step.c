@@ -1,7 +1,7 @@
 /* Evaluating generations. */
-#include "core/openmp.h"
-#include "core/plain.h"
-#include "core/progress.h"
+#include "core/log.h"
+#include "core/text.h"
+#include "core/threads.h"
 #include "fit/types.h"
 
 #include <math.h>

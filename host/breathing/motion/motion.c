@@ -2,7 +2,7 @@
 #include "body/posed.h"
 #include "body/types.h"
 #include "core/context.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "scene/scene.h"
 #include "setup/types.h"
 

@@ -1,6 +1,6 @@
 #include "phantom/anatomy.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "phantom/makers.h"
 #include "phantom/shapes.h"
 

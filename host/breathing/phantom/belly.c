@@ -1,5 +1,5 @@
 /* The organs under the diaphragm of the full thorax. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "phantom/anatomy.h"
 #include "phantom/makers.h"
 #include "phantom/shapes.h"

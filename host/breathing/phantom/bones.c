@@ -1,5 +1,5 @@
 /* Ribs, costal cartilage, sternum, spine, clavicles. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "phantom/anatomy.h"
 #include "phantom/makers.h"
 #include "phantom/shapes.h"

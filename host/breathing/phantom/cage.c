@@ -1,6 +1,6 @@
 #include "phantom/anatomy.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "phantom/shapes.h"
 
 /* Rows of z and half width, z and y of the front, z and y of the back of the cage, in mm. */

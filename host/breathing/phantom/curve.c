@@ -1,6 +1,6 @@
 #include "phantom/shapes.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 double skg_shape_curve(const double (*knots)[2], int count, double x) {
     if (x <= knots[0][0]) return knots[0][1];

@@ -1,6 +1,5 @@
 /* The diaphragm: a closed sheet about its middle surface. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "phantom/contacts.h"
 #include "phantom/makers.h"
 #include "phantom/shapes.h"

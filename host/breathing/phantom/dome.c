@@ -1,7 +1,6 @@
 #include "phantom/anatomy.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 #include "phantom/shapes.h"
 
 const double skg_dome_centre[2] = {0, -68};

@@ -1,6 +1,6 @@
 #include "phantom/shapes.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 double skg_ellipsoid_inside(const skg_ellipsoid *e, const double point[3], double larger) {
     double p[3], x[3], y[3], z[3], up[3] = {0, 0, 1};

@@ -1,6 +1,6 @@
 #include "phantom/contacts.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <string.h>
 

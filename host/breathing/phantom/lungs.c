@@ -1,7 +1,6 @@
 /* Lungs. A lung is made straight, as rings between a flat base and its apex, and then warped so that the base
  * lies on the diaphragm: no ring can cross another. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "phantom/anatomy.h"
 #include "phantom/contacts.h"
 #include "phantom/makers.h"

@@ -1,5 +1,5 @@
 /* The needle. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "phantom/makers.h"
 #include "phantom/shapes.h"
 

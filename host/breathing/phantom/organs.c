@@ -1,7 +1,7 @@
 /* Heart, and the organs under the diaphragm of the simple thorax. */
 #include "phantom/makers.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 #include "phantom/anatomy.h"
 #include "phantom/shapes.h"
 

@@ -1,6 +1,6 @@
 #include "phantom/contacts.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 /* Choices: the clearance is well below the gaps between organs (skg_thorax_plan), and a step about equal to it. */
 static const double clearance = 0.2; /* mm that a surface keeps from the others */

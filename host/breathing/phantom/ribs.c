@@ -1,7 +1,6 @@
 #include "phantom/anatomy.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 #include "phantom/shapes.h"
 
 #include <string.h>

@@ -1,6 +1,6 @@
 /* The thorax as files. */
-#include "core/output.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "phantom/makers.h"
 
 #include <stdio.h>

@@ -1,6 +1,5 @@
 /* The shoulder blades. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "phantom/makers.h"
 #include "phantom/shapes.h"
 

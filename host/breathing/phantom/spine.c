@@ -1,5 +1,5 @@
 /* The spine of the full thorax: vertebrae with their arches, discs, and the canal. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "phantom/anatomy.h"
 #include "phantom/makers.h"
 #include "phantom/shapes.h"

@@ -1,7 +1,6 @@
 #include "phantom/shapes.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 /* mm between the points at which a ray asks a region; what is narrower may be missed. */
 static const double step = 2;

@@ -1,6 +1,6 @@
 /* The generated thorax as a handle. */
-#include "core/openmp.h"
-#include "core/plain.h"
+#include "core/text.h"
+#include "core/threads.h"
 #include "phantom/makers.h"
 
 #include <inttypes.h>

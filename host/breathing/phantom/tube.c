@@ -1,7 +1,6 @@
 #include "phantom/shapes.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 #include "phantom/contacts.h"
 
 #include <string.h>

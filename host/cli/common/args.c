@@ -1,7 +1,7 @@
 #include "common/args.h"
 
 #include "common/say.h"
-#include "core/names.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <inttypes.h>

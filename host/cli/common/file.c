@@ -1,7 +1,7 @@
 #include "common/file.h"
 
 #include "common/say.h"
-#include "core/part_name.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <inttypes.h>

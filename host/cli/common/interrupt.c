@@ -4,7 +4,7 @@
 #include "common/interrupt.h"
 
 #include "common/progress.h"
-#include "core/part_name.h"
+#include "core/text.h"
 
 #include <dirent.h>
 #include <fcntl.h>

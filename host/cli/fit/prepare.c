@@ -4,7 +4,7 @@
 #include "common/progress.h"
 #include "common/say.h"
 #include "common/values.h"
-#include "core/names.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <stdio.h>

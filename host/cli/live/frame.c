@@ -1,7 +1,7 @@
 #include "live/frame.h"
 
 #include "common/progress.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 #include <stdio.h>

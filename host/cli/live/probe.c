@@ -1,7 +1,7 @@
 #include "live/ask.h"
 
 #include "common/encode.h"
-#include "core/vector.h"
+#include "core/maths.h"
 #include "live/frame.h"
 
 #include <math.h>

@@ -3,7 +3,7 @@
 #include "common/encode.h"
 #include "common/progress.h"
 #include "common/say.h"
-#include "core/names.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

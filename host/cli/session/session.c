@@ -3,7 +3,7 @@
 #include "common/progress.h"
 #include "common/say.h"
 #include "common/values.h"
-#include "core/names.h"
+#include "core/text.h"
 #include "session/meshes.h"
 
 #include <inttypes.h>

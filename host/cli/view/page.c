@@ -3,7 +3,7 @@
 #include "common/encode.h"
 #include "common/file.h"
 #include "common/say.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "view/picture.h"
 
 #include "common/say.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <math.h>
 #include <stdlib.h>

@@ -1,7 +1,7 @@
 #include "view/surfaces.h"
 
 #include "common/say.h"
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* source: spectrum, filters and focal spot. */
-#include "core/columns.h"
+#include "core/files.h"
 #include "core/maths.h"
 #include "ctsimu/parts.h"
 

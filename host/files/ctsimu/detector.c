@@ -1,5 +1,5 @@
 /* detector: response, unsharpness and grey values. */
-#include "core/columns.h"
+#include "core/files.h"
 #include "core/maths.h"
 #include "ctsimu/parts.h"
 

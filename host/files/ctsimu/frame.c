@@ -1,6 +1,6 @@
 #include "ctsimu/parts.h"
 
-#include "core/vector.h"
+#include "core/maths.h"
 
 #include <stdio.h>
 #include <string.h>

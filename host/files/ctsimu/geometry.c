@@ -1,6 +1,5 @@
 /* geometry and acquisition: where source and detector are in each projection. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "ctsimu/parts.h"
 
 #include <math.h>

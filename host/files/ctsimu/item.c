@@ -1,7 +1,6 @@
 #include "ctsimu/parts.h"
 
-#include "core/columns.h"
-#include "core/input.h"
+#include "core/files.h"
 #include "core/maths.h"
 
 #include <inttypes.h>

@@ -1,5 +1,5 @@
 /* samples and materials. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "ctsimu/parts.h"
 
 #include <inttypes.h>

@@ -1,8 +1,7 @@
 #include "json/json.h"
 
-#include "core/names.h"
-#include "core/units.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 
 #include <ctype.h>
 #include <inttypes.h>

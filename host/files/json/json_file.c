@@ -1,5 +1,5 @@
 #include "json/json_file.h"
-#include "core/input.h"
+#include "core/files.h"
 
 #include <inttypes.h>
 #include <stdio.h>

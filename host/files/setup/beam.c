@@ -1,6 +1,6 @@
 /* The key Beam of a source: energies, a file of them, or a tube. */
 #include "core/context.h"
-#include "core/units.h"
+#include "core/text.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

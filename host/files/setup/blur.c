@@ -1,6 +1,6 @@
 /* Blur and noise power of a detector: LSF, PSF, MTF and DQE, and the Depths of a scintillator. */
-#include "core/columns.h"
-#include "core/vector.h"
+#include "core/files.h"
+#include "core/maths.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

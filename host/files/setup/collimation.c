@@ -1,5 +1,5 @@
 /* The key Collimation. */
-#include "geometry/collimation.h"
+#include "geometry/optics.h"
 #include "setup/sections.h"
 
 static const char *const rectangle_example = "[[-50, 50], [-40, 60], \"mm\"]";

@@ -1,5 +1,5 @@
 /* The section Detector. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "setup/sections.h"
 
 #include <math.h>

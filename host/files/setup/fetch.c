@@ -1,7 +1,7 @@
 /* The meshes of a scene, loaded by several threads before the samples are read one by one. What fails here is tried again
  * where its sample is read, which finds the same failure and names the place in the file. */
-#include "core/parallel.h"
-#include "core/units.h"
+#include "core/text.h"
+#include "core/threads.h"
 #include "mesh/mesh.h"
 #include "setup/sections.h"
 

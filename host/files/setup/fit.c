@@ -1,6 +1,6 @@
 /* Source and detector that a scene leaves out: placed and sized by its parts. */
 #include "core/context.h"
-#include "core/vector.h"
+#include "core/maths.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 /* What identifies a set-up: its file after the settings, and the contents of the files that it names. */
 #include "core/digest.h"
-#include "core/input.h"
-#include "core/path_hint.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "setup/sections.h"
 
 #include <errno.h>

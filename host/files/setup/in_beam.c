@@ -1,7 +1,7 @@
 /* What lies in the beam besides the samples: Bowtie of a source, Grid of a detector. */
 #include "beam/bowtie.h"
 #include "beam/grid.h"
-#include "core/columns.h"
+#include "core/files.h"
 #include "setup/sections.h"
 
 #include <string.h>

@@ -1,5 +1,5 @@
 /* The key Noise. */
-#include "core/units.h"
+#include "core/text.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

@@ -1,7 +1,6 @@
 #include "setup/types.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 #include "setup/sections.h"
 
 #include <math.h>

@@ -1,8 +1,8 @@
 /* What the keys Scan, GreyValues and Poses say of how projections are recorded. */
 #include "core/core.h"
-#include "core/input.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/files.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

@@ -1,6 +1,5 @@
 /* What the detector makes of a photon: Energy response and Scintillator. */
-#include "core/names.h"
-#include "core/units.h"
+#include "core/text.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

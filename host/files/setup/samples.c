@@ -1,5 +1,5 @@
 /* The section Samples. */
-#include "core/vector.h"
+#include "core/maths.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

@@ -1,6 +1,5 @@
 /* The section Scan. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "setup/sections.h"
 
 #include <math.h>

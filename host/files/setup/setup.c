@@ -1,7 +1,6 @@
 /* A set-up as a handle, and the keys at the top of its file. */
 #include "core/context.h"
-#include "core/names.h"
-#include "core/plain.h"
+#include "core/text.h"
 #include "ctsimu/ctsimu.h"
 #include "setup/sections.h"
 #include "json/json_file.h"

@@ -1,5 +1,5 @@
 #include "core/context.h"
-#include "core/vector.h"
+#include "core/maths.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

@@ -1,6 +1,5 @@
 /* The key Transform of a sample. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>

@@ -1,8 +1,7 @@
 /* Grey values of a detector. */
 #include "core/core.h"
 #include "core/maths.h"
-#include "core/plain.h"
-#include "core/random.h"
+#include "core/text.h"
 
 #include <skiagraph/readout.h>
 

@@ -1,7 +1,6 @@
 #include "reconstruct/orbit.h"
 
 #include "core/maths.h"
-#include "core/vector.h"
 
 #include <math.h>
 

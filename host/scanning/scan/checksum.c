@@ -3,7 +3,7 @@
 #include "scan/format.h"
 
 #include "core/crc.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <inttypes.h>

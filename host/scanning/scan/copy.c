@@ -1,7 +1,7 @@
 /* Projections of one file copied into another: of shards into the whole, and of the whole into phases. */
 #include "scan/format.h"
 
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,11 +1,8 @@
 /* Opening, writing and ending a file of projections. */
 #include "scan/format.h"
 
-#include "core/element.h"
-#include "core/names.h"
-#include "core/output.h"
-#include "core/part_name.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 
 #include <errno.h>
 #include <fcntl.h>

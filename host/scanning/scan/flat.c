@@ -1,7 +1,7 @@
 /* Flat fields: images of the beam without parts. */
 #include "core/core.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "frame/quiet.h"
 #include "scan/slot.h"
 

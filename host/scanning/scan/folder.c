@@ -1,6 +1,6 @@
 /* A folder with one TIFF file for each projection, which appears whole or not at all, and scan.txt, which says of which
  * scan they are. */
-#include "core/output.h"
+#include "core/files.h"
 #include "scan/format.h"
 
 #include <skiagraph/image.h>

@@ -1,7 +1,7 @@
 /* What identifies the projections of a scan. */
 #include "core/core.h"
 #include "core/digest.h"
-#include "core/plain.h"
+#include "core/text.h"
 
 #include <skiagraph/scan_run.h>
 #include <skiagraph/version.h>

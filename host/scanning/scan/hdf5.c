@@ -1,8 +1,8 @@
 /* HDF5 in the layout of Data Exchange (De Carlo et al., J. Synchrotron Rad. 21 (2014) 1224-1230), with our geometry and
  * progress beside it. HDF5 lays the file out; its datasets are contiguous and allocated at once, so that projections are
  * written in place without it. Its own metadata never changes again, and whoever opens the file finds it whole. */
+#include "core/files.h"
 #include "core/maths.h"
-#include "core/output.h"
 #include "scan/format.h"
 #include "scan/hdf5_files.h"
 #include "trajectory/types.h"

@@ -1,8 +1,6 @@
 /* The last pass over a finished scan: the same file again, compressed in chunks. */
-#include "core/input.h"
-#include "core/output.h"
-#include "core/part_name.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "scan/hdf5_files.h"
 
 #include <skiagraph/scan_file.h>

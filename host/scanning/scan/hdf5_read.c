@@ -1,7 +1,7 @@
 /* Reading a finished scan from HDF5. */
-#include "core/input.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/files.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "scan/hdf5_files.h"
 
 #include <skiagraph/scan_reader.h>

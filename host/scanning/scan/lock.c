@@ -1,7 +1,7 @@
 /* One writer at a time: a lock of the operating system on NAME.lock, which goes when its process ends however that
  * happens. The file says who has it. Such a lock belongs to the whole process, and closing any descriptor of its file
  * gives it up; so within the process a table says which lock files are locked, and none of these is opened again. */
-#include "core/output.h"
+#include "core/files.h"
 #include "scan/format.h"
 
 #include <errno.h>

@@ -1,7 +1,6 @@
 /* Bytes at their places in a file, and the text that says which scan a file holds. */
 #define _XOPEN_SOURCE 700 /* realpath */
-#include "core/input.h"
-#include "core/output.h"
+#include "core/files.h"
 #include "scan/format.h"
 
 #include <errno.h>

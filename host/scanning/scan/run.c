@@ -1,8 +1,8 @@
 /* Batches of projections: which projections, which slots are in flight. */
 #include "core/core.h"
+#include "core/log.h"
 #include "core/maths.h"
-#include "core/plain.h"
-#include "core/progress.h"
+#include "core/text.h"
 #include "scan/slot.h"
 
 #include <inttypes.h>

@@ -1,7 +1,7 @@
 #include "scan/slot.h"
 
 #include "core/core.h"
-#include "core/progress.h"
+#include "core/log.h"
 #include "scan/block.h"
 #include "scan/format.h"
 

@@ -2,7 +2,7 @@
 #ifndef SKG_SCAN_SLOT_H
 #define SKG_SCAN_SLOT_H
 
-#include "core/element.h"
+#include "core/text.h"
 
 #include <skiagraph/scan_run.h>
 #include <skiagraph/scatter_series.h>

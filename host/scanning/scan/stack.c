@@ -1,8 +1,8 @@
 /* Stacks of projections without a library of their own: MetaImage with its header inside (.mha) or beside (.raw with
  * .mhd), and BigTIFF. */
-#include "core/element.h"
-#include "core/output.h"
-#include "core/vector.h"
+#include "core/files.h"
+#include "core/maths.h"
+#include "core/text.h"
 #include "image/image.h"
 #include "scan/format.h"
 

@@ -1,7 +1,7 @@
 /* What writers that were killed have left of a scan. */
 #include "scan/format.h"
 
-#include "core/part_name.h"
+#include "core/text.h"
 
 #include <dirent.h>
 #include <string.h>

@@ -2,7 +2,6 @@
  * directions of source and detector at angle 0, and angles by which the sample turns about the axis. Scans that do more
  * than turn have positions and directions for each projection (create_Cone3D_SOUV). */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "trajectory/writers.h"
 
 #include <inttypes.h>

@@ -1,7 +1,6 @@
 /* The geometry of a scan as files that reconstruction tools read. */
-#include "core/names.h"
-#include "core/output.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "trajectory/writers.h"
 
 #include <string.h>

@@ -1,8 +1,6 @@
 /* How source and detector are displaced from the ideal rotation. */
 #include "core/maths.h"
-#include "core/plain.h"
-#include "core/random.h"
-#include "core/vector.h"
+#include "core/text.h"
 #include "trajectory/types.h"
 
 #include <skiagraph/scene.h>

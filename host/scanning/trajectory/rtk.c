@@ -1,6 +1,5 @@
 /* The geometry of a scan for RTK: ThreeDCircularProjectionGeometry. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "trajectory/writers.h"
 
 #include <inttypes.h>

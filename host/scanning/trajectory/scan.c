@@ -2,8 +2,7 @@
 #include "trajectory/types.h"
 
 #include "core/maths.h"
-#include "core/plain.h"
-#include "core/vector.h"
+#include "core/text.h"
 
 #include <skiagraph/scene.h>
 

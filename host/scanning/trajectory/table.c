@@ -1,8 +1,6 @@
 /* A table of poses from a text file. */
-#include "core/columns.h"
-#include "core/input.h"
-#include "core/path_hint.h"
-#include "core/plain.h"
+#include "core/files.h"
+#include "core/text.h"
 #include "trajectory/types.h"
 
 #include <ctype.h>

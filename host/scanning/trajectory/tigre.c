@@ -3,7 +3,6 @@
  * (v, u) = offDetector, its columns run along y and its rows along z, after it was turned about its centre by Rz Ry Rx of
  * rotDetector. All of that is turned about z by the angle and moved by -offOrigin. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "trajectory/writers.h"
 
 #include <inttypes.h>

@@ -1,6 +1,5 @@
 /* What the writers of geometries share. */
 #include "core/maths.h"
-#include "core/vector.h"
 #include "trajectory/writers.h"
 
 #include <inttypes.h>

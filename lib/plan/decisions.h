@@ -1,0 +1,169 @@
+/* What is decided once for a plan. Private. */
+#ifndef SKG_DECISIONS_H
+#define SKG_DECISIONS_H
+
+#include "device/device.h"
+#include "mesh/mesh.h"
+#include "plan/recipe.h"
+#include "plan/results.h"
+#include "scene/scene.h"
+#include "spectral/model.h"
+#include "stage/readout.h"
+
+#include <skiagraph/plan.h>
+
+/* --- Checks of a plan's options. */
+
+/* Fails if a flag is neither 0 nor 1. name: of the option. */
+skg_status skg_check_flag(const char *name, int32_t flag);
+
+/* Fails unless a choice is 0 to last. choices: their names. */
+skg_status skg_check_choice(const char *name, int32_t choice, int32_t last, const char *choices);
+
+/* Refuses options of no effect that cannot be used on this device. */
+skg_status skg_plan_options_check(const skg_plan_options *options, const skg_device_info *device);
+
+/* --- Which strategy rasters a scene, and how the rays of a pixel are made. */
+
+/* What a strategy is chosen by. */
+typedef struct {
+    int32_t gpu;
+    int32_t workers;        /* compute units */
+    int64_t image_bytes;    /* of all accumulators, within the rectangles that their parts reach */
+    int64_t triangles;      /* of a frame */
+    double triangle_pixels; /* mean number of pixels of a triangle's box */
+} skg_strategy_facts;
+
+/* Triangles of a frame. */
+int64_t skg_scene_triangles(const skg_scene *scene);
+
+/* The strategy for these facts, and why in a few words (static storage). */
+int32_t skg_strategy_choose(const skg_strategy_facts *facts, const char **why);
+
+/* A scene, a view and what was asked for. */
+typedef struct {
+    const skg_device_info *device;
+    const skg_scene *scene;
+    const skg_view *view;
+    int32_t precision;    /* SKG_PRECISION_... */
+    int32_t wanted;       /* SKG_STRATEGY_... */
+    int64_t accumulators; /* planes of the raster; what the parts add to them */
+    const skg_contribution *contributions;
+    const int64_t *first_contribution; /* [parts + 1] */
+} skg_strategy_request;
+
+/* The strategy that is asked for, that the precision needs, or that the facts call for. */
+skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *strategy, const char **why);
+
+/* What decides how the rays of a pixel are made: not the device and not the strategy, because images have the same bits on
+ * every one of them. */
+typedef struct {
+    int64_t shifts;        /* rays along each side of a pixel */
+    int64_t columns, rows; /* of the image */
+    int64_t accumulators;  /* planes of the raster */
+    int64_t triangles;     /* of a frame */
+    int32_t precision;     /* SKG_PRECISION_... */
+    int32_t leaky;         /* 1: some mesh is leaky */
+} skg_fine_request;
+
+/* How many pixels the passes have along each side of a pixel of the image: `shifts`, so that one pass makes all rays of a
+ * point of the source, or 1, with a pass for each ray. why: in a few words (static storage). */
+int64_t skg_fine_choose(const skg_fine_request *request, const char **why);
+
+/* The most accumulators that so many planes are mixed from (spectral/model.h). The request's own number does not count. */
+int32_t skg_max_mixed(const skg_fine_request *request, int32_t planes);
+
+/* What decides how many passes of a frame are drawn together. */
+typedef struct {
+    int32_t strategy;    /* SKG_STRATEGY_... */
+    int32_t workers;     /* compute units */
+    int64_t passes;      /* of a frame */
+    int64_t image_bytes; /* of all accumulator planes of a pass */
+    int64_t triangles;   /* of a pass */
+} skg_passes_request;
+
+/* How many passes are drawn together, each by one worker in accumulators of its own: a multiple of the workers, or 1, with all
+ * workers at each pass. side: of these, how many a worker draws side by side. */
+int32_t skg_passes_choose(const skg_passes_request *request, int32_t *side);
+
+/* --- What a plan says of its precision. */
+
+/* The bound of the relative error that the precision makes. */
+skg_status skg_plan_precision_bound(const skg_recipe *recipe, double *bound);
+
+/* Warns of half precision, with its bound, and of parts that are too thin for single precision. */
+skg_status skg_plan_precision_warn(const skg_recipe *recipe, const skg_context *context);
+
+/* --- What the channels of a plan's images are. */
+
+typedef struct {
+    char text[64];
+} skg_channel_name;
+
+/* Names the channels of a model by the caller's bands; [channels], freed by the caller. */
+skg_status skg_channel_names_create(const skg_plan_options *options, int32_t channels,
+                                    skg_channel_name **names);
+
+/* The unit of a quantity; static storage. */
+const char *skg_channel_unit(int32_t quantity);
+
+/* What a channel shows without parts and world, not weakened by falloff. exposure: the photons per pixel of the view over
+ * those of the model. */
+double skg_channel_flat_field(const skg_plan_options *options, const skg_model *model, const skg_view *view,
+                              double exposure, int64_t channel);
+
+/* --- The distinct meshes of a scene: each is stored and uploaded once, however many parts use it. */
+
+typedef struct {
+    int64_t count;
+    skg_mesh **meshes; /* [count] the scene's */
+    int64_t *of_part;  /* [parts] the number of each part's mesh */
+} skg_plan_meshes;
+
+skg_status skg_plan_meshes_create(const skg_scene *scene, skg_plan_meshes *meshes);
+void skg_plan_meshes_release(skg_plan_meshes *meshes);
+
+/* SKG_ERR_MESH, naming part and vertex, if a mesh has a vertex that is not finite. */
+skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene *scene);
+
+/* Warns of meshes whose components contradict their nesting. nestings: [count] of skg_nesting_find. */
+skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_nesting *nestings,
+                                const skg_scene *scene, const skg_context *context);
+
+/* --- What a recipe's frames do behind the raster: how planes become images, and what the detector does. */
+
+/* The shape of the attenuation of images: everything but its tables. */
+void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape);
+
+/* The stage `detect`. *wanted: 0 if there is nothing left for it to do. factors: [channels]. SKG_ERR_BEAM if a ratio is
+ * asked for and a channel records nothing of the flat field. */
+skg_status skg_decide_detection(const skg_recipe *recipe, skg_detection *detection, double *factors,
+                                int32_t *wanted);
+
+/* Whether logarithms are taken of finished means, behind noise and blur. */
+int skg_decide_late_logarithm(const skg_recipe *recipe);
+
+/* --- Warnings of a plan whose images are right and may not be what the caller meant. */
+
+/* Warns of bands that record nothing of the beam, and of a source inside a part, where the plan was made. */
+void skg_plan_warn_doubts(const skg_recipe *recipe, const skg_context *context);
+
+/* --- The check for parts that overlap or leave their parent. */
+
+/* What the check has found. */
+typedef struct {
+    int64_t side; /* columns along each side of the grid */
+    int64_t pair_count;
+    skg_overlap_pair *pairs;
+    skg_mesh_nesting *nestings; /* [meshes]; NULL: the options do not ask for the check */
+} skg_plan_overlaps;
+
+/* Finds overlaps and inverted components, if the options ask for it. Release what was found also after a failure. */
+skg_status skg_plan_overlaps_find(const skg_recipe *recipe, skg_plan_overlaps *found);
+void skg_plan_overlaps_release(skg_plan_overlaps *found);
+
+/* Moves the pairs to the outcome, and warns of what was found, except for overlaps that priorities or clipping settle. */
+skg_status skg_plan_overlaps_take(const skg_recipe *recipe, const skg_context *context,
+                                  skg_plan_overlaps *found, skg_outcome *outcome);
+
+#endif

@@ -1,0 +1,153 @@
+/* Effects: what calls for them, what they copy, what they cost. Private. */
+#ifndef SKG_RULES_H
+#define SKG_RULES_H
+
+#include "core/core.h"
+#include "device/self_tests.h"
+#include "geometry/bounds.h"
+#include "geometry/priority.h"
+#include "plan/recipe.h"
+#include "plan/results.h"
+#include "stage/readout.h"
+
+#include <skiagraph/material.h>
+
+/* --- Counts of operations per pixel, from which the costs of effects are estimated. */
+
+/* Rough numbers of multiply-adds. */
+enum {
+    SKG_COST_EXPONENTIAL = 12, /* an exponential */
+    SKG_COST_TRIANGLE = 100,   /* setting up a triangle */
+    SKG_COST_DEVIATE = 100,    /* a random deviate with its random words */
+    SKG_COST_RAY = 10,         /* the length of a ray */
+    SKG_COST_REPAIRED = 30,    /* a pixel of a repair */
+    SKG_COST_LISTED = 200,     /* a hit that is listed and sorted */
+    SKG_COST_LOOKED_UP = 10    /* two rows of a table */
+};
+
+typedef struct {
+    double listed;      /* hits of a pass, per pixel, that are listed for priorities */
+    double passes;      /* rays of a pixel */
+    double set_up;      /* multiply-adds per pixel for the triangles of a pass */
+    double plain, pass; /* multiply-adds per pixel of a pass without effects, and of a pass */
+} skg_cost_counts;
+
+/* extents: [parts] at the recipe's view. */
+skg_cost_counts skg_costs_count(const skg_recipe *recipe, const skg_extent *extents,
+                                const skg_priority *priority);
+
+/* Multiply-adds per pixel of the attenuation of one pass: planes, and exponentials for every channel. */
+double skg_cost_of_attenuation(const skg_model *model, double nodes, double planes);
+
+/* --- An effect of a plan: one row of a table. *
+ * The rows stand by subject in effects_beam.c (the beam and what stands in it), effects_detector.c, effects_meshes.c and
+ * effects_sampling.c. */
+
+/* What a plan reports of an effect. */
+typedef struct {
+    int32_t on, reserved;
+    double cost; /* estimated, in frames without any effect */
+    char reason[256];
+} skg_effect_state;
+
+/* What reasons and costs follow from. */
+typedef struct {
+    const skg_recipe *recipe;
+    const skg_context *context;          /* its log takes warnings */
+    const skg_layers *layers;            /* and their blurs */
+    double sample_error;                 /* of adaptive sampling; 0: not adaptive */
+    int64_t overlap_count, overlap_side; /* as in skg_outcome */
+    int64_t near_source;                 /* parts that reach the plane where rays start */
+    int64_t competing;                   /* parts whose hits are listed for priorities */
+    skg_cost_counts counts;
+} skg_effect_facts;
+
+typedef struct {
+    const char *name;        /* as reported */
+    skg_self_test self_test; /* of its kernels; 0, SKG_SELF_TEST_CORE: they are those of every plan */
+    /* Replaces the caller's structs in the options by checked copies of the recipe's own. NULL: the options hold none. */
+    skg_status (*copy)(skg_recipe *recipe);
+    /* Fails if an option cannot be used. NULL: nothing to check. */
+    skg_status (*check)(const skg_plan_options *options);
+    /* Whether half precision is refused. NULL: it holds with this effect. */
+    int (*refuses_half)(const skg_recipe *recipe);
+    /* Calls skg_effect_set. */
+    void (*find)(const skg_effect_facts *facts, skg_effect_state *state);
+    /* Multiply-adds per pixel of a frame, if the effect is on. NULL: part of what is done anyway, or done once for a plan. */
+    double (*cost)(const skg_effect_facts *facts);
+} skg_effect_row;
+
+/* The rows in the order in which they are reported. */
+/* clang-format off */
+#define SKG_EFFECT_ROWS(X) \
+    X(energies) X(source) X(supersampling) X(world) X(response) X(falloff) X(compression) \
+    X(nesting) X(leaky) X(repair) X(source_plane) X(overlaps) \
+    X(noise) X(blur) X(electronic) X(quantisation) X(priority) \
+    X(heel) X(bowtie) X(collimation) X(scatter) X(grid) X(oblique) X(escape) X(depths) X(dqe)
+/* clang-format on */
+
+#define SKG_EFFECT_DECLARE(row) extern const skg_effect_row skg_effect_##row;
+SKG_EFFECT_ROWS(SKG_EFFECT_DECLARE)
+#undef SKG_EFFECT_DECLARE
+
+#define SKG_EFFECT_ONE(row) +1
+enum { SKG_EFFECTS = SKG_EFFECT_ROWS(SKG_EFFECT_ONE) };
+#undef SKG_EFFECT_ONE
+
+/* Fails if the scatter that the options ask for cannot be computed of the scene. */
+skg_status skg_scatter_check(const skg_recipe *recipe);
+
+/* Sets whether an effect is on, and why. */
+void skg_effect_set(skg_effect_state *state, int on, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
+
+/* --- The table of effects, and what all of its rows do for a plan. */
+
+/* Row 0 <= index < SKG_EFFECTS. Static storage. */
+const skg_effect_row *skg_effect_row_get(int64_t index);
+
+/* Replaces what the options of effects point to by copies. After a failure the recipe can only be released. */
+skg_status skg_effects_copy(skg_recipe *recipe);
+
+/* Refuses options of effects that cannot be used. */
+skg_status skg_effects_check(const skg_plan_options *options);
+
+/* Whether any effect refuses half precision. */
+int skg_effects_refuse_half(const skg_recipe *recipe);
+
+/* Fills the effects of an outcome whose overlaps and samples are known. layers: and their blurs. */
+skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_layers *layers,
+                            skg_outcome *outcome);
+
+/* --- The warning that nothing falls on the detector. */
+
+/* Warns, once, if no part falls on the detector: in which direction and how far away the nearest shadow lies. extents:
+ * [parts] as the camera sees them; fine: its pixels along each side of a pixel of the image. */
+void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const skg_camera *camera,
+                     const skg_extent *extents, int32_t fine, skg_outcome *outcome);
+
+/* --- Copies of what a plan's options point to. */
+
+/* All zero: none. */
+typedef struct {
+    int64_t count;
+    struct skg_copy *copies;
+} skg_copies;
+
+/* Zeroed memory that is freed with the copies. what: for the message. */
+skg_status skg_copies_alloc(skg_copies *copies, int64_t count, size_t size, const char *what,
+                            void *pointer_address);
+
+/* Copies a caller's struct over the defaults of its init function. name: of its type. */
+skg_status skg_copies_struct(skg_copies *copies, const void *given, const char *name, size_t size,
+                             void (*init_sized)(void *, int32_t), void *pointer_address);
+
+/* Replaces the caller's array by a copy. */
+skg_status skg_copies_array(skg_copies *copies, int64_t count, const char *what, const double **values);
+
+/* Retains a material until the copies are released; NULL: nothing. */
+skg_status skg_copies_material(skg_copies *copies, skg_material *material);
+
+void skg_copies_release(skg_copies *copies);
+
+#endif

@@ -1,0 +1,124 @@
+/* What photons meet: shapes, cross sections, angles. Private. */
+#ifndef SKG_INTERACTIONS_H
+#define SKG_INTERACTIONS_H
+
+#include "core/core.h"
+#include "scatter/beams.h"
+
+#include <skiagraph/material.h>
+
+#include <math.h>
+
+/* --- What photons meet: attenuation and the angles of scattering, for mixtures of all materials of a scene. *
+ * A cell of the object holds four coefficients. Every function of energy or of momentum transfer is linear in them: mu of a cell
+ * is the sum over k of coefficient[k] * total[energy][k]. A cell without matter has zeros. With at most four
+ * compositions each coefficient is the length of one composition, and the functions are exact. With more, they are a
+ * joint basis fitted to all functions of all materials (smoothing.h), whose error is measured. From 15 to 120 keV the total
+ * of 12 tissues is right within 0.1 % and their distributions of angles within 0.3 %; with steel and iodine beside them
+ * within 1.5 % (steel; tissues 0.8 %) and 9 % (Rayleigh of bone).
+ *
+ * Interactions are photo absorption, Compton and Rayleigh scattering, up to 1,022 keV, where pair production begins. Their
+ * numbers are XCOM's, the same as the primary's. Angles are distributed like Klein and Nishina's cross section
+ * times S, and like Thomson's times F^2, of free atoms (material/scattering.h). */
+
+enum { SKG_SCATTER_RANK = 4 };
+typedef float skg_mix4[SKG_SCATTER_RANK];
+
+typedef struct {
+    /* Points even in ln E from low_kev to high_kev. Tables are linear between them. */
+    int64_t energies;
+    double low_kev, high_kev;
+    /* [energies] 1/mm per coefficient; total: photo + Compton + Rayleigh. With more than four compositions Compton
+     * + Rayleigh may exceed the total within the errors. */
+    skg_mix4 *total, *compton, *rayleigh;
+    /* [energies] 1/mm per coefficient: integrals over the sphere of klein_nishina(E, theta) * incoherent(x) and of
+     * (1 + cos^2 theta) / 2 * coherent(x). They normalise the distributions of angles. */
+    skg_mix4 *compton_shape, *rayleigh_shape;
+    /* Points even in ln(1 + x / momentum_scale) from x = 0 to momentum_high, that of a photon of high_kev turned back,
+     * 1/Angstrom. Tables are linear between them. */
+    int64_t momenta;
+    double momentum_scale, momentum_high;
+    /* [momenta] 1/mm per coefficient: r_e^2 times the number of atoms per volume times S and times F^2. */
+    skg_mix4 *incoherent, *coherent;
+    int64_t materials;
+    double (*coefficients)[SKG_SCATTER_RANK]; /* [materials] of 1 mm of each at its density, per mm */
+    /* The greatest relative error over the materials of total, Compton and Rayleigh at the energies; and of these and of both
+     * distributions of angles (integral of the absolute difference over the integral). At least 1e-6, for the
+     * rounding of floats. Interpolation is apart: below 2e-4 away from edges. */
+    double attenuation_error, error;
+} skg_scatter_physics;
+
+/* Makes the tables.
+ *
+ * materials   [count] at their densities
+ * low_kev     of the photons that are tracked, >= 1
+ * errors      SKG_ERR_MATERIAL for a material without composition or density, or below 1 keV; SKG_ERR_UNSUPPORTED above
+ *             1,022 keV; SKG_ERR_ARGUMENT unless low_kev < high_kev */
+skg_status skg_scatter_physics_make(int64_t count, skg_material *const *materials, double low_kev,
+                                    double high_kev, skg_scatter_physics *physics);
+void skg_scatter_physics_free(skg_scatter_physics *physics);
+
+/* The energy of a point in keV. */
+static inline double skg_scatter_energy(const skg_scatter_physics *physics, int64_t point) {
+    return physics->low_kev *
+           exp(log(physics->high_kev / physics->low_kev) * (double)point / (double)(physics->energies - 1));
+}
+
+/* The momentum transfer of a point in 1/Angstrom. */
+static inline double skg_scatter_momentum(const skg_scatter_physics *physics, int64_t point) {
+    const double range = log1p(physics->momentum_high / physics->momentum_scale);
+    return physics->momentum_scale * expm1(range * (double)point / (double)(physics->momenta - 1));
+}
+
+/* --- Integrals over the sphere of the distributions of angles. */
+
+/* Klein and Nishina's cross section of a free electron per solid angle, in r_e^2. cosine: of the angle of scattering */
+double skg_klein_nishina(double kev, double cosine);
+
+/* Thomson's, likewise. */
+double skg_thomson(double cosine);
+
+/* The weights of the momenta's points in the integral over the sphere at an energy: the sum of weight[i] * table[i]
+ * is the integral of cross_section * table, where the table is linear between its points.
+ *
+ * compton, rayleigh   [momenta]
+ * returns             the number of points up to the momentum transfer of a photon that is turned back; the weights of the
+ *                     others are not set */
+int64_t skg_shape_weights(const skg_scatter_physics *grid, double kev, double *compton, double *rayleigh);
+
+/* --- A table of angles of scattering from which photons are sent on. */
+
+enum { SKG_ANGLE_ROWS = 48 };
+
+/* Fills table [SKG_ANGLE_ROWS][SKG_SCATTER_ANGLES + 1], rising cosines between which scattering is equally likely, for energies
+ * even in ln E. The distribution is the mean of that of `mixture` and those of all materials, so that no material's own
+ * is far above it; weights of photons make good for the difference. mixture: coefficients, with all 0 not counted. */
+skg_status skg_angles_make(const skg_scatter_physics *physics, const double mixture[SKG_SCATTER_RANK],
+                           float *table);
+
+/* --- Tables of a frame's photons as the device has them. */
+
+typedef struct {
+    float (*energies)[SKG_SCATTER_RANK]; /* [energies][SKG_SCATTER_COLUMNS] */
+    float (*momenta)[SKG_SCATTER_RANK];  /* [momenta][2] S, F^2 */
+    float *angles;                       /* [SKG_ANGLE_ROWS][SKG_SCATTER_ANGLES + 1] */
+    float (*beam)
+        [4]; /* [bins] keV, share of the photons that are followed up to here, weight, 1/mm of a bow-tie filter */
+    int64_t bins;
+    skg_beam_profile profile;
+    float *profiles; /* [profile_count] as kernels/profile.clh has them; NULL: none */
+    int64_t profile_count;
+    float *
+        detector; /* [detector_count] as kernels/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
+    int64_t detector_count;
+    int32_t bands, layers, cosines, oblique; /* images of a frame; of the table of layers: 0: none */
+    double photons;                          /* of the spectrum, those that leave towards the field */
+    double signal, variance;                 /* what 1 in the columns of what a photon adds stands for */
+} skg_scatter_tables;
+
+/* More photons are followed of energies that add more to the image. Free the tables also after a failure. */
+skg_status skg_scatter_tables_make(const skg_scatter_work *work, const skg_scatter_object *object,
+                                   skg_scatter_tables *tables);
+void skg_scatter_tables_free(skg_scatter_tables *tables);
+
+#endif

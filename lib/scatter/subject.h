@@ -1,0 +1,84 @@
+/* The object in cells. Private. */
+#ifndef SKG_SUBJECT_H
+#define SKG_SUBJECT_H
+
+#include "geometry/overlaps.h"
+#include "plan/recipe.h"
+#include "scatter/interactions.h"
+
+/* --- All functions of each material at the points of the tables, one below the other. */
+
+/* The functions in their order: the first three have a row for each energy, the others for each momentum transfer. */
+enum {
+    SKG_SCATTER_TOTAL,
+    SKG_SCATTER_COMPTON,
+    SKG_SCATTER_RAYLEIGH,
+    SKG_SCATTER_INCOHERENT,
+    SKG_SCATTER_COHERENT,
+    SKG_SCATTER_FUNCTIONS
+};
+
+/* The first row of a function; that of SKG_SCATTER_FUNCTIONS is the number of rows. */
+int64_t skg_scatter_first_row(const skg_scatter_physics *grid, int function);
+
+/* columns: [count][rows] 1/mm, freed by the caller. Only the points of grid are read. */
+skg_status skg_scatter_columns(int64_t count, skg_material *const *materials, const skg_scatter_physics *grid,
+                               double **columns);
+
+/* --- The object as cells, each with the mixture of materials in it. *
+ * Parallel columns through all parts, along z: each hit adds what its part's material is more than its parent's to the cells
+ * behind it, and its share to its own cell (cumulative path lengths). Along the columns this is exact, across them sampled by
+ * SKG_CELL_COLUMNS x SKG_CELL_COLUMNS columns a cell. Amounts are whole multiples of a small unit, so that a cell of void holds
+ * exactly nothing. */
+
+enum { SKG_CELLS_DEFAULT = 64, SKG_CELLS_MAX = 256, SKG_CELL_COLUMNS = 2 };
+
+typedef struct {
+    int64_t count[3];              /* cells along x, y, z; along x and y as many */
+    double low[3], size[3];        /* mm, of the box of all parts */
+    skg_mix4 *mixtures;            /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    double mean[SKG_SCATTER_RANK]; /* over the cells */
+} skg_cells;
+
+/* Closed parts. */
+typedef struct {
+    int64_t count;
+    const skg_solid *solids;
+    const int32_t *sign; /* 1; -1: the solid's hits have the other sign */
+    const double *base;  /* [SKG_SCATTER_RANK] of what is around all solids, per mm; NULL: void */
+    const double (*coefficients)[SKG_SCATTER_RANK]; /* of each solid less those of its parent, per mm */
+    const int32_t
+        *priority; /* of each, which decides where solids with the same parent overlap; NULL: amounts add */
+    int32_t clip;  /* 1, with priority: a solid counts only inside its parent */
+} skg_cell_parts;
+
+/* Makes the cells of parts. voxel_mm: about; 0: SKG_CELLS_DEFAULT cells along each side. Without any triangle there are no cells. */
+skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cells *cells);
+void skg_cells_free(skg_cells *cells);
+
+/* --- What stands in the beam, as cells. */
+
+/* A frame's scene. */
+typedef struct {
+    const skg_recipe *recipe;
+    const skg_view *view;
+    const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
+    const double *density;      /* [parts] over that of the material; NULL: 1 */
+    const double *fill;         /* [parts] share of the part that is there; NULL: 1 */
+    uint64_t seed;              /* added to that of the options */
+} skg_scatter_work;
+
+/* The pose of a part. */
+const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part);
+
+typedef struct {
+    skg_scatter_physics physics;    /* of the materials of parts and world */
+    double world[SKG_SCATTER_RANK]; /* coefficients of the world; 0: vacuum */
+    skg_cells cells;
+} skg_scatter_object;
+
+/* Makes both. Free the object also after a failure. */
+skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_object *object);
+void skg_scatter_object_free(skg_scatter_object *object);
+
+#endif

@@ -1,0 +1,94 @@
+/* The 3D view: camera, model, markers. Private. */
+#ifndef SKG_DRAWING_H
+#define SKG_DRAWING_H
+
+#include "core/core.h"
+#include "scene/scene.h"
+
+#include <skiagraph/scene_picture.h>
+#include <skiagraph/types.h>
+
+/* --- The eye of the 3D view. Its matrices are float, by cglm; X-ray images never pass through them. */
+
+typedef struct {
+    double centre[3];  /* mm: where the axis of the eye passes the scene; positions are relative to it */
+    double axes[3][3]; /* right, up and towards the eye, length 1 */
+    double pixel;      /* mm that a pixel covers at the centre */
+    float matrix[16];  /* from positions to clip coordinates, column after column */
+} skg_show_camera;
+
+/* Where the beam starts that meets a point of the detector: the source, or a point from which a parallel ray passes all
+ * `low` to `high`. */
+void skg_show_beam_start(const skg_view *view, const double low[3], const double high[3], const double at[3],
+                         double start[3]);
+
+/* A corner of the detector's area: of the edge of pixels, not of their centres. column, row: 0 or 1. */
+void skg_show_detector_corner(const skg_view *view, int column, int row, double corner[3]);
+
+/* Where the edges of the beam meet the plane of the detector, in turn around it. Errors: of skg_collimation_corners_get. */
+skg_status skg_show_beam_corners(const skg_view *view, const skg_look *look, double corners[4][3]);
+
+/* Places the eye so that everything is in the picture: the box of the parts (mm), source, detector, path. Errors:
+ * SKG_ERR_ARGUMENT for directions that are not finite. */
+skg_status skg_show_camera_make(const skg_view *view, const skg_look *look, const double low[3],
+                                const double high[3], skg_show_camera *camera);
+
+/* Column and row of a point in the picture. */
+void skg_show_camera_place(const skg_show_camera *camera, const skg_look *look, const double point[3],
+                           double place[2]);
+
+/* --- What the 3D view shows, as triangles for the device. */
+
+/* A red, green, blue and opacity from 0 to 255 in one number, red lowest. */
+#define SKG_SHOW_COLOUR(red, green, blue, opacity)                                                           \
+    ((uint32_t)(red) | (uint32_t)(green) << 8 | (uint32_t)(blue) << 16 | (uint32_t)(opacity) << 24)
+
+/* Triangles that grow while they are added. All zero: none. */
+typedef struct {
+    double centre[3];  /* mm; positions are relative to it */
+    float *positions;  /* [vertices][3] */
+    int32_t *corners;  /* [triangles][3] */
+    int16_t *normals;  /* [triangles][3][4] of each corner, times 32767; the fourth is 0 */
+    uint32_t *colours; /* [triangles] SKG_SHOW_COLOUR */
+    int64_t vertices, triangles;
+    int64_t vertex_capacity, triangle_capacity;
+} skg_show_model;
+
+void skg_show_model_free(skg_show_model *model);
+
+/* Makes room for so many vertices and triangles more. SKG_ERR_SCENE beyond 2^31 / 3 of either. */
+skg_status skg_show_model_reserve(skg_show_model *model, int64_t vertices, int64_t triangles);
+
+/* Adds a vertex (mm, in the world), for which there is room. */
+void skg_show_model_add_vertex(skg_show_model *model, const double position[3]);
+
+/* Adds a triangle of vertices that are there, for which there is room. normals: [3][3] of length 1 at its corners. */
+void skg_show_model_add_triangle(skg_show_model *model, const int64_t corners[3], double normals[3][3],
+                                 uint32_t colour);
+
+/* --- The parts of a scene as triangles of the 3D view. */
+
+/* Adds every part whose opacity is not 0.
+ *
+ * colours   [parts][4] red, green, blue, opacity
+ * errors    SKG_ERR_SCENE if a vertex is not finite */
+skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const uint8_t *colours);
+
+/* Widens a box (mm, in the world) by a part at its pose: by the corners of the part's own box. */
+void skg_show_part_bounds(const skg_scene_part_data *part, double low[3], double high[3]);
+
+/* --- Draws the triangles of the 3D view on the device. */
+
+/* Draws and waits. image: [image_rows][image_columns] grey values of the detector. rgba: as skg_scene_picture. */
+skg_status skg_show_draw(skg_context *context, const skg_show_model *model, const skg_show_camera *camera,
+                         const skg_look *look, int64_t image_columns, int64_t image_rows,
+                         const uint8_t *image, uint8_t *rgba);
+
+/* --- What the 3D view shows besides the parts: source, beam, detector, axes, path. */
+
+/* Adds everything but the parts. low, high: the box of the parts, mm. The two triangles of the detector come last, as
+ * the kernel wants them. */
+skg_status skg_show_markers_add(skg_show_model *model, const skg_view *view, const skg_look *look,
+                                const skg_show_camera *camera, const double low[3], const double high[3]);
+
+#endif
