@@ -6,7 +6,6 @@
 #include "frame/frame.h"
 #include "frame/plan.h"
 #include "plan/decisions.h"
-#include "plan/rules.h"
 
 #include <skiagraph/plan.h>
 

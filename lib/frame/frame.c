@@ -5,7 +5,6 @@
 #include "frame/parts.h"
 #include "frame/scatter.h"
 #include "plan/decisions.h"
-#include "plan/rules.h"
 #include "spectral/model.h"
 
 #include <string.h>

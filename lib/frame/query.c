@@ -2,7 +2,6 @@
 #include "core/text.h"
 #include "frame/plan.h"
 #include "plan/decisions.h"
-#include "plan/rules.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "device/self_tests.h"
 #include "frame/plan.h"
-#include "plan/rules.h"
+#include "plan/decisions.h"
 
 /* The self-tests of the kernels that a plan uses. */
 static uint64_t tests_of(const skg_plan *plan, const skg_view *view) {

@@ -1,5 +1,5 @@
 #include "geometry/optics.h"
-#include "plan/decisions.h"
+#include "plan/recipe.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -1,4 +1,4 @@
-#include "plan/rules.h"
+#include "plan/recipe.h"
 
 #include <string.h>
 

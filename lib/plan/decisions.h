@@ -12,6 +12,31 @@
 
 #include <skiagraph/plan.h>
 
+/* --- The table of effects, and what all of its rows do for a plan. */
+
+/* Row 0 <= index < SKG_EFFECTS. Static storage. */
+const skg_effect_row *skg_effect_row_get(int64_t index);
+
+/* Replaces what the options of effects point to by copies. After a failure the recipe can only be released. */
+skg_status skg_effects_copy(skg_recipe *recipe);
+
+/* Refuses options of effects that cannot be used. */
+skg_status skg_effects_check(const skg_plan_options *options);
+
+/* Whether any effect refuses half precision. */
+int skg_effects_refuse_half(const skg_recipe *recipe);
+
+/* Fills the effects of an outcome whose overlaps and samples are known. layers: and their blurs. */
+skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_layers *layers,
+                            skg_outcome *outcome);
+
+/* --- The warning that nothing falls on the detector. */
+
+/* Warns, once, if no part falls on the detector: in which direction and how far away the nearest shadow lies. extents:
+ * [parts] as the camera sees them; fine: its pixels along each side of a pixel of the image. */
+void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const skg_camera *camera,
+                     const skg_extent *extents, int32_t fine, skg_outcome *outcome);
+
 /* --- Checks of a plan's options. */
 
 /* Fails if a flag is neither 0 nor 1. name: of the option. */
@@ -93,42 +118,6 @@ skg_status skg_plan_precision_bound(const skg_recipe *recipe, double *bound);
 
 /* Warns of half precision, with its bound, and of parts that are too thin for single precision. */
 skg_status skg_plan_precision_warn(const skg_recipe *recipe, const skg_context *context);
-
-/* --- What the channels of a plan's images are. */
-
-typedef struct {
-    char text[64];
-} skg_channel_name;
-
-/* Names the channels of a model by the caller's bands; [channels], freed by the caller. */
-skg_status skg_channel_names_create(const skg_plan_options *options, int32_t channels,
-                                    skg_channel_name **names);
-
-/* The unit of a quantity; static storage. */
-const char *skg_channel_unit(int32_t quantity);
-
-/* What a channel shows without parts and world, not weakened by falloff. exposure: the photons per pixel of the view over
- * those of the model. */
-double skg_channel_flat_field(const skg_plan_options *options, const skg_model *model, const skg_view *view,
-                              double exposure, int64_t channel);
-
-/* --- The distinct meshes of a scene: each is stored and uploaded once, however many parts use it. */
-
-typedef struct {
-    int64_t count;
-    skg_mesh **meshes; /* [count] the scene's */
-    int64_t *of_part;  /* [parts] the number of each part's mesh */
-} skg_plan_meshes;
-
-skg_status skg_plan_meshes_create(const skg_scene *scene, skg_plan_meshes *meshes);
-void skg_plan_meshes_release(skg_plan_meshes *meshes);
-
-/* SKG_ERR_MESH, naming part and vertex, if a mesh has a vertex that is not finite. */
-skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene *scene);
-
-/* Warns of meshes whose components contradict their nesting. nestings: [count] of skg_nesting_find. */
-skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_nesting *nestings,
-                                const skg_scene *scene, const skg_context *context);
 
 /* --- What a recipe's frames do behind the raster: how planes become images, and what the detector does. */
 

@@ -1,4 +1,4 @@
-#include "plan/rules.h"
+#include "plan/decisions.h"
 
 static const skg_effect_row *const rows[SKG_EFFECTS] = {
 #define SKG_EFFECT_ADDRESS(row) &skg_effect_##row,

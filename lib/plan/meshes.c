@@ -1,4 +1,4 @@
-#include "plan/decisions.h"
+#include "plan/recipe.h"
 
 #include "core/context.h"
 

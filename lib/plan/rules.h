@@ -1,4 +1,4 @@
-/* Effects: what calls for them, what they copy, what they cost. Private. */
+/* Effects of a plan: rows of a table, and what they cost. Private. */
 #ifndef SKG_RULES_H
 #define SKG_RULES_H
 
@@ -7,7 +7,6 @@
 #include "geometry/bounds.h"
 #include "geometry/priority.h"
 #include "plan/recipe.h"
-#include "plan/results.h"
 #include "stage/readout.h"
 
 #include <skiagraph/material.h>
@@ -100,54 +99,5 @@ skg_status skg_scatter_check(const skg_recipe *recipe);
 /* Sets whether an effect is on, and why. */
 void skg_effect_set(skg_effect_state *state, int on, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
-
-/* --- The table of effects, and what all of its rows do for a plan. */
-
-/* Row 0 <= index < SKG_EFFECTS. Static storage. */
-const skg_effect_row *skg_effect_row_get(int64_t index);
-
-/* Replaces what the options of effects point to by copies. After a failure the recipe can only be released. */
-skg_status skg_effects_copy(skg_recipe *recipe);
-
-/* Refuses options of effects that cannot be used. */
-skg_status skg_effects_check(const skg_plan_options *options);
-
-/* Whether any effect refuses half precision. */
-int skg_effects_refuse_half(const skg_recipe *recipe);
-
-/* Fills the effects of an outcome whose overlaps and samples are known. layers: and their blurs. */
-skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_layers *layers,
-                            skg_outcome *outcome);
-
-/* --- The warning that nothing falls on the detector. */
-
-/* Warns, once, if no part falls on the detector: in which direction and how far away the nearest shadow lies. extents:
- * [parts] as the camera sees them; fine: its pixels along each side of a pixel of the image. */
-void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const skg_camera *camera,
-                     const skg_extent *extents, int32_t fine, skg_outcome *outcome);
-
-/* --- Copies of what a plan's options point to. */
-
-/* All zero: none. */
-typedef struct {
-    int64_t count;
-    struct skg_copy *copies;
-} skg_copies;
-
-/* Zeroed memory that is freed with the copies. what: for the message. */
-skg_status skg_copies_alloc(skg_copies *copies, int64_t count, size_t size, const char *what,
-                            void *pointer_address);
-
-/* Copies a caller's struct over the defaults of its init function. name: of its type. */
-skg_status skg_copies_struct(skg_copies *copies, const void *given, const char *name, size_t size,
-                             void (*init_sized)(void *, int32_t), void *pointer_address);
-
-/* Replaces the caller's array by a copy. */
-skg_status skg_copies_array(skg_copies *copies, int64_t count, const char *what, const double **values);
-
-/* Retains a material until the copies are released; NULL: nothing. */
-skg_status skg_copies_material(skg_copies *copies, skg_material *material);
-
-void skg_copies_release(skg_copies *copies);
 
 #endif

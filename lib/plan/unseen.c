@@ -1,4 +1,4 @@
-#include "plan/rules.h"
+#include "plan/decisions.h"
 
 #include <math.h>
 

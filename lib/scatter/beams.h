@@ -2,7 +2,7 @@
 #ifndef SKG_BEAMS_H
 #define SKG_BEAMS_H
 
-#include "scatter/subject.h"
+#include "scatter/voxels.h"
 #include "skg_shared.h"
 
 /* --- How the photons of a beam differ over its directions: heel effect and bow-tie filter. *

@@ -1,4 +1,4 @@
-#include "scatter/subject.h"
+#include "scatter/voxels.h"
 
 #include "material/scattering.h"
 

@@ -3,7 +3,6 @@
 #define SKG_INTERACTIONS_H
 
 #include "core/core.h"
-#include "scatter/beams.h"
 
 #include <skiagraph/material.h>
 
@@ -96,29 +95,20 @@ enum { SKG_ANGLE_ROWS = 48 };
 skg_status skg_angles_make(const skg_scatter_physics *physics, const double mixture[SKG_SCATTER_RANK],
                            float *table);
 
-/* --- Tables of a frame's photons as the device has them. */
+/* --- A joint basis for columns of numbers. *
+ * Tissues differ little, and a material that is another one with a different density does not differ at all. Every
+ * column is written as a mixture of SKG_SCATTER_RANK columns, so that relative errors are small: each row is fitted to all
+ * materials by least squares of (mixture - value) / value, and so are the coefficients of each material, alternately.
+ * The coefficients of the SKG_SCATTER_RANK materials that differ most are 1 and 0s, which loses nothing, because
+ * a basis is only defined up to a linear map. */
 
-typedef struct {
-    float (*energies)[SKG_SCATTER_RANK]; /* [energies][SKG_SCATTER_COLUMNS] */
-    float (*momenta)[SKG_SCATTER_RANK];  /* [momenta][2] S, F^2 */
-    float *angles;                       /* [SKG_ANGLE_ROWS][SKG_SCATTER_ANGLES + 1] */
-    float (*beam)
-        [4]; /* [bins] keV, share of the photons that are followed up to here, weight, 1/mm of a bow-tie filter */
-    int64_t bins;
-    skg_beam_profile profile;
-    float *profiles; /* [profile_count] as kernels/profile.clh has them; NULL: none */
-    int64_t profile_count;
-    float *
-        detector; /* [detector_count] as kernels/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
-    int64_t detector_count;
-    int32_t bands, layers, cosines, oblique; /* images of a frame; of the table of layers: 0: none */
-    double photons;                          /* of the spectrum, those that leave towards the field */
-    double signal, variance;                 /* what 1 in the columns of what a photon adds stands for */
-} skg_scatter_tables;
-
-/* More photons are followed of energies that add more to the image. Free the tables also after a failure. */
-skg_status skg_scatter_tables_make(const skg_scatter_work *work, const skg_scatter_object *object,
-                                   skg_scatter_tables *tables);
-void skg_scatter_tables_free(skg_scatter_tables *tables);
+/* weight         [rows] of a relative error in the search for coefficients
+ * columns        [count][rows] values > 0, or 0 in a row where all are
+ * coefficients   [count]
+ * basis          [rows]
+ *
+ * With at most SKG_SCATTER_RANK columns that are no multiples of each other the result is exact. */
+skg_status skg_reduce(int64_t count, int64_t rows, const double *weight, const double *columns,
+                      double (*coefficients)[SKG_SCATTER_RANK], double (*basis)[SKG_SCATTER_RANK]);
 
 #endif

@@ -1,4 +1,4 @@
-#include "scatter/subject.h"
+#include "scatter/voxels.h"
 
 #include "beam/spectrum.h"
 #include "core/maths.h"

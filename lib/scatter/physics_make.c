@@ -1,9 +1,8 @@
 #include "scatter/interactions.h"
+#include "scatter/voxels.h"
 
 #include "core/text.h"
 #include "material/scattering.h"
-#include "scatter/smoothing.h"
-#include "scatter/subject.h"
 
 #include <string.h>
 

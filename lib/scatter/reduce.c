@@ -1,4 +1,4 @@
-#include "scatter/smoothing.h"
+#include "scatter/interactions.h"
 
 #include "core/maths.h"
 #include "spectral/compression.h"

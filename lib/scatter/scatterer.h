@@ -3,7 +3,6 @@
 #define SKG_SCATTERER_H
 
 #include "core/digest.h"
-#include "scatter/smoothing.h"
 #include "scatter/tracing.h"
 #include "stage/readout.h"
 

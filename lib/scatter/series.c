@@ -1,4 +1,4 @@
-#include "scatter/smoothing.h"
+#include "scatter/tracing.h"
 
 #include "core/clock.h"
 

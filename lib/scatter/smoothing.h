@@ -3,8 +3,6 @@
 #define SKG_SMOOTHING_H
 
 #include "core/core.h"
-#include "scatter/interactions.h"
-#include "scatter/tracing.h"
 
 #include <skiagraph/scatter_series.h>
 
@@ -24,22 +22,6 @@ typedef struct {
  * orders, value, variance   [count] of orthonormal functions; orders >= 1; variance of the value */
 skg_status skg_choose_order(int64_t count, const int64_t *orders, const double *value, const double *variance,
                             skg_choice *choice);
-
-/* --- A joint basis for columns of numbers. *
- * Tissues differ little, and a material that is another one with a different density does not differ at all. Every
- * column is written as a mixture of SKG_SCATTER_RANK columns, so that relative errors are small: each row is fitted to all
- * materials by least squares of (mixture - value) / value, and so are the coefficients of each material, alternately.
- * The coefficients of the SKG_SCATTER_RANK materials that differ most are 1 and 0s, which loses nothing, because
- * a basis is only defined up to a linear map. */
-
-/* weight         [rows] of a relative error in the search for coefficients
- * columns        [count][rows] values > 0, or 0 in a row where all are
- * coefficients   [count]
- * basis          [rows]
- *
- * With at most SKG_SCATTER_RANK columns that are no multiples of each other the result is exact. */
-skg_status skg_reduce(int64_t count, int64_t rows, const double *weight, const double *columns,
-                      double (*coefficients)[SKG_SCATTER_RANK], double (*basis)[SKG_SCATTER_RANK]);
 
 /* --- Smoothing by cosines: what arrived on a coarse grid, as an image. */
 
@@ -131,25 +113,5 @@ skg_status skg_joint_at(const skg_joint *joint, double t, skg_cosines *cosines);
  * noise, per place, and its standard error. coefficients: [batches][rows][columns] */
 skg_status skg_joint_compare(const skg_joint *joint, double t, const double *coefficients, double *square,
                              double *error);
-
-/* --- Scatter of a series of frames, from few of them. */
-
-struct skg_scatter_series {
-    skg_refs refs;
-    skg_recipe *recipe;       /* retained */
-    int64_t number;           /* no other series of the process has it */
-    int64_t owner;            /* of the plan's scatterer */
-    skg_joint mean, variance; /* in photons of the spectrum; variance: with noise alone */
-    double signal, power;     /* as of skg_shown_scatter */
-    skg_scatter_series_report report;
-};
-
-/* Describes frame `index` of a series; what *work points to must stay until the next call. */
-typedef skg_status (*skg_series_frame)(int64_t index, skg_scatter_work *work, void *user);
-
-/* Fills a series whose recipe is set. *is_smooth: 0: neighbouring frames differ too much, and nothing was filled in */
-skg_status skg_series_make(skg_context *context, int64_t count, skg_series_frame frame, void *user,
-                           skg_scatter_series *series, int32_t *is_smooth);
-void skg_series_drop(skg_scatter_series *series);
 
 #endif

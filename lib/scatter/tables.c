@@ -1,4 +1,5 @@
 #include "scatter/interactions.h"
+#include "scatter/tracing.h"
 
 #include "beam/grid.h"
 #include "beam/spectrum.h"

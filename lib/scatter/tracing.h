@@ -3,10 +3,33 @@
 #define SKG_TRACING_H
 
 #include "scatter/beams.h"
-#include "scatter/interactions.h"
 #include "scatter/smoothing.h"
-#include "scatter/subject.h"
 #include "stage/kernels.h"
+
+/* --- Tables of a frame's photons as the device has them. */
+
+typedef struct {
+    float (*energies)[SKG_SCATTER_RANK]; /* [energies][SKG_SCATTER_COLUMNS] */
+    float (*momenta)[SKG_SCATTER_RANK];  /* [momenta][2] S, F^2 */
+    float *angles;                       /* [SKG_ANGLE_ROWS][SKG_SCATTER_ANGLES + 1] */
+    float (*beam)
+        [4]; /* [bins] keV, share of the photons that are followed up to here, weight, 1/mm of a bow-tie filter */
+    int64_t bins;
+    skg_beam_profile profile;
+    float *profiles; /* [profile_count] as kernels/profile.clh has them; NULL: none */
+    int64_t profile_count;
+    float *
+        detector; /* [detector_count] as kernels/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
+    int64_t detector_count;
+    int32_t bands, layers, cosines, oblique; /* images of a frame; of the table of layers: 0: none */
+    double photons;                          /* of the spectrum, those that leave towards the field */
+    double signal, variance;                 /* what 1 in the columns of what a photon adds stands for */
+} skg_scatter_tables;
+
+/* More photons are followed of energies that add more to the image. Free the tables also after a failure. */
+skg_status skg_scatter_tables_make(const skg_scatter_work *work, const skg_scatter_object *object,
+                                   skg_scatter_tables *tables);
+void skg_scatter_tables_free(skg_scatter_tables *tables);
 
 /* --- Histories of photons on the device. */
 
@@ -75,5 +98,25 @@ skg_status skg_shown_component_send(skg_context *context, const skg_shown_scatte
                                     skg_scatter_images *images);
 void skg_scatter_images_release(skg_scatter_images *images);
 int64_t skg_scatter_images_bytes(const skg_scatter_images *images);
+
+/* --- Scatter of a series of frames, from few of them. */
+
+struct skg_scatter_series {
+    skg_refs refs;
+    skg_recipe *recipe;       /* retained */
+    int64_t number;           /* no other series of the process has it */
+    int64_t owner;            /* of the plan's scatterer */
+    skg_joint mean, variance; /* in photons of the spectrum; variance: with noise alone */
+    double signal, power;     /* as of skg_shown_scatter */
+    skg_scatter_series_report report;
+};
+
+/* Describes frame `index` of a series; what *work points to must stay until the next call. */
+typedef skg_status (*skg_series_frame)(int64_t index, skg_scatter_work *work, void *user);
+
+/* Fills a series whose recipe is set. *is_smooth: 0: neighbouring frames differ too much, and nothing was filled in */
+skg_status skg_series_make(skg_context *context, int64_t count, skg_series_frame frame, void *user,
+                           skg_scatter_series *series, int32_t *is_smooth);
+void skg_series_drop(skg_scatter_series *series);
 
 #endif

@@ -1,4 +1,4 @@
-#include "spectral/compression.h"
+#include "spectral/shading.h"
 
 #include "core/maths.h"
 

@@ -75,10 +75,11 @@ typedef struct {
     const skg_raster *raster;
     int32_t pass; /* of the raster's passes */
     int32_t reserved;
-    double scale;  /* of the sums */
-    int32_t mixed; /* accumulators that planes are mixed from (spectral/model.h); 0: accumulators are planes */
-    int32_t fine;  /* pixels of the raster along each side of a pixel of the image, which shows their sum */
-    cl_mem lists;  /* [mixed][planes] in the precision of the raster */
+    double scale; /* of the sums */
+    int32_t
+        mixed;    /* accumulators that planes are mixed from (spectral/model.h); 0: accumulators are planes */
+    int32_t fine; /* pixels of the raster along each side of a pixel of the image, which shows their sum */
+    cl_mem lists; /* [mixed][planes] in the precision of the raster */
 } skg_sums;
 
 /* In a pixel that detects fewer photons than this, quantum noise is drawn photon by photon. */

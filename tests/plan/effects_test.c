@@ -1,5 +1,5 @@
 /* The table of effects: every row can be reported and tested, and the documentation lists the same effects. */
-#include "plan/rules.h"
+#include "plan/decisions.h"
 #include "suite.h"
 
 #include <stdio.h>

@@ -1,5 +1,5 @@
 /* The object as cells: closed forms, and path lengths of images. */
-#include "scatter/subject.h"
+#include "scatter/voxels.h"
 
 #include "suite.h"
 #include "support/run.h"

@@ -15,7 +15,7 @@ double cost_passes(const cost_setting *setting) {
 }
 
 double cost_patience_ms(const cost_study *study) {
-    return fmin(study->within_ms / 40, 4e3);
+    return fmin(study->within_ms / 40, COST_PATIENCE_MAX_MS);
 }
 
 double cost_estimate_ms(const cost_study *study, const cost_setting *setting) {

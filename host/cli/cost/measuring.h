@@ -45,7 +45,8 @@ void cost_widen(int32_t type, int64_t count, double *values);
 /* Passes over the scene that one image takes. */
 double cost_passes(const cost_setting *setting);
 
-/* The time of one image, in ms, above which a setting is left out. */
+/* The time of one image, in ms, above which a setting is left out. It is a share of the given time, up to a limit. */
+enum { COST_PATIENCE_MAX_MS = 4000 };
 double cost_patience_ms(const cost_study *study);
 
 /* Estimates the time of one image, and of measuring a setting for the first time, from those of the scene's own. */

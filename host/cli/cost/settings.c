@@ -21,6 +21,7 @@ void cost_add_point(cost_study *study, int dial, int reference, int priority, co
         char text[160];
         cost_describe(study, &setting, text, sizeof text);
         cost_note(study, "%s left out: one image would take about %.2g s", text, 1e-3 * ms);
+        study->left_out += ms <= COST_PATIENCE_MAX_MS; /* more time would have been of use */
         return;
     }
     study->points[study->count++] = (cost_point){

@@ -1,6 +1,6 @@
 /* The object in cells. Private. */
-#ifndef SKG_SUBJECT_H
-#define SKG_SUBJECT_H
+#ifndef SKG_VOXELS_H
+#define SKG_VOXELS_H
 
 #include "geometry/overlaps.h"
 #include "plan/recipe.h"
