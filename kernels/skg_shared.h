@@ -36,14 +36,15 @@
 /* Rows that the kernel of the source plane draws or skips together. */
 #define SKG_SOURCE_ROWS 32
 
-/* The table `used` of a raster: for each copy whether it counts; the counter of claims; then for each plane the extent
- * that has sums: first row, end row, first column, end column, the columns multiples of SKG_EXTENT_COLUMNS or the row's
+/* The table `used` of a raster: for each copy a set of bits, the planes of which it counts (SKG_COUNTS); `copies` counters of
+ * claims; then for each plane the extent that has sums: first row, end row, first column, end column, the columns multiples of SKG_EXTENT_COLUMNS or the row's
  * end. Outside its extent the sums of a plane are 0, and memory is neither zeroed nor read. */
-#define SKG_EXTENT(copies, plane) ((copies) + 1 + 4 * (plane))
+#define SKG_EXTENT(copies, plane) (2 * (copies) + 4 * (plane))
 #define SKG_EXTENT_COLUMNS 32
 
-/* In `used`, of a copy that counts and has not been zeroed. */
-#define SKG_TO_ZERO 2
+/* The bit of a plane in the set of a copy, which planes 32 apart share, and whether a copy counts for a plane. */
+#define SKG_PLANE_BIT(plane) (1u << ((plane) & 31))
+#define SKG_COUNTS(set, plane) (((SKG_UINT)(set) & SKG_PLANE_BIT(plane)) != 0)
 
 /* How many bad pixels of a leaky mesh are listed. */
 #define SKG_FIRST_BAD 8
@@ -91,7 +92,7 @@ typedef struct {
     SKG_INT queue;       /* entries of the queue of large triangles */
     SKG_INT first_plane; /* that a pass has, of those of several passes */
     SKG_INT passes;      /* that are drawn together */
-    SKG_INT reserved;
+    SKG_INT whole_first; /* of copies: 1: other kernels add to the first one, which counts for all planes */
 } skg_raster_layout;
 
 /* Positions of a mesh from the caller's memory, and their bounds, mm from the mesh's origin. */
@@ -117,11 +118,12 @@ typedef struct {
 #define SKG_HITS_MAX 0xffffffffu
 
 /* Of the kernels of hits.cl. window: columns from, rows from, columns to, rows to; nothing is listed outside. chosen: of
- * skg_hits_list, the first of the runs of triangles that are listed, and the end of these. task: SKG_HITS_... below. */
+ * skg_hits_list, the first of the runs of triangles that are listed, and the end of these; winners: how many runs are of parts that
+ * win over others. task: SKG_HITS_... below. */
 typedef struct {
     skg_raster_layout layout;
     SKG_INT window[4], chosen[2];
-    SKG_INT task, reserved;
+    SKG_INT task, winners;
 } skg_hits_args;
 
 /* Of the kernels of leaky.cl. parts: of the batch; part and count: of skg_leaky_put, one of these and how many of its pixels
@@ -145,10 +147,10 @@ typedef struct {
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_BACKGROUND 0x10000
 
-/* What a launch that lists hits does, summed: counts those of winners; lists instead of counting; takes background parts. */
+/* What a launch does with hits: counts those of winners, or those of background parts; lists all. */
 #define SKG_HITS_COUNT 0
-#define SKG_HITS_LIST 1
-#define SKG_HITS_OF_BACKGROUND 2
+#define SKG_HITS_COUNT_BACKGROUND 1
+#define SKG_HITS_LIST 2
 
 /* The length of the ray to pixel (i, j) is |centre + i column + j row| mm; with a parallel beam |centre|. i and j count from
  * the pixel of `centre`. */
@@ -240,7 +242,7 @@ typedef struct {
         far; /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
     float log_low, per_log; /* of the table by energy */
     float per_momentum, per_log_momentum;
-    float angle_rows;     /* rows of the table of angles for one of that by energy */
+    float angle_rows;       /* rows of the table of angles for one of that by energy */
     float min_kev, scale; /* photons below are given up; of sums */
     float strips[3],
         focus; /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */

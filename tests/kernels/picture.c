@@ -169,7 +169,7 @@ static skg_status make_geometry(skg_context *context, int32_t precision, int bod
         float *offsets = calloc((size_t)s->vertices * 3, sizeof *offsets);
         for (int64_t k = 0; k < s->vertices * 3; k++) offsets[k] = (float)s->positions[k];
         status = skg_geometry_upload(
-            context, geometry, mesh_of[b],
+            context, geometry, geometry->mesh_vertex[mesh_of[b]], s->vertices,
             precision == SKG_PRECISION_DOUBLE ? (const void *)s->positions : (const void *)offsets, NULL);
         clFinish(context->device->queue);
         free(offsets);
@@ -234,7 +234,7 @@ static skg_status read_sums(skg_context *context, const skg_raster *raster, int3
         const int64_t place = plane * f->plane + row * f->stride + n % result->columns;
         uint64_t sum = 0;
         for (int64_t c = 0; c < f->copies; c++)
-            if (used[c]) {
+            if (SKG_COUNTS(used[c], plane)) {
                 const int64_t at = c * f->planes * f->plane + place;
                 sum += bits == 64 ? ((uint64_t *)all)[at] : (uint64_t)(int64_t)((int32_t *)all)[at];
             }
