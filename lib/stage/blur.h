@@ -19,6 +19,10 @@ void skg_blur_release(skg_blur **blur);
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
                         int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
 
+/* Likewise enqueues what the blur makes of the variances of pixels that are independent of each other. */
+skg_status skg_blur_run_variance(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
+                                 int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
+
 /* The transpose of the blur of one image, on the host in double precision: adds to `to`, [rows][columns]. A pixel on the border
  * takes what belongs to the pixels beyond it. */
 skg_status skg_blur_transpose(const skg_blur *blur, int64_t columns, int64_t rows, const double *from,

@@ -26,11 +26,17 @@ void skg_detector_release(skg_detector **detector);
 /* Whether values are divided by those of a flat field. */
 int skg_detector_wants_flat_field(const skg_detector *detector);
 
-/* Enqueues the stage for an image of columns x rows, in place. factor: of this frame, for all channels. flat_field:
- * [channels][rows][columns] of the image's type, if the detector wants it. */
-skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor,
+/* Enqueues the stage for an image of columns x rows, in place. of_mean: 1: without electronic noise and steps. factor: of this
+ * frame, for all channels. flat_field: [channels][rows][columns] of the image's type, if the detector wants it. */
+skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, int32_t of_mean, double factor,
                             cl_mem flat_field, const skg_image_place *image, int64_t columns, int64_t rows,
                             skg_stage_log *log);
+
+/* Likewise enqueues what the stage makes of the variances of pixels. mean: [channels][rows][columns] of the transmission, if
+ * variances are those of its -ln; else NULL. */
+skg_status skg_detector_run_variance(skg_detector *detector, const skg_noise_args *key, double factor,
+                                     cl_mem flat_field, cl_mem mean, const skg_image_place *variance,
+                                     int64_t columns, int64_t rows, skg_stage_log *log);
 
 /* Bytes on the device. */
 int64_t skg_detector_bytes(const skg_detector *detector);

@@ -33,6 +33,11 @@ skg_status skg_layers_blur(skg_layers *layers, int32_t used, const skg_image_pla
                            const skg_image_place *image, int64_t columns, int64_t rows, int64_t channels,
                            skg_stage_log *log);
 
+/* Likewise for the variances of independent pixels of `used` layers. apart: 1: one layer, which is blurred as the layer of the noise. */
+skg_status skg_layers_blur_variance(skg_layers *layers, int32_t used, int32_t apart,
+                                    const skg_image_place *place, const skg_image_place *image,
+                                    int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
+
 /* Bytes on the device. */
 int64_t skg_layers_bytes(const skg_layers *layers);
 

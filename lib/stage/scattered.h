@@ -15,7 +15,7 @@ typedef struct {
     int32_t channels;
     int32_t add;   /* 1: to what the image holds; 0: in its place */
     int32_t apart; /* 1: deviations go to images behind those of all channels */
-    int32_t reserved;
+    float scale;   /* of what is added */
 } skg_scattered_image;
 
 skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const skg_scattered_image *what,
