@@ -41,7 +41,7 @@ __kernel void skg_scattered(skg_scattered_args args, __global const float *mean,
     for (int channel = 0; channel < args.image.channels; channel++) {
         float means[SKG_WIDE];
         for (int k = 0; k < SKG_WIDE; k++) means[k] = mean[channel * all + pixel + min(k, pixels - 1)];
-        const skg_floatv value = SKG_LOAD_V(floatv, means);
+        const skg_floatv value = SKG_LOAD_V(floatv, means) * (skg_floatv)(args.scale);
 #if SKG_NOISE
         const skg_floatv noisy =
             skg_scattered_noise(&args, value, variance + channel * all + pixel, pixel, pixels, channel);

@@ -186,6 +186,12 @@ typedef struct {
     SKG_INT add;          /* 1: the result is added to the image */
 } skg_blur_args;
 
+/* Of skg_blur_variance: samples along either direction, an odd number; the first weight. add: 1: the result is added. */
+typedef struct {
+    skg_image_args from, to;
+    SKG_INT down, across, first, add;
+} skg_blur_variance_args;
+
 /* Of skg_attenuate (attenuate.cl). In such a struct the reals come first and the members of one size for both precisions
  * behind them, so that the host rounds all reals at once (lib/stage/kernels.h). What a program does not use is 0. */
 #define SKG_ATTENUATE_MEMBERS(real, suffix)                                                                  \
@@ -261,11 +267,12 @@ typedef struct {
     SKG_INT seed[2];          /* low word first */
 } skg_scatter_args;
 
-/* Of skg_scattered. add: 1: to what the image holds; 0: in its place. */
+/* Of skg_scattered. add: 1: to what the image holds; 0: replaces it. */
 typedef struct {
     skg_noise_args key;
     skg_image_args image;
-    SKG_INT add, reserved;
+    SKG_INT add;
+    float scale; /* of what is added */
 } skg_scattered_args;
 
 /* The structs whose reals have the precision of the program. The kernels' have the suffix `args`. */
@@ -316,7 +323,9 @@ _Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 168 && sizeof(skg_attenua
                "layout of the arguments of skg_attenuate");
 _Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_double) == 4 * 8 + 64,
                "layout of the arguments of skg_detect");
-_Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72, "layout of images");
+_Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72 &&
+                   sizeof(skg_blur_variance_args) == 96,
+               "layout of images");
 _Static_assert(sizeof(skg_hits_args) == 104 && sizeof(skg_leaky_args) == 88, "layout of arguments");
 _Static_assert(sizeof(skg_gradient_args) == 104, "layout of the arguments of gradients");
 _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");

@@ -35,6 +35,7 @@ const char *skg_self_test_name(skg_self_test number) {
         [SKG_SELF_TEST_SIDE] = "extended source, side by side",
         [SKG_SELF_TEST_SCATTER] = "scatter",
         [SKG_SELF_TEST_GRADIENT] = "gradients",
+        [SKG_SELF_TEST_VARIANCE] = "variance",
     };
     return names[number];
 }

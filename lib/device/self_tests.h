@@ -37,6 +37,7 @@ typedef enum {
     SKG_SELF_TEST_SIDE,     /* the same, several side by side */
     SKG_SELF_TEST_SCATTER,  /* scattered photons */
     SKG_SELF_TEST_GRADIENT, /* derivatives of an image */
+    SKG_SELF_TEST_VARIANCE, /* of noise, behind a blur and a logarithm */
     SKG_SELF_TESTS
 } skg_self_test;
 

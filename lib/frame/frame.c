@@ -1,5 +1,6 @@
 #include "frame/frame.h"
 #include "frame/derivative_pass.h"
+#include "frame/detector.h"
 #include "frame/gradient_density.h"
 #include "frame/gradient_pass.h"
 #include "frame/parts.h"
@@ -118,16 +119,6 @@ static skg_sums sums_of(const skg_machine *machine, const skg_recipe *recipe, co
                       .lists = machine->mix_lists.memory.memory};
 }
 
-/* The layout of the sums of a frame's last pass. They are not read. */
-static skg_sums layout_of(const skg_machine *machine, const skg_recipe *recipe, const skg_raster_pin *pin) {
-    const int64_t accumulators = skg_raster_plane_count(pin->raster);
-    return (skg_sums){.raster = pin->raster,
-                      .scale = 1,
-                      .mixed = accumulators == recipe->model.planes ? 0 : (int32_t)accumulators,
-                      .fine = (int32_t)recipe->samples.fine,
-                      .lists = machine->mix_lists.memory.memory};
-}
-
 /* Uploads the positions of meshes that have changed. After the submission they are no longer looked at. */
 static skg_status update_meshes(skg_job *job) {
     const skg_recipe *recipe = job->recipe;
@@ -152,8 +143,11 @@ static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const s
     SKG_TRY(skg_geometry_project(machine->context, &machine->geometry,
                                  skg_raster_projection(pass->main.raster), &pass->camera, pass->parts,
                                  pass->scale.scale, log));
-    /* The gradient of a frame that was rendered last needs its vertices, but no sums besides those that stand there. */
-    if (job->gradient && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
+    /* What is found from the sums of a frame that was rendered last needs none besides those that stand there; gradients need its
+     * vertices. */
+    const int from_sums =
+        job->gradient || work->shows == SKG_OUTPUT_MEAN || work->shows == SKG_OUTPUT_VARIANCE;
+    if (from_sums && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
     if (pass->priority.count)
         SKG_TRY(skg_hits_count(pass, &machine->geometry, &machine->hits, &job->staging));
@@ -168,13 +162,6 @@ static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const s
     }
     return skg_leaky_run(&leaky, pass, &machine->geometry, &machine->rasters, &machine->leaky,
                          &job->results.leaky, &job->staging);
-}
-
-/* What the weights of the model are multiplied by for a view: those of a ratio hold for any. */
-static double exposure_of(const skg_recipe *recipe, const skg_view *view) {
-    const int is_ratio =
-        skg_quantity_is_ratio(&recipe->options) && !skg_quantity_is_absolute(&recipe->options);
-    return is_ratio ? 1 : skg_recipe_exposure(recipe, view);
 }
 
 /* Uploads the lists by which planes are mixed. */
@@ -193,7 +180,12 @@ static double factor_of(const skg_recipe *recipe, const skg_frame_work *work, co
         recipe->options.quantity == SKG_QUANTITY_FLUENCE && !skg_quantity_is_absolute(&recipe->options);
     const double rays = (double)pass->fine * pass->fine;
     const double area = areas ? skg_camera_pixel_area(&pass->camera) * rays : 1;
-    return exposure_of(recipe, work->view) / (area * (double)skg_samples_count(&recipe->samples));
+    /* A sub-frame has the noise of its share of the photons, and the intensity of the whole. */
+    const double noise = work->shows != SKG_OUTPUT_VARIANCE ? 1
+                         : recipe->options.noise            ? work->noise.parts
+                                                            : 0;
+    return noise * skg_frame_exposure(recipe, work->view) /
+           (area * (double)skg_samples_count(&recipe->samples));
 }
 
 /* Enqueues the image of one pass from the sums. */
@@ -213,7 +205,10 @@ static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_
     skg_noise_args noise = work->noise;
     place.add = number > 0;
     noise.sample = number > 0 ? (cl_int)number * pass->fine * pass->fine : 0;
-    if (recipe->linear) attenuation.noise = 0;
+    if (skg_frame_is_expected(recipe, work)) attenuation.noise = 0;
+    /* The variance is a sum over nodes as the mean is, with other weights. Without quantum noise it is 0. */
+    if (work->shows == SKG_OUTPUT_VARIANCE && recipe->options.noise)
+        attenuation.weights = attenuation.variances;
     memcpy(attenuation.window, pass->window, sizeof attenuation.window);
     if (number < 0 ||
         number + 1 == skg_samples_passes(&recipe->samples)) /* the last pass's count is reported */
@@ -335,63 +330,62 @@ cleanup:
     return status;
 }
 
-/* Enqueues the flat field of a frame's view, in the layout of the last pass. */
-static skg_status find_flat_field(skg_job *job, const skg_frame_work *work) {
+/* Enqueues what arrives at the detector, primary and scattered; layers: result: where it is put. */
+static skg_status enqueue_layers(skg_job *job, const skg_frame_work *work, skg_image_place *layers) {
     const skg_recipe *recipe = job->recipe;
-    skg_machine *machine = job->machine;
-    const skg_sums sums = layout_of(machine, recipe, &job->main);
-    const skg_flat_field_work flat = {.samples = skg_recipe_averages(recipe) ? &recipe->samples : NULL,
-                                      .sums = &sums,
-                                      .attenuator = machine->attenuator,
-                                      .attenuation = &machine->images,
-                                      .layers = &machine->layers,
-                                      .negative = machine->negative.memory,
-                                      .exposure = exposure_of(recipe, work->view)};
-    return skg_flat_field_find(&machine->flat_field, &flat, work->view, work->place.output_double,
-                               &job->staging);
+    const int64_t first = first_of(recipe);
+    skg_frame_work layered = *work;
+    SKG_TRY(skg_layers_place(job->machine->context, &job->machine->layers, skg_frame_layers(job, work),
+                             &work->place, recipe->view.columns, recipe->view.rows, recipe->model.channels,
+                             layers));
+    layered.place = *layers;
+    SKG_TRY(enqueue_passes(job, &layered, first, first < 0 ? 0 : skg_samples_passes(&recipe->samples)));
+    return skg_frame_scatters(job) ? skg_frame_add_scatter(job, work, layers) : SKG_OK;
 }
 
-/* How many layers an image has; mean intensities alone have none of noise. */
-static int32_t layers_of(skg_job *job) {
-    const int32_t count = job->machine->layers.count, least = job->recipe->model.layers;
-    return job->recipe->linear && least < count ? least : count;
+/* Enqueues what is shown, before its logarithm. */
+static skg_status enqueue_values(skg_job *job, const skg_frame_work *work) {
+    skg_image_place layers;
+    SKG_TRY(enqueue_layers(job, work, &layers));
+    return skg_frame_detect(job, work, &layers);
 }
 
-/* Enqueues what the detector makes of a frame's intensities: blur, electronic noise, steps. layers: where these are. */
-static skg_status detect(skg_job *job, const skg_frame_work *work, const skg_image_place *layers) {
+/* The variance of a logarithm needs the mean of its argument. */
+static skg_status enqueue_mean(skg_job *job, const skg_frame_work *work, cl_mem *mean) {
     const skg_recipe *recipe = job->recipe;
     skg_machine *machine = job->machine;
-    const int64_t columns = recipe->view.columns, rows = recipe->view.rows;
-    skg_stage_log *log = &job->staging.log;
-    skg_camera camera;
-    SKG_TRY(skg_layers_blur(&machine->layers, layers_of(job), layers, &work->place, columns, rows,
-                            recipe->model.channels, log));
-    if (!machine->detector || recipe->linear) return SKG_OK;
-    SKG_TRY(skg_camera_make(work->view, NULL, 0, 0, &camera));
-    const int has_flat_field = skg_detector_wants_flat_field(machine->detector);
-    double factor = recipe->options.quantity == SKG_QUANTITY_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
-    if (skg_quantity_is_ratio(&recipe->options) && !has_flat_field) factor /= exposure_of(recipe, work->view);
-    if (has_flat_field) SKG_TRY(find_flat_field(job, work));
-    return skg_detector_run(machine->detector, &work->noise, factor, machine->flat_field.image.memory,
-                            &work->place, columns, rows, log);
+    const int64_t size = recipe->view.rows * recipe->view.columns;
+    skg_frame_work other = *work;
+    SKG_TRY(
+        skg_buffer_reserve(machine->context, &machine->mean,
+                           recipe->model.channels * size *
+                               (int64_t)(work->place.output_double ? sizeof(cl_double) : sizeof(cl_float)),
+                           CL_MEM_READ_WRITE, "mean"));
+    *mean = machine->mean.memory;
+    other.shows = SKG_OUTPUT_MEAN;
+    other.place = (skg_image_place){.memory = *mean,
+                                    .output_double = work->place.output_double,
+                                    .row_stride = recipe->view.columns,
+                                    .channel_stride = size};
+    return enqueue_values(job, &other);
+}
+
+static skg_status enqueue_variance(skg_job *job, const skg_frame_work *work) {
+    skg_image_place layers;
+    cl_mem mean = NULL;
+    if (skg_decide_late_logarithm(job->recipe)) SKG_TRY(enqueue_mean(job, work, &mean));
+    SKG_TRY(enqueue_layers(job, work, &layers));
+    return skg_frame_detect_variance(job, work, &layers, mean);
 }
 
 skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
     const skg_recipe *recipe = job->recipe;
+    const int64_t first = first_of(recipe);
     if (work->lengths_of >= 0) return enqueue_passes(job, work, -1, 0);
     if (skg_output_is_scatter(work->shows)) return skg_frame_show_scatter(job, work);
-    const int64_t first = first_of(recipe);
-    const int64_t end = first < 0 ? 0 : skg_samples_passes(&recipe->samples);
-    skg_frame_work layered = *work;
-    if (job->gradient) return enqueue_passes(job, work, first, end);
-    SKG_TRY(skg_layers_place(job->machine->context, &job->machine->layers, layers_of(job), &work->place,
-                             recipe->view.columns, recipe->view.rows, recipe->model.channels,
-                             &layered.place));
-    SKG_TRY(enqueue_passes(job, &layered, first, end));
-    if (skg_frame_scatters(job)) SKG_TRY(skg_frame_add_scatter(job, work, &layered.place));
-    SKG_TRY(detect(job, work, &layered.place));
-    if (!skg_decide_late_logarithm(recipe)) return SKG_OK;
-    const skg_sums sums = layout_of(job->machine, recipe, &job->main);
-    return skg_attenuate_logarithm(job->machine->attenuator, &sums, &job->machine->images, &work->place,
-                                   &job->staging.log);
+    if (job->gradient)
+        return enqueue_passes(job, work, first, first < 0 ? 0 : skg_samples_passes(&recipe->samples));
+    if (work->shows == SKG_OUTPUT_VARIANCE) return enqueue_variance(job, work);
+    SKG_TRY(enqueue_values(job, work));
+    return skg_decide_late_logarithm(recipe) ? skg_frame_take_logarithm(job, work) : SKG_OK;
 }

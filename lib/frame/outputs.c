@@ -1,6 +1,7 @@
 #include "frame/outputs.h"
 
 #include "frame/caller.h"
+#include "spectral/model.h"
 
 #include <inttypes.h>
 
@@ -58,9 +59,19 @@ static skg_status check_scatter(const char *call, const skg_recipe *recipe, cons
     return SKG_OK;
 }
 
+/* Images without noise are made with weights of energies that say nothing of the number of photons. */
+static skg_status check_variance(const char *call, const skg_recipe *recipe) {
+    if (skg_quantity_is_absolute(&recipe->options)) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "%s: the variance of the noise is asked for, but the plan has none; set "
+                    "skg_plan_options.noise (Noise), and take SKG_OUTPUT_MEAN for the image without it",
+                    call);
+}
+
 static skg_status check_kind(const char *call, const skg_recipe *recipe, const skg_output *to) {
     const int64_t parts = recipe->scene->count;
-    if (to->kind == SKG_OUTPUT_IMAGE) return SKG_OK;
+    if (to->kind == SKG_OUTPUT_IMAGE || to->kind == SKG_OUTPUT_MEAN) return SKG_OK;
+    if (to->kind == SKG_OUTPUT_VARIANCE) return check_variance(call, recipe);
     if (skg_output_is_scatter(to->kind)) return check_scatter(call, recipe, to);
     if (to->kind != SKG_OUTPUT_LENGTHS)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: an output of kind %" PRId32 " is no SKG_OUTPUT_ value", call,

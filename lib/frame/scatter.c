@@ -78,12 +78,16 @@ skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const
     SKG_TRY(compute(job, work, -1));
     const skg_scatterer *s = job->scatterer;
     const skg_plan_options *options = &job->recipe->options;
-    const skg_scattered_image what = {.mean = s->images.mean.memory,
-                                      .variance = options->noise ? s->images.variance.memory : NULL,
+    const int noise = options->noise && work->shows == SKG_OUTPUT_IMAGE;
+    const int of_variance = work->shows == SKG_OUTPUT_VARIANCE;
+    const skg_scattered_image what = {.mean = of_variance ? s->images.variance.memory : s->images.mean.memory,
+                                      .variance = noise ? s->images.variance.memory : NULL,
                                       .channels = skg_model_sums(&job->recipe->model),
                                       .add = 1,
-                                      .apart = options->noise && options->dqe};
-    return s->report.mean > 0 ? run(job, work, &what, image) : SKG_OK;
+                                      .apart = noise && options->dqe,
+                                      .scale = of_variance ? (float)work->noise.parts : 1};
+    const int adds = s->report.mean > 0 && (!of_variance || options->noise);
+    return adds ? run(job, work, &what, image) : SKG_OK;
 }
 
 skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work) {
@@ -93,6 +97,7 @@ skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work) {
     const skg_scattered_image what = {.mean = is_component                        ? images->component.memory
                                               : work->shows == SKG_OUTPUT_SCATTER ? images->shown.memory
                                                                                   : images->sigma.memory,
-                                      .channels = job->recipe->model.channels};
+                                      .channels = job->recipe->model.channels,
+                                      .scale = 1};
     return run(job, work, &what, &work->place);
 }

@@ -22,6 +22,8 @@ static skg_status test_outputs(const skg_plan *plan, int64_t count, const skg_ou
         SKG_TRY(skg_struct_read_at(outputs, o, "skg_output", &output, sizeof output));
         if (output.kind == SKG_OUTPUT_LENGTHS)
             SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_LENGTHS));
+        if (output.kind == SKG_OUTPUT_VARIANCE)
+            SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_VARIANCE));
     }
     return SKG_OK;
 }

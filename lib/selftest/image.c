@@ -46,6 +46,7 @@ static int shows_lengths(skg_self_test number) {
     case SKG_SELF_TEST_APART:
     case SKG_SELF_TEST_PASSES:
     case SKG_SELF_TEST_SIDE:
+    case SKG_SELF_TEST_VARIANCE:
         return 0;
     default:
         return 1;
@@ -56,7 +57,7 @@ static int is_blurred(skg_self_test number) {
     return number == SKG_SELF_TEST_BLUR || number == SKG_SELF_TEST_DEPTHS;
 }
 
-/* Renders the image, and the lengths of part 0. */
+/* Renders the image or its variance, and the lengths of part 0. */
 static skg_status render(test_run *run) {
     double memory[PIXELS] = {0}; /* floats or doubles */
     skg_output output;
@@ -64,6 +65,7 @@ static skg_status render(test_run *run) {
     skg_output_init(&output);
     output.data = memory;
     output.type = run->scene.number == SKG_SELF_TEST_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
+    if (run->scene.number == SKG_SELF_TEST_VARIANCE) output.kind = SKG_OUTPUT_VARIANCE;
     skg_status status = skg_plan_image(run->plan, &output);
     if (status < 0) return status;
     read_floats(run, memory, run->image);
@@ -181,6 +183,8 @@ static void compare_all(test_run *run, skg_verdict *verdict) {
         skg_self_test_detector_compare(&run->scene.view, run->image, run->shown, run->open, verdict);
     } else if (number == SKG_SELF_TEST_NOISE || number == SKG_SELF_TEST_APART) {
         skg_self_test_noise_compare(&run->scene, run->image, run->shown, run->open, verdict);
+    } else if (number == SKG_SELF_TEST_VARIANCE) {
+        skg_self_test_variance_compare(&run->scene, run->image, run->shown, verdict);
     } else {
         verdict->good = compare(run, run->image, is_blurred(number) ? run->blurred : run->shown,
                                 tolerance.image * run->open, most, "an energy in keV", verdict);

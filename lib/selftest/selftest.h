@@ -118,7 +118,8 @@ skg_status skg_self_test_heel(const skg_self_test_scene *scene, int64_t row, int
 /* --- blurs and the power of noise (blurs.c) --- */
 
 /* SKG_SELF_TEST_BLUR: two line spread functions. SKG_SELF_TEST_DEPTHS: three depths of a scintillator with blurs of their own.
- * SKG_SELF_TEST_APART: noise whose power rises with the frequency, in an image that is not blurred. */
+ * SKG_SELF_TEST_APART: noise whose power rises with the frequency, in an image that is not blurred. SKG_SELF_TEST_VARIANCE: -ln of
+ * an image with noise of all kinds, over a flat field that falls with the distance, and the blur of SKG_SELF_TEST_BLUR. */
 skg_status skg_self_test_blurs_choose(skg_self_test_scene *scene);
 
 /* What blurs make of an image. shown, wanted: [rows][columns] */
@@ -128,6 +129,10 @@ skg_status skg_self_test_blur(const skg_self_test_scene *scene, const double *sh
  * pixel beside it. open: keV of the open beam. */
 void skg_self_test_noise_compare(const skg_self_test_scene *scene, const double *image, const double *shown,
                                  double open, skg_verdict *verdict);
+
+/* Whether the variance of SKG_SELF_TEST_VARIANCE is right in every pixel. */
+void skg_self_test_variance_compare(const skg_self_test_scene *scene, const double *variance,
+                                    const double *shown, skg_verdict *verdict);
 
 /* --- positions in memory of the device (place.c) --- */
 

@@ -13,7 +13,7 @@ enum { SAMPLES_MAX = 4095 };
 
 /* Kernels and weights for images of one type, float or double. */
 typedef struct {
-    cl_kernel down_kernel, across_kernel;
+    cl_kernel down_kernel, across_kernel, variance_kernel;
     skg_buffer down, across; /* weights */
 } blur_type;
 
@@ -119,6 +119,7 @@ void skg_blur_release(skg_blur **blur) {
         blur_type *type = &(*blur)->type[i];
         if (type->down_kernel) clReleaseKernel(type->down_kernel);
         if (type->across_kernel) clReleaseKernel(type->across_kernel);
+        if (type->variance_kernel) clReleaseKernel(type->variance_kernel);
         skg_buffer_release(&type->down);
         skg_buffer_release(&type->across);
     }
@@ -151,18 +152,26 @@ static skg_status upload(const skg_blur *blur, int is_double, int64_t count, con
     return status;
 }
 
-static skg_status get_type(skg_blur *blur, int is_double, blur_type **got) {
-    static const char *const files[] = {"blur.cl"};
+static skg_status get_program(const skg_blur *blur, int is_double, const char *file, cl_program *program) {
     const skg_kernel_options options = {.precision = is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
                                         .bits = 32};
+    return skg_kernels_get(blur->context, &options, 1, &file, NULL, program);
+}
+
+static skg_status get_weights(const skg_blur *blur, int is_double, blur_type *type) {
     const int64_t down = blur->separable ? blur->rows : 1;
+    if (type->across.memory) return SKG_OK;
+    SKG_TRY(upload(blur, is_double, down, blur->down, BLUR_ROWS - 1, &type->down));
+    return upload(blur, is_double, blur->columns * (blur->separable ? 1 : blur->rows), blur->across, 0,
+                  &type->across);
+}
+
+static skg_status get_type(skg_blur *blur, int is_double, blur_type **got) {
     blur_type *type = *got = &blur->type[is_double];
     cl_program program = NULL;
     if (type->across_kernel) return SKG_OK;
-    SKG_TRY(skg_kernels_get(blur->context, &options, 1, files, NULL, &program));
-    SKG_TRY(upload(blur, is_double, down, blur->down, BLUR_ROWS - 1, &type->down));
-    SKG_TRY(upload(blur, is_double, blur->columns * (blur->separable ? 1 : blur->rows), blur->across, 0,
-                   &type->across));
+    SKG_TRY(get_program(blur, is_double, "blur.cl", &program));
+    SKG_TRY(get_weights(blur, is_double, type));
     if (!type->down_kernel) SKG_TRY(skg_kernel_create(program, "skg_blur_down", &type->down_kernel));
     return skg_kernel_create(program, "skg_blur_across", &type->across_kernel);
 }
@@ -232,6 +241,52 @@ skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_i
     args.add = image->add;
     return run_across(blur, type, &args, lanes, image->memory, log);
 }
+
+/* --- variances */
+
+static skg_status run_variance(const skg_blur *blur, const blur_type *type,
+                               const skg_blur_variance_args *args, cl_mem from, cl_mem weights, cl_mem to,
+                               skg_stage_log *log) {
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(BLUR_VARIANCE, args, *args),
+        SKG_ARGUMENT(BLUR_VARIANCE, from, from),
+        SKG_ARGUMENT(BLUR_VARIANCE, weights, weights),
+        SKG_ARGUMENT(BLUR_VARIANCE, to, to),
+    };
+    return RUN(blur, type->variance_kernel, args->to.columns, args->to.rows, args->to.channels, arguments,
+               log);
+}
+
+skg_status skg_blur_run_variance(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
+                                 int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log) {
+    const int is_double = image->output_double != 0;
+    blur_type *type = &blur->type[is_double];
+    cl_program program = NULL;
+    const int64_t bytes =
+        rows * columns * channels * (int64_t)(is_double ? sizeof(cl_double) : sizeof(cl_float));
+    SKG_TRY(skg_buffer_reserve(blur->context, &blur->workspace, bytes, CL_MEM_READ_WRITE, "blur"));
+    const skg_image_place between = {
+        .memory = blur->workspace.memory, .row_stride = columns, .channel_stride = rows * columns};
+    const skg_blur_variance_args across = {.from = skg_image_of(from, columns, rows, channels),
+                                           .to = skg_image_of(&between, columns, rows, channels),
+                                           .down = blur->separable ? 1 : (SKG_INT)blur->rows,
+                                           .across = (SKG_INT)blur->columns};
+    const skg_blur_variance_args down = {.from = across.to,
+                                         .to = skg_image_of(image, columns, rows, channels),
+                                         .down = blur->separable ? (SKG_INT)blur->rows : 1,
+                                         .across = 1,
+                                         .first = BLUR_ROWS - 1,
+                                         .add = image->add};
+    if (!type->variance_kernel) {
+        SKG_TRY(get_program(blur, is_double, "blur_variance.cl", &program));
+        SKG_TRY(get_weights(blur, is_double, type));
+        SKG_TRY(skg_kernel_create(program, "skg_blur_variance", &type->variance_kernel));
+    }
+    SKG_TRY(run_variance(blur, type, &across, from->memory, type->across.memory, between.memory, log));
+    return run_variance(blur, type, &down, between.memory, type->down.memory, image->memory, log);
+}
+
+/* --- on the host */
 
 /* Adds the image of a source pixel's weight to where its value came from. The values of a pixel were sums over rows from `row` and
  * columns from `column` on, clamped to the image. */

@@ -113,3 +113,16 @@ skg_status skg_layers_blur(skg_layers *layers, int32_t used, const skg_image_pla
     }
     return SKG_OK;
 }
+
+skg_status skg_layers_blur_variance(skg_layers *layers, int32_t used, int32_t apart,
+                                    const skg_image_place *place, const skg_image_place *image,
+                                    int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log) {
+    skg_image_place from = *place, to = *image;
+    for (int32_t l = 0; l < used; l++) {
+        skg_blur *blur = layers->blurs[apart ? layers->count - 1 : l];
+        from.offset = place->offset + l * channels * place->channel_stride;
+        to.add = l > 0;
+        SKG_TRY(skg_blur_run_variance(blur, &from, &to, columns, rows, channels, log));
+    }
+    return SKG_OK;
+}

@@ -15,17 +15,18 @@ void skg_machine_release(skg_machine *machine) {
     skg_hits_memory_release(&machine->hits);
     skg_gradient_memory_release(&machine->gradient);
     skg_buffer_release(&machine->image);
+    skg_buffer_release(&machine->mean);
     skg_buffer_release(&machine->negative);
     skg_pass_memory_release(&machine->pass);
 }
 
 int64_t skg_machine_bytes(const skg_machine *machine) {
-    int64_t bytes = skg_geometry_bytes(&machine->geometry) + machine->image.bytes + machine->negative.bytes +
-                    skg_leaky_memory_bytes(&machine->leaky) + machine->flat_field.image.bytes +
-                    skg_hits_memory_bytes(&machine->hits) + skg_gradient_memory_bytes(&machine->gradient) +
-                    skg_placement_bytes(&machine->placement) + skg_attenuation_bytes(&machine->images) +
-                    skg_attenuation_bytes(&machine->lengths) + skg_raster_cache_bytes(&machine->rasters) +
-                    skg_layers_bytes(&machine->layers);
+    int64_t bytes = skg_geometry_bytes(&machine->geometry) + machine->image.bytes + machine->mean.bytes +
+                    machine->negative.bytes + skg_leaky_memory_bytes(&machine->leaky) +
+                    machine->flat_field.image.bytes + skg_hits_memory_bytes(&machine->hits) +
+                    skg_gradient_memory_bytes(&machine->gradient) + skg_placement_bytes(&machine->placement) +
+                    skg_attenuation_bytes(&machine->images) + skg_attenuation_bytes(&machine->lengths) +
+                    skg_raster_cache_bytes(&machine->rasters) + skg_layers_bytes(&machine->layers);
     if (machine->detector) bytes += skg_detector_bytes(machine->detector);
     return bytes;
 }

@@ -27,6 +27,7 @@ typedef struct {
     skg_hits_memory hits;
     skg_gradient_memory gradient;
     skg_buffer image; /* on its way to the host */
+    skg_buffer mean;  /* of the transmission, for the variance of its logarithm */
     skg_buffer
         negative; /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
     skg_pass_memory pass;

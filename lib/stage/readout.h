@@ -21,6 +21,10 @@ void skg_blur_release(skg_blur **blur);
 skg_status skg_blur_run(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
                         int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
 
+/* Likewise enqueues what the blur makes of the variances of pixels that are independent of each other. */
+skg_status skg_blur_run_variance(skg_blur *blur, const skg_image_place *from, const skg_image_place *image,
+                                 int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
+
 /* The transpose of the blur of one image, on the host in double precision: adds to `to`, [rows][columns]. A pixel on the border
  * takes what belongs to the pixels beyond it. */
 skg_status skg_blur_transpose(const skg_blur *blur, int64_t columns, int64_t rows, const double *from,
@@ -69,6 +73,11 @@ skg_status skg_layers_blur(skg_layers *layers, int32_t used, const skg_image_pla
                            const skg_image_place *image, int64_t columns, int64_t rows, int64_t channels,
                            skg_stage_log *log);
 
+/* Likewise for the variances of independent pixels of `used` layers. apart: 1: one layer, which is blurred as the layer of the noise. */
+skg_status skg_layers_blur_variance(skg_layers *layers, int32_t used, int32_t apart,
+                                    const skg_image_place *place, const skg_image_place *image,
+                                    int64_t columns, int64_t rows, int64_t channels, skg_stage_log *log);
+
 /* Bytes on the device. */
 int64_t skg_layers_bytes(const skg_layers *layers);
 
@@ -85,7 +94,7 @@ typedef struct {
     int32_t channels;
     int32_t add;   /* 1: to what the image holds; 0: in its place */
     int32_t apart; /* 1: deviations go to images behind those of all channels */
-    int32_t reserved;
+    float scale;   /* of what is added */
 } skg_scattered_image;
 
 skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const skg_scattered_image *what,
@@ -116,11 +125,17 @@ void skg_detector_release(skg_detector **detector);
 /* Whether values are divided by those of a flat field. */
 int skg_detector_wants_flat_field(const skg_detector *detector);
 
-/* Enqueues the stage for an image of columns x rows, in place. factor: of this frame, for all channels. flat_field:
- * [channels][rows][columns] of the image's type, if the detector wants it. */
-skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, double factor,
+/* Enqueues the stage for an image of columns x rows, in place. of_mean: 1: without electronic noise and steps. factor: of this
+ * frame, for all channels. flat_field: [channels][rows][columns] of the image's type, if the detector wants it. */
+skg_status skg_detector_run(skg_detector *detector, const skg_noise_args *key, int32_t of_mean, double factor,
                             cl_mem flat_field, const skg_image_place *image, int64_t columns, int64_t rows,
                             skg_stage_log *log);
+
+/* Likewise enqueues what the stage makes of the variances of pixels. mean: [channels][rows][columns] of the transmission, if
+ * variances are those of its -ln; else NULL. */
+skg_status skg_detector_run_variance(skg_detector *detector, const skg_noise_args *key, double factor,
+                                     cl_mem flat_field, cl_mem mean, const skg_image_place *variance,
+                                     int64_t columns, int64_t rows, skg_stage_log *log);
 
 /* Bytes on the device. */
 int64_t skg_detector_bytes(const skg_detector *detector);

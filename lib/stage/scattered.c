@@ -21,8 +21,10 @@ skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const s
                              const skg_noise_args *key, const skg_image_place *image, int64_t columns,
                              int64_t rows, skg_stage_log *log) {
     const int is_double = image->output_double != 0;
-    const skg_scattered_args args = {
-        .key = *key, .image = skg_image_of(image, columns, rows, what->channels), .add = what->add};
+    const skg_scattered_args args = {.key = *key,
+                                     .image = skg_image_of(image, columns, rows, what->channels),
+                                     .add = what->add,
+                                     .scale = what->scale};
     cl_kernel kernel = NULL;
     SKG_TRY(get_kernel(context, stage, is_double, !what->variance ? 0 : what->apart ? 2 : 1, &kernel));
     const skg_argument arguments[] = {

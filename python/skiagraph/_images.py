@@ -95,24 +95,51 @@ def lengths(state: State, labels: Sequence[str], kind: str, poses: Mapping[str, 
     shape = view.shape if one else (batch.count, *view.shape)
     dtype = np.float64 if options.get("precision") == "double" else np.float32
     targets = [np.empty(shape, dtype) if out is None else _arrays.output(out, shape) for _ in parts]
-    places = [int(target.__array_interface__["data"][0]) for target in targets]
 
-    def submit(plan: Any) -> Any:
-        def start(count: int, frames: Any, output: Any, job: Any) -> int:
-            outputs, offset = struct("skg_output", len(parts)), int(ffi.cast("intptr_t", output.data)) - places[0]
-            for i, part in enumerate(parts):
-                outputs[i] = output[0]
-                outputs[i].kind, outputs[i].part, outputs[i].lengths = ENUMS["output_kind"]["lengths"], part, what
-                outputs[i].data = ffi.cast("void *", places[i] + offset)
-            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(parts), outputs, job))
+    def choose(output: Any, number: int) -> None:
+        output.kind, output.part, output.lengths = ENUMS["output_kind"]["lengths"], parts[number], what
 
-        return start
-
+    submit = together(targets, choose)
     with state.calls():
         if state.plans.options(state.setup, {}, []).scatter != ffi.NULL:
             options = {"scatter": False, **options}  # lengths have none, and it is not for every scene
         compute(state, submit, batch, targets[0], progress, one, False, options)
     return targets
+
+
+def expected(state: State, batch: Batch, one: bool, progress: Progress, options: dict[str, Any]) -> dict[str, NDArray[Any]]:
+    """The mean of images and the variance of their noise."""
+    bands, kinds = options.get("bands"), ("mean", "variance")
+    with state.calls():
+        view = batch.views[0] if batch.views else state.require_view()
+    channels = () if bands is None else (len(bands) - 1,)
+    dtype = np.float64 if options.get("precision") == "double" else np.float32
+    targets = [np.empty((*(() if one else (batch.count,)), *channels, *view.shape), dtype) for _ in kinds]
+
+    def choose(output: Any, number: int) -> None:
+        output.kind = ENUMS["output_kind"][kinds[number]]
+
+    with state.calls():
+        compute(state, together(targets, choose), batch, targets[0], progress, one, bool(channels), options)
+    return dict(zip(kinds, targets))
+
+
+def together(targets: Sequence[NDArray[Any]], choose: Callable[[Any, int], None]) -> Callable[[Any], Submit]:
+    """Submits frames with one output for each of the targets, which are alike; choose: says what it is, by its number."""
+    places = [int(target.__array_interface__["data"][0]) for target in targets]
+
+    def submit(plan: Any) -> Submit:
+        def start(count: int, frames: Any, output: Any, job: Any) -> int:
+            outputs, offset = struct("skg_output", len(places)), int(ffi.cast("intptr_t", output.data)) - places[0]
+            for i, place in enumerate(places):
+                outputs[i] = output[0]
+                outputs[i].data = ffi.cast("void *", place + offset)
+                choose(outputs[i], i)
+            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(places), outputs, job))
+
+        return start
+
+    return submit
 
 
 def compute(state: State, submit: Callable[[Any], Submit], batch: Batch, out: Any, progress: Progress, one: bool, banded: bool,

@@ -7,9 +7,9 @@ from typing import Any
 import numpy as np
 
 from ._frames import Batch
-from ._images import compute, number_frames
+from ._images import compute, number_frames, together
 from ._interface import ENUMS, ArgumentError
-from ._library import ffi, filled, lib, struct
+from ._library import filled
 from ._state import State
 from .report import scatter_report
 
@@ -58,18 +58,12 @@ def planes(state: State, quantity: str | None, components: bool, options: dict[s
     found = np.empty((len(wanted), *channels, *state.require_view().shape), dtype)
     used: list[Any] = []
 
+    def choose(output: Any, number: int) -> None:
+        output.kind, output.component = ENUMS["output_kind"][wanted[number][0]], wanted[number][1]
+
     def submit(plan: Any) -> Any:
         used.append(plan)
-
-        def start(count: int, frames: Any, output: Any, job: Any) -> int:
-            outputs = struct("skg_output", len(wanted))
-            for i, (kind, component) in enumerate(wanted):
-                outputs[i] = output[0]
-                outputs[i].kind, outputs[i].component = ENUMS["output_kind"][kind], component
-                outputs[i].data = ffi.cast("void *", found[i].__array_interface__["data"][0])
-            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(wanted), outputs, job))
-
-        return start
+        return together(found, choose)(plan)
 
     with state.calls():
         compute(state, submit, batch, found[0], False, True, bool(channels), {"quantity": quantity, **options})

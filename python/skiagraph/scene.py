@@ -172,6 +172,22 @@ class Scene(_gradient.Differentiable):
         return _images.render(self._state, batch, out, progress, False, unit, quantity=quantity, precision=precision,
                               tolerance=tolerance, **options)
 
+    def noise(self, quantity: str | None = None, *, poses: Mapping[str, Any] | None = None, views: Sequence[View] | None = None,
+              precision: str | None = None, tolerance: float | None = None, progress: Progress = False,
+              **options: Any) -> dict[str, NDArray[Any]]:
+        """What noise makes of an image, without drawing it: "mean", the image that is expected, and "variance", that of each pixel.
+
+        Both are [row, column] as of image(), or [n, row, column] with poses or views as of images(), with bands= before the
+        rows; the variance is in the square of the image's unit. The scene or the options need noise=True, electronic_kev= or
+        quantum_step_kev=. The variance of an attenuation holds where the noise is small against the transmission.
+        """
+        one = poses is None and views is None
+        batch = Batch(1) if one else _images.batch_of(self._state, poses, views)
+        if batch.views and tolerance and "views" not in options:
+            options["views"] = batch.views
+        return _images.expected(self._state, batch, one, progress, {"quantity": quantity, "precision": precision,
+                                                                    "tolerance": tolerance, **options})
+
     @overload
     def lengths(self, label: str, kind: str = "net", *, poses: Mapping[str, Any] | None = None,
                 views: Sequence[View] | None = None, out: Any = None, progress: Progress = False,

@@ -1,4 +1,4 @@
-/* Scattered photons by the command: flags, files, numbers, and verbs that meet the key Scatter. */
+/* Scattered photons and noise by the command: flags, files, numbers, and verbs that meet the key Scatter. */
 #include "cli/command.h"
 
 #include <float.h>
@@ -162,6 +162,33 @@ START_TEST(bands_have_planes_of_their_own) {
 }
 END_TEST
 
+/* 1e6 photons of 60 keV: each adds 60 keV to the mean, and their square to the variance. */
+START_TEST(mean_and_variance_of_noise) {
+    static float image[PIXELS], mean[PIXELS], variance[PIXELS];
+    ck_run(0, "image scene.json --set Noise=true -o a.mha --mean m.mha --variance v.mha --json");
+    json_t *object = said_json();
+    ck_assert_uint_eq(json_array_size(member(object, "files")), 3);
+    json_decref(object);
+    read_mha("a.mha", image);
+    read_mha("m.mha", mean);
+    read_mha("v.mha", variance);
+    for (int i = 0; i < PIXELS; i++) {
+        /* 16 roundings of single precision; six standard deviations of a pixel: one of 1024 pixels in 500,000 images is beyond */
+        ck_assert_double_eq_tol((double)variance[i], 60 * (double)mean[i], 1e-6 * 60 * (double)mean[i]);
+        ck_assert_double_le(fabs((double)image[i] - (double)mean[i]), 6 * sqrt((double)variance[i]));
+    }
+    ck_run(0, "image scene.json -o p.mha --mean m.mha");
+    read_mha("p.mha", image);
+    read_mha("m.mha", mean);
+    ck_assert_mem_eq(image, mean, sizeof image);
+    ck_run_fails(2, "the variance of the noise is asked for, but the plan has none",
+                 "image scene.json -o b.mha --variance v2.mha");
+    ck_assert(!has_file("b.mha"));
+    ck_run(0, "image scene.json --set Noise=true -o a.tif --quantity attenuation --variance v.tif");
+    ck_run_fails(2, "--mean writes this file", "image scene.json -o a.mha --mean s.mha --variance s.mha");
+}
+END_TEST
+
 START_TEST(without_scatter_nothing_is_said_of_it) {
     ck_run(0, "image scene.json -o a.mha --json");
     json_t *object = said_json();
@@ -233,6 +260,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_key_and_the_flag_are_the_same);
     tcase_add_test(tests, quantities);
     tcase_add_test(tests, bands_have_planes_of_their_own);
+    tcase_add_test(tests, mean_and_variance_of_noise);
     tcase_add_test(tests, without_scatter_nothing_is_said_of_it);
     tcase_add_loop_test(tests, refused_flags, 0, sizeof bad / sizeof *bad);
     tcase_add_test(tests, outputs_are_guarded);

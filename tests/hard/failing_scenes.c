@@ -45,12 +45,14 @@ const effects failing_runs[] = {
     {.file = "scene.json",
      .strategy = SKG_STRATEGY_TILES,
      .spot = {.shape = SKG_SPOT_RECTANGLE, .extent = {1, 1, 0}, .samples = 4}},
-    /* exact repair, priority, two line spread functions, noise, falloff, copies, one thread */
+    /* exact repair, priority, two line spread functions, noise and its variance, falloff, copies, one thread */
     {.file = "scene.json",
      .settings = {"Repair=exact", "Samples.bone.Priority=2", "Detector.LSF=[[0.2,1,0.2],[1,2,1]]",
                   "Noise={\"Quantum\":true,\"Electronic\":[2,\"keV\"],\"Step\":[0.5,\"keV\"],\"Swank\":0.9}"},
      .strategy = SKG_STRATEGY_COPIES,
      .falloff = 1,
+     .ratio = 1,
+     .varies = 1,
      .device = "threads=1"},
     /* double, every bin, point spread function, pixels of four rays, bands, clipping, atomics, rows with gaps */
     {.file = "scene.json",

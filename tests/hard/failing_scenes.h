@@ -13,6 +13,7 @@ typedef struct {
     int32_t strided; /* the image's rows are not dense */
     int32_t shared;  /* on OpenCL objects of the caller, into the caller's buffer */
     int32_t scans;   /* a scan into files, beside the images */
+    int32_t varies;  /* the variance of the noise, beside the images */
     int32_t series;  /* the scatter of many frames, beside the images */
     int32_t derives; /* derivatives, whose weights are the caller's buffer, beside the images */
     const char *device;

@@ -60,3 +60,16 @@ skg_status failing_series(skg_plan *plan, const skg_view *view, float *image, fl
     memcpy(components, channels, PIXELS * sizeof *components); /* of the first channel */
     return SKG_OK;
 }
+
+skg_status failing_noise(skg_plan *plan, float *variance) {
+    static float mean[PIXELS]; /* Check would allocate */
+    skg_output outputs[2];
+    skg_job *job = NULL;
+    for (int k = 0; k < 2; k++) {
+        skg_output_init(&outputs[k]);
+        outputs[k].kind = k ? SKG_OUTPUT_VARIANCE : SKG_OUTPUT_MEAN;
+        outputs[k].data = k ? variance : mean;
+    }
+    TRY(skg_plan_outputs_submit(plan, 1, NULL, 2, outputs, &job));
+    return skg_job_wait(&job);
+}

@@ -230,9 +230,10 @@ static skg_status draw(run *r) {
     return asked == SKG_OK && r->with->shared ? draw_placed(r) : asked;
 }
 
-/* And what the run has beside it: a projection of a scan, scatter or derivatives take the place of the lengths. */
+/* And what the run has beside it: a projection of a scan, scatter, variances or derivatives take the place of the lengths. */
 static skg_status draw_all(run *r) {
     TRY(draw(r));
+    if (r->with->varies) TRY(failing_noise(r->plan, r->lengths));
     if (r->with->series) TRY(failing_series(r->plan, &r->view, r->image, r->lengths));
     if (r->with->derives) TRY(failing_gradient(r->plan, r->scene, &r->view, r->shared.buffer, r->lengths));
     return r->with->scans ? failing_scan(folder, r->plan, r->scene, &r->view, r->lengths) : SKG_OK;

@@ -36,6 +36,7 @@ typedef struct {
     int32_t gradient; /* makes the gradient of an image, too */
     int32_t cpu;      /* with the kernels of processors; the simulator calls itself a GPU */
     int32_t placed;   /* the positions of the ball are taken from device memory */
+    int32_t variance; /* of the noise, instead of the image */
 } group;
 
 enum { BLUR_LINES = 1, BLUR_POINT = 2 };
@@ -88,6 +89,15 @@ static const group groups[] = {
      .gradient = 1,
      .parallel = 1,
      .supersampling = 2},
+    {.name = "variance", .noise = 1, .electronic = 2, .blur = BLUR_POINT, .variance = 1},
+    {.name = "double_variance",
+     .precision = SKG_PRECISION_DOUBLE,
+     .quantity = SKG_QUANTITY_ATTENUATION,
+     .noise = 1,
+     .falloff = SKG_FALLOFF_ON,
+     .blur = BLUR_LINES,
+     .scatter = 32,
+     .variance = 1},
     {.name = "show", .picture = 1},
     {.name = "place", .placed = 1},
     {.name = "double_place", .precision = SKG_PRECISION_DOUBLE, .placed = 1}};
@@ -304,10 +314,12 @@ int main(int count, char **words) {
     skg_plan *plan = make_plan(context, scene, &view, g);
     skg_output_init(&output);
     output.data = image;
+    if (g->variance) output.kind = SKG_OUTPUT_VARIANCE;
     if (g->placed) place_ball(context, scene, plan);
     TRY(skg_plan_image(plan, &output));
-    /* 10,500 keV is the open beam; noise widens it, the logarithm of the range of a float is below 104. */
-    const double most = g->quantity == SKG_QUANTITY_ATTENUATION ? 104 : 2 * 10500;
+    /* 10,500 keV is the open beam; noise widens it, the logarithm of the range of a float is below 104. The variance of photons of
+     * 40 keV is 40 times their energy. */
+    const double most = g->quantity == SKG_QUANTITY_ATTENUATION ? 104 : 2 * 10500 * (g->variance ? 40 : 1);
     const int good =
         lies_between(image, g->bands ? g->bands * PIXELS : PIXELS, g->noise ? -100 : -1e-3, most);
     const int also_good = !g->gradient || makes_gradient(plan);

@@ -174,6 +174,24 @@ def test_progress_that_returns_false_cancels(scene, poses):
     assert len(scene.images(poses={"ball": poses}, progress=lambda done, of: done < 7)) == 7  # too late
 
 
+def test_mean_and_variance_of_noise(scene, poses):
+    scene.beam = sk.Beam([40], [1000])
+    found = scene.noise(noise=True)
+    # single precision: the same sums with weights that are multiplied in another order
+    np.testing.assert_allclose(found["mean"], scene.image(), rtol=16 * np.finfo(np.float32).eps)
+    # photons of 40 keV: each adds 40 keV to the mean and their square to the variance
+    np.testing.assert_allclose(found["variance"], 40 * found["mean"], rtol=16 * np.finfo(np.float32).eps)
+    counted = scene.noise("photons", bands=[20, 100], precision="double", noise=True)
+    assert counted["mean"].shape == (1, SIDE, SIDE + 16) and counted["mean"].dtype == np.float64
+    np.testing.assert_allclose(counted["variance"], counted["mean"], rtol=1e-6)  # weights in single precision
+    batch = scene.noise("attenuation", poses={"ball": poses}, noise=True)
+    assert batch["variance"].shape == batch["mean"].shape == (7, SIDE, SIDE + 16)
+    scene["ball"].pose = poses[3]
+    np.testing.assert_array_equal(scene.noise("attenuation", noise=True)["variance"], batch["variance"][3])
+    with pytest.raises(sk.ArgumentError, match="the variance of the noise is asked for, but the plan has none"):
+        scene.noise()
+
+
 def test_noise_belongs_to_frames(scene, poses):
     still = {"ball": np.eye(4)[None].repeat(3, 0)}
     noisy = scene.images(poses=still, noise=True, noise_seed=5)

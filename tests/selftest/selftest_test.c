@@ -245,6 +245,13 @@ static const struct {
     {"weights.cl", "values[r] * unit[r]", "values[r]", SKG_SELF_TEST_GRADIENT},
     {"slopes.cl", "off - before", "off", SKG_SELF_TEST_GRADIENT},
     {"gradient.cl", "(weight + lost) * deep", "weight * deep", SKG_SELF_TEST_GRADIENT},
+    {"blur_variance.cl", "weight += weights[y * args.across + x]", "weight = weights[y * args.across + x]",
+     SKG_SELF_TEST_VARIANCE},
+    {"blur_variance.cl", "weights += args.first;", "", SKG_SELF_TEST_VARIANCE},
+    {"detect_variance.cl", "args.spacing * args.spacing / (skg_real)(12)", "(skg_real)(0)",
+     SKG_SELF_TEST_VARIANCE},
+    {"detect_variance.cl", "scale /= flat_field[pixel];", "", SKG_SELF_TEST_VARIANCE},
+    {"detect_variance.cl", "mean[pixel]", "mean[row * columns]", SKG_SELF_TEST_VARIANCE},
     {"scattered.cl", "args->add ? image[k] : (skg_real)(0)", "(skg_real)(0)", SKG_SELF_TEST_SCATTER},
     {"show.cl", "colour >> (uint)shift & 0xffu", "colour & 0xffu", SKG_SELF_TEST_PICTURE},
 };

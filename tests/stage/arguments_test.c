@@ -60,6 +60,8 @@ static const struct {
      "-D SKG_GATHER=1 " NAMES,
      0},
     {{"blur.cl"}, NAMES, 0},
+    {{"blur_variance.cl"}, NAMES, 0},
+    {{"detect_variance.cl"}, "-D SKG_FLAT_FIELD=1 -D SKG_OF_LOGARITHM=1 " NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1 " NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "sight.clh", "strips.clh", "arrive.clh",
       "profile.clh", "scatter.cl"},

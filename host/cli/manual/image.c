@@ -44,6 +44,15 @@ const cli_flag cli_flag_image_scatter_image = {
 const cli_flag cli_flag_image_scatter_sigma = {
     "--scatter-sigma", "FILE", "Likewise the file for the standard error of the scatter in each pixel.", NULL,
     CLI_NAMES_OUTPUT};
+const cli_flag cli_flag_image_mean = {
+    "--mean", "FILE",
+    "The file for the image that is expected, without noise and steps, in any format of -o.", NULL,
+    CLI_NAMES_OUTPUT};
+const cli_flag cli_flag_image_variance = {
+    "--variance", "FILE",
+    "Likewise the file for the variance that noise gives to each pixel, in the square of the image's unit. The scene needs Noise, "
+    "electronic noise or steps.",
+    NULL, CLI_NAMES_OUTPUT};
 
 static const char *const text[] = {
     "Computes one image and writes it to the file of every -o. A .png holds 16-bit grey levels through --display "
@@ -70,6 +79,8 @@ static const cli_flag *const flags[] = {&cli_flag_output,
                                         &cli_flag_image_scatter,
                                         &cli_flag_image_scatter_image,
                                         &cli_flag_image_scatter_sigma,
+                                        &cli_flag_image_mean,
+                                        &cli_flag_image_variance,
                                         &cli_flag_image_display,
                                         &cli_flag_range,
                                         &cli_flag_repeat,
@@ -100,6 +111,8 @@ static const cli_item examples[] = {
     {"skiagraph image scene.json -o bands.tif --bands 20,40,60", "writes two photon-counting channels"},
     {"skiagraph image scene.json --scatter 0.01 -o total.mha --scatter-image scatter.mha",
      "writes an image with scattered photons, and these alone"},
+    {"skiagraph image scene.json --set Noise=true -o noisy.mha --mean mean.mha --variance variance.mha",
+     "writes an image with noise, its mean and the variance of its pixels"},
     {"skiagraph image scene.json --repeat 100", "measures the times of 100 frames and writes nothing"},
     {NULL, NULL}};
 

@@ -66,7 +66,7 @@ extern const char cli_text_meshes[];                /* a paragraph on them */
 /* Flags of one verb. */
 extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
     cli_flag_image_band_weight, cli_flag_image_scatter, cli_flag_image_scatter_image,
-    cli_flag_image_scatter_sigma;
+    cli_flag_image_scatter_sigma, cli_flag_image_mean, cli_flag_image_variance;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames,
     cli_flag_cost_sensitivity;

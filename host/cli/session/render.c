@@ -170,8 +170,8 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
                 rendering->picture.low, rendering->picture.high, 100 * OUTSIDE, 100 - 100 * OUTSIDE);
         putchar('\n');
     }
-    for (int i = 0; rendering->scattering && i < CLI_SCATTERED_COUNT; i++)
-        if (rendering->scattering->paths[i]) cli_print("wrote %s\n", rendering->scattering->paths[i]);
+    for (int i = 0; rendering->beside && i < CLI_BESIDE_COUNT; i++)
+        if (rendering->beside->paths[i]) cli_print("wrote %s\n", rendering->beside->paths[i]);
     return CLI_DONE;
 }
 
@@ -252,14 +252,14 @@ int cli_render(cli_rendering *rendering) {
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(session, &plan, &times.plan_ms);
     if (exit_status == CLI_DONE) exit_status = name_channels(rendering, plan);
     if (exit_status == CLI_DONE) exit_status = allocate_frame(rendering, &output);
-    if (exit_status == CLI_DONE && rendering->scattering)
-        exit_status = cli_scattering_allocate(session, output.type, rendering->scattering);
+    if (exit_status == CLI_DONE && rendering->beside)
+        exit_status = cli_beside_allocate(session, output.type, rendering->beside);
     if (exit_status == CLI_DONE)
         exit_status = cli_run_frames(plan, rendering->frame, &output, rendering->frame_user, &times);
     if (exit_status == CLI_DONE && has_window(rendering)) exit_status = find_window(&rendering->picture);
     if (exit_status == CLI_DONE) exit_status = write_files(rendering);
-    if (exit_status == CLI_DONE && rendering->scattering)
-        exit_status = cli_scattering_write(rendering->scattering, &rendering->picture);
+    if (exit_status == CLI_DONE && rendering->beside)
+        exit_status = cli_beside_write(rendering->beside, &rendering->picture);
     if (exit_status == CLI_DONE) exit_status = print_rendering(rendering, plan, &times);
     free(output.data);
     skg_plan_release(&plan);

@@ -2,6 +2,7 @@
 #ifndef SKG_CLI_RENDER_H
 #define SKG_CLI_RENDER_H
 
+#include "session/beside.h"
 #include "session/frames.h"
 #include "session/scattering.h"
 #include "session/session.h"
@@ -14,6 +15,7 @@ typedef struct {
     const void *frame_user;
     const char *channel_names[SKG_CHANNELS_MAX];
     cli_scattering *scattering; /* of an image; NULL: path lengths */
+    cli_beside *beside;         /* likewise */
     int lengths;                /* 1: path lengths, which have one channel whatever the plan's images have */
     skg_picture
         picture; /* quantity and display, for path lengths also name and unit; cli_render fills in the rest */

@@ -1,7 +1,6 @@
 #include "session/scattering.h"
 
 #include "common/encode.h"
-#include "common/interrupt.h"
 #include "common/say.h"
 
 #include <inttypes.h>
@@ -11,9 +10,6 @@
 #include <string.h>
 
 enum { HISTORIES_MAX = 1 << 30 };
-
-static const cli_flag *const flags[CLI_SCATTERED_COUNT] = {
-    [CLI_SCATTERED] = &cli_flag_image_scatter_image, [CLI_SCATTERED_SIGMA] = &cli_flag_image_scatter_sigma};
 
 /* "0.01", or "histories=1e6". */
 static int read_accuracy(const char *value, skg_scatter *scatter) {
@@ -44,10 +40,9 @@ int cli_scattering_read(const cli_arguments *arguments, cli_scattering *scatteri
     const char *accuracy = cli_value(arguments, &cli_flag_image_scatter);
     skg_scatter_init(&scattering->asked);
     scattering->is_asked = scattering->has_accuracy = accuracy != NULL;
-    for (int i = 0; i < CLI_SCATTERED_COUNT; i++) {
-        scattering->paths[i] = cli_value(arguments, flags[i]);
-        if (scattering->paths[i]) scattering->is_asked = 1;
-    }
+    if (cli_given(arguments, &cli_flag_image_scatter_image) ||
+        cli_given(arguments, &cli_flag_image_scatter_sigma))
+        scattering->is_asked = 1;
     return accuracy ? read_accuracy(accuracy, &scattering->asked) : CLI_DONE;
 }
 
@@ -62,64 +57,6 @@ void cli_scattering_ask(cli_scattering *scattering, cli_session *session) {
         }
     }
     session->options.scatter = &scattering->asked;
-}
-
-int cli_scattering_allocate(const cli_session *session, int32_t type, cli_scattering *scattering) {
-    const int64_t channels = session->options.bands > 0 ? session->options.bands : 1;
-    const size_t pixels = (size_t)(session->view.columns * session->view.rows * channels);
-    for (int i = 0; i < CLI_SCATTERED_COUNT; i++) {
-        if (!scattering->paths[i]) continue;
-        scattering->planes[i] = calloc(pixels, type == SKG_TYPE_FLOAT64 ? 8 : 4);
-        if (!scattering->planes[i]) return cli_error(CLI_DEVICE, "out of host memory for the scatter");
-    }
-    return CLI_DONE;
-}
-
-void cli_scattering_free(cli_scattering *scattering) {
-    for (int i = 0; i < CLI_SCATTERED_COUNT; i++) free(scattering->planes[i]);
-    *scattering = (cli_scattering){0};
-}
-
-skg_status cli_scattering_frame(skg_plan *plan, const skg_output *output, const void *user) {
-    static const int32_t kinds[CLI_SCATTERED_COUNT] = {
-        [CLI_SCATTERED] = SKG_OUTPUT_SCATTER, [CLI_SCATTERED_SIGMA] = SKG_OUTPUT_SCATTER_SIGMA};
-    const cli_scattering *scattering = user;
-    skg_output outputs[1 + CLI_SCATTERED_COUNT] = {*output};
-    skg_job *job = NULL;
-    int count = 1;
-    for (int i = 0; i < CLI_SCATTERED_COUNT; i++) {
-        if (!scattering->planes[i]) continue;
-        outputs[count] = *output;
-        outputs[count].kind = kinds[i];
-        outputs[count++].data = scattering->planes[i];
-    }
-    const skg_status status = skg_plan_outputs_submit(plan, 1, NULL, count, outputs, &job);
-    return status == SKG_OK ? skg_job_wait(&job) : status;
-}
-
-int cli_scattering_write(const cli_scattering *scattering, const skg_picture *image) {
-    static const char *const names[CLI_SCATTERED_COUNT] = {
-        [CLI_SCATTERED] = "scatter", [CLI_SCATTERED_SIGMA] = "standard error of the scatter"};
-    int failure = CLI_DONE;
-    for (int i = 0; i < CLI_SCATTERED_COUNT; i++) {
-        if (!scattering->planes[i]) continue;
-        skg_picture picture = *image;
-        const int is_share =
-            image->quantity == SKG_QUANTITY_ATTENUATION || image->quantity == SKG_QUANTITY_TRANSMISSION;
-        picture.data = scattering->planes[i];
-        picture.name = names[i];
-        if (picture.channels == 1) picture.channel_names = NULL; /* they would name the picture */
-        if (is_share) picture.quantity = SKG_QUANTITY_TRANSMISSION;
-        if (is_share) picture.unit = "I/I0";
-        picture.display = SKG_DISPLAY_TRANSMISSION; /* with no flat field: grey levels follow the values */
-        picture.flat_field = picture.low = picture.high = 0;
-        const skg_status status = skg_picture_save(&picture, scattering->paths[i]);
-        if (status == SKG_OK)
-            cli_keep("the last output written is %s", scattering->paths[i]);
-        else if (failure == CLI_DONE)
-            failure = status == SKG_ERR_UNSUPPORTED ? cli_fail(status), CLI_OUTPUT : cli_fail(status);
-    }
-    return failure;
 }
 
 /* The mean of all channels of an image; of an attenuation, that of the transmission. */

@@ -32,10 +32,12 @@ static int read_bands(const cli_arguments *arguments, double edges[SKG_CHANNELS_
 
 int cli_image(const cli_arguments *arguments) {
     cli_scattering scattering = {0};
+    cli_beside beside = {0};
     cli_rendering rendering = {.arguments = arguments,
-                               .frame = cli_scattering_frame,
-                               .frame_user = &scattering,
-                               .scattering = &scattering};
+                               .frame = cli_beside_frame,
+                               .frame_user = &beside,
+                               .scattering = &scattering,
+                               .beside = &beside};
     int32_t quantity = SKG_QUANTITY_ENERGY, display = SKG_DISPLAY_RADIOGRAPH, weight = -1;
     double edges[SKG_CHANNELS_MAX + 1];
     int64_t bands = 0;
@@ -46,6 +48,7 @@ int cli_image(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE && weight >= 0 && bands == 0)
         exit_status = cli_error(CLI_USAGE, "--band-weight weighs the photons of bands; add --bands");
     if (exit_status == CLI_DONE) exit_status = cli_scattering_read(arguments, &scattering);
+    cli_beside_read(arguments, &beside);
     if (exit_status == CLI_DONE) exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &rendering.session);
     if (exit_status == CLI_DONE) {
@@ -60,6 +63,6 @@ int cli_image(const cli_arguments *arguments) {
         exit_status = cli_render(&rendering);
     }
     cli_close_session(&rendering.session);
-    cli_scattering_free(&scattering);
+    cli_beside_free(&beside);
     return exit_status;
 }

@@ -263,5 +263,18 @@ template <class Pixel> skg_status scatter(const plan &by, std::span<Pixel> to, s
     return detail::started(status, submitted).wait();
 }
 
+/** Computes the image that is expected, without noise, [channel][row][column], and the variance that noise gives to each of its values
+ * if `variance` is not empty. */
+template <class Pixel> skg_status noise(const plan &by, std::span<Pixel> mean, std::span<Pixel> variance = {}) {
+    skg_job *submitted = nullptr;
+    skg_output outputs[] = {detail::dense(mean.data(), detail::type_of(mean.data())),
+                            detail::dense(variance.data(), detail::type_of(variance.data()))};
+    outputs[0].kind = SKG_OUTPUT_MEAN;
+    outputs[1].kind = SKG_OUTPUT_VARIANCE;
+    const skg_status status =
+        skg_plan_outputs_submit(by, 1, nullptr, variance.empty() ? 1 : 2, outputs, &submitted);
+    return detail::started(status, submitted).wait();
+}
+
 } // namespace skiagraph
 #endif

@@ -76,7 +76,17 @@ enum skg_output_kind {
     SKG_OUTPUT_SCATTER_SIGMA = 3,
     /** One of its components, in the same unit (skg_output.component). Smoothed by the same cosines, so that the components
      * add up to SKG_OUTPUT_SCATTER; a small one may be slightly negative. */
-    SKG_OUTPUT_SCATTER_COMPONENT = 4
+    SKG_OUTPUT_SCATTER_COMPONENT = 4,
+    /** The images that are expected, without noise and without the steps of the detector, in the plan's quantity. Of an attenuation
+     * they are -ln of the mean transmission. */
+    SKG_OUTPUT_MEAN = 5,
+    /** The variance that noise gives to each value of the images, in the square of the plan's unit: that of quantum noise, primary and
+     * scattered, behind the blur, of electronic noise, and step^2 / 12 for the steps of the detector. The last holds for steps up to
+     * twice the standard deviation of the noise. Of an attenuation it is the variance of the transmission over the square of its
+     * mean, which holds where the noise is small against the mean (first order). Neighbours in a blurred image are correlated,
+     * which variances do not show. The error of the scatter itself is SKG_OUTPUT_SCATTER_SIGMA. Needs noise, electronic noise or
+     * steps in skg_plan_options. */
+    SKG_OUTPUT_VARIANCE = 6
 };
 
 /** Scattered photons by what they met in the parts. */
