@@ -56,9 +56,12 @@ class Jupyter:
         notebook = {"cells": [cell(i, source) for i, source in enumerate(cells)], "nbformat": 4, "nbformat_minor": 5, "metadata": {
             "kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}}
         (self.folder / "live.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
+        settings = self.folder / "settings" / "@jupyterlab" / "apputils-extension" / "notification.jupyterlab-settings"
+        settings.parent.mkdir(parents=True, exist_ok=True)
+        settings.write_text('{"fetchNews": "false"}', encoding="utf-8")
         words = ["-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", f"--port={self.port}", "--ServerApp.port_retries=0",
                  f"--IdentityProvider.token={self.token}", f"--ServerApp.root_dir={self.folder}", "--LabApp.expose_app_in_browser=True",
-                 "--LabApp.news_url=None", "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
+                 "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
         home = {f"JUPYTER_{name}_DIR": str(self.folder / name.lower()) for name in ("CONFIG", "DATA", "RUNTIME")}
         self.log = (self.folder / "jupyter.log").open("w", encoding="utf-8")
         self.process = subprocess.Popen([sys.executable, *words], env={**os.environ, **home, "IPYTHONDIR": str(self.folder / "ipython"),
@@ -172,7 +175,51 @@ def tried(lab, pictures):
     lab.until("state.poses[0] && state.poses[0][7] === -7")
     lab.until(SETTLED)
     check("what Python assigns is shown", lab.run(SUM) != before)
-    return pictures
+
+
+def busy(lab):
+    """While a cell runs, what is changed waits, and the page says so. Keys move what is chosen."""
+    lab.run("choose('part', 1)")
+    lab.start(3)
+    lab.browser.until("jupyterapp.shell.currentWidget.sessionContext.session.kernel.status === 'busy'")
+    lab.run("canvas.focus()")
+    for _ in range(3):
+        lab.browser.key("ArrowRight", 1)
+    lab.until("byId('role').textContent.includes('the kernel is busy')")
+    check("it waits", "slept" not in lab.text(3))
+    lab.until("byId('role').textContent === ''")
+    lab.until(SETTLED)
+    check("nothing moved meanwhile", "slept 0.0" in lab.text(3), lab.text(3))
+    check("keys moved it", lab.run("state.poses[1] && state.poses[1][3]") == 3, str(lab.run("JSON.stringify(state.poses)")))
+    lab.run("set('Source.Position', [5, 0, -900, 'mm']); set('Source.Beam', {kVp: 80, Filter: [['Al', 2.5, 'mm']]})")
+    lab.until(SETTLED)
+    said = lab.cell(4, "source")
+    check("source and beam read back", "source [5.0, 0.0, -900.0]" in said and "energies" in said, said)
+
+
+def looks(lab, pictures):
+    """Light and dark, wide and narrow; and after the browser's page was loaded anew."""
+    browser = lab.browser
+    for theme, is_dark in (("JupyterLab Dark", "true"), ("JupyterLab Light", "false")):
+        browser.run(f"jupyterapp.commands.execute('apputils:change-theme', {{theme: {json.dumps(theme)}}}), 0")
+        lab.until(f"document.documentElement.classList.contains('dark') === {is_dark}")
+        browser.run("jupyterapp.shell.collapseLeft()")
+        for width in (1300, 430):
+            browser.size(width, 1000)
+            browser.run("document.querySelector('.jp-OutputArea iframe').scrollIntoView({block: 'start'}), 0")
+            lab.until("Math.abs(canvas.width - canvas.clientWidth) < 1 && !dirty")
+            check("no scrolling sideways", lab.run("document.documentElement.scrollWidth <= document.documentElement.clientWidth"), str(width))
+            if pictures:
+                browser.picture(os.path.join(pictures, f"notebook-{theme[11:].lower()}-{width}.png"))
+    browser.size(1300, 1000)
+    browser.run("jupyterapp.commands.execute('docmanager:save')")
+    poses = lab.run("JSON.stringify(state.poses)")
+    browser.run("window.isOld = true")
+    browser.call("Page.reload")
+    browser.until("!window.isOld")
+    lab = Lab(browser)
+    lab.until("typeof xray !== 'undefined' && " + SETTLED, 120)
+    check("the same after a reload", lab.run("JSON.stringify(state.poses)") == poses)
 
 
 def main():
@@ -184,10 +231,12 @@ def main():
         lab = Lab(browser)
         try:
             tried(lab, pictures)
+            busy(lab)
+            looks(lab, pictures)
+            check("no exception", not browser.events, json.dumps(browser.events)[:800])
         finally:
             if pictures:
                 browser.picture(os.path.join(pictures, "notebook-end.png"))
-                print(lab.text(0))
     for failure in failures:
         print("failed:", failure)
     print(f"{len(failures)} failures")

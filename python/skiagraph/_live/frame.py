@@ -104,9 +104,10 @@ def pack(frame: Frame, number: int, wish: int, quantity: str) -> bytes:
     notes = _DRAFT * frame.is_draft | _INFINITE * (not is_finite.all()) | _RANGE * frame.is_outside
     flat = listed("skg_channel", "skg_plan_channel", frame.plan)[0]["flat_field"]
     rows, columns = image.shape
-    header: bytes = _HEADER.pack(b"SKLF", number, wish, columns, rows, low, step, flat, frame.ms, frame.factor,
-                                 ENUMS["quantity"][quantity], notes)
-    return header + packed.tobytes()
+    header = _HEADER.pack(b"SKLF", number, wish, columns, rows, low, step, flat, frame.ms, frame.factor,
+                          ENUMS["quantity"][quantity], notes)
+    rows16: bytes = packed.tobytes()
+    return header + rows16
 
 
 def probe(subject: Subject, at: tuple[float, float]) -> list[list[Any]]:

@@ -1,8 +1,10 @@
 """The widget of a scene under one's hands: the page of `skiagraph live` in a cell. Private."""
 from __future__ import annotations
 
+import asyncio
 import functools
 import importlib.resources
+import threading
 import weakref
 from typing import Any
 
@@ -29,10 +31,11 @@ def _kind() -> Any:
         height = traitlets.Int(640).tag(sync=True)
 
         def __init__(self, hub: Hub, height: int) -> None:
-            super().__init__(height=height)  # type: ignore[no-untyped-call, unused-ignore]
+            super().__init__(height=height)
             self._hub = hub
             hub.send = lambda content, buffers: self.send(content, buffers or None)
-            self.on_msg(lambda _widget, content, _buffers: self._hub.hear(content))
+            self._thread, self._loop = threading.current_thread(), _running_loop()
+            self.on_msg(lambda _widget, content, _buffers: self._receive(content))
             self._follow()
 
         def refresh(self) -> None:
@@ -42,7 +45,14 @@ def _kind() -> Any:
         def close(self) -> None:
             """Ends it; the page stays as it is."""
             self._unfollow()
-            super().close()
+            super().close()  # type: ignore[no-untyped-call, unused-ignore]
+
+        def _receive(self, content: Any) -> None:
+            """Kernels that have subshells deliver messages in a thread of their own; the scene is that of the thread of cells."""
+            if self._loop is None or threading.current_thread() is self._thread:
+                self._hub.hear(content)
+            else:
+                self._loop.call_soon_threadsafe(self._hub.hear, content)
 
         def _follow(self) -> None:
             """After each cell, what it has changed is shown."""
@@ -64,6 +74,14 @@ def _kind() -> Any:
             self._unfollow = lambda: shell.events.unregister("post_run_cell", after)
 
     return Live
+
+
+def _running_loop() -> asyncio.AbstractEventLoop | None:
+    """That of the kernel; None: there is no kernel."""
+    try:
+        return asyncio.get_running_loop()
+    except RuntimeError:
+        return None
 
 
 def widget(state: State, height: int) -> Any:
