@@ -26,7 +26,7 @@ def number_frames(state: State, count: int, index: int | None, options: Mapping[
     if options.get("noise_seed") is not None:
         return 0
     with state.calls():
-        file = state.plans.options(state.setup, {}, [])
+        file = state.plans.options(state.options_setup, {}, [])
     given = [options.get("noise"), options.get("electronic_kev")]
     noise, electronic = (own if value is None else value for own, value in zip((file.noise, file.electronic_kev), given))
     first = state.frames
@@ -101,7 +101,7 @@ def lengths(state: State, labels: Sequence[str], kind: str, poses: Mapping[str, 
 
     submit = together(targets, choose)
     with state.calls():
-        if state.plans.options(state.setup, {}, []).scatter != ffi.NULL:
+        if state.plans.options(state.options_setup, {}, []).scatter != ffi.NULL:
             options = {"scatter": False, **options}  # lengths have none, and it is not for every scene
         compute(state, submit, batch, targets[0], progress, one, False, options)
     return targets

@@ -20,7 +20,7 @@ def picture(state: State, pixels: Sequence[int], direction: Any, up: Any, orthog
     """What Scene.picture gives."""
     keep: list[Any] = []
     look = struct("skg_look")
-    look.collimation = state.plans.options(state.setup, {}, keep).collimation
+    look.collimation = state.plans.options(state.options_setup, {}, keep).collimation
     look.columns, look.rows, look.orthographic = int(pixels[0]), int(pixels[1]), bool(orthographic)
     for name, given in (("from", direction), ("up", up)):
         for k, value in enumerate((0, 0, 0) if given is None else _arrays.vector(given, name)):

@@ -4,8 +4,9 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from ._interface import SceneError
+from ._library import ffi, string
 from ._source import Kept
-from ._state import State
+from ._state import State, beam_of
 
 if TYPE_CHECKING:
     from .scene import Scene
@@ -26,6 +27,7 @@ def content(state: State) -> dict[str, Any]:
         "materials": {number: material for number, material in state.materials.items() if number < len(old)},
         "vertices": moved, "breath": state.breath,
         "trajectory": state.trajectory, "frames": state.frames,
+        "tuned": None if state.tuned == ffi.NULL else string("skg_setup_text_get", state.tuned),
         "added": [{"label": part.label, "mesh": part.mesh, "material": part.material, "inside": part.inside,
                    "pose": part.pose, "priority": part.priority} for part in new],
     }
@@ -54,6 +56,9 @@ def restore(scene: Scene, state: State, content: dict[str, Any]) -> None:
         scene.add(part.pop("label"), part.pop("mesh"), **part)
     state.view, state.changed = content["view"], content["changed"]
     state.trajectory, state.frames = content["trajectory"], content["frames"]
+    if content["tuned"] is not None:
+        state.tune(state.light(content["tuned"], []))
+        state.beam = beam_of(state.tuned)
     if content["beam"] is not None:
         scene.beam = content["beam"]
     if content["breath"]:

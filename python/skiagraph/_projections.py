@@ -49,7 +49,7 @@ class _Job:
     def __init__(self, state: State, scan: Scan, wanted: Wanted, samples: int, anew: bool) -> None:
         self.state, self.scan, self.wanted = state, scan, wanted
         self.keep: list[Any] = []
-        self.options = state.plans.options(state.setup, wanted.options, self.keep)
+        self.options = state.plans.options(state.options_setup, wanted.options, self.keep)
         given = dict(wanted.options)
         if state.trajectory is not None and given.get("tolerance"):
             given.setdefault("views", list(scan))
@@ -58,7 +58,7 @@ class _Job:
         self.view = scan[0]
         self.dtype = np.dtype(np.float64 if self.options.precision == ENUMS["precision"]["double"] else np.float32)
         self.motion = state.linked() if wanted.breathing else ffi.NULL
-        self.plan = state.plans.get(state.setup, state.handle, self.view, state.require_beam(), given, anew)
+        self.plan = state.plans.get(state.options_setup, state.handle, self.view, state.require_beam(), given, anew)
         self.channels = integer("skg_plan_channel_count", self.plan)
         self.run = self._run_options()
 
@@ -170,7 +170,7 @@ class _ToFile(_Job):
 def _hash(state: State, scan: Scan, wanted: Wanted) -> str:
     """What identifies the scan; the command's if nothing was changed since the scene was read."""
     keep: list[Any] = []
-    options = state.plans.options(state.setup, wanted.options, keep)
+    options = state.plans.options(state.options_setup, wanted.options, keep)
     run, found = struct("skg_scan_run_options"), ffi.new("char[65]")
     run.subframes = int(wanted.subframes)
     run.type = int(options.precision == ENUMS["precision"]["double"])

@@ -16,7 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ._interface import ArgumentError, SceneError
-from ._library import string
+from ._library import ffi, string
 from .beam import Beam
 from .material import Material
 from .part import Part
@@ -36,17 +36,32 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
     target = pathlib.Path(path)
     if target.suffix.lower() != ".json":
         raise ArgumentError(f"{target}: a scene is written as .json; give save({str(path)!r}, image) for an image")
-    text = json.loads(string("skg_setup_text_get", state.setup))
+    text = settings_text(state)
     _rename_files(text, state.source.files, target.parent)
-    _write_view(state, text)
-    if "beam" in state.changed:
-        _put(_object(text, "Source"), "Beam", beam_text(state.require_beam()))
     _write_samples(state, text, target)
     if state.trajectory is not None:
         _put(text, "Scan", _scan_text(state.trajectory))
     if state.breath:
         _drop(text, "Breathing")
     target.write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
+
+
+def settings_text(state: State, placed: bool = False) -> dict[str, Any]:
+    """What is read of the scene, with its source, detector and beam as they are now. placed: also where the file has them fitted."""
+    text: dict[str, Any] = json.loads(string("skg_setup_text_get", state.setup))
+    if state.tuned != ffi.NULL:
+        for key, value in json.loads(string("skg_setup_text_get", state.tuned)).items():
+            _put(text, key, value)
+    if placed or state.view != state.read_view:
+        _write_view(state, text)
+    if "beam" in state.changed:
+        _put(_object(text, "Source"), "Beam", beam_text(state.require_beam()))
+    return text
+
+
+def without_parts(text: dict[str, Any]) -> dict[str, Any]:
+    """Source, detector and options alone."""
+    return {key: value for key, value in text.items() if _plain(key) not in ("samples", "scenegraph", "breathing")}
 
 
 # Keys are compared as the library does
@@ -98,7 +113,7 @@ def _mm(vector: NDArray[np.float64]) -> list[Any]:
 
 def _write_view(state: State, text: dict[str, Any]) -> None:
     view = state.view
-    if view is None or view == state.read_view:
+    if view is None:
         return
     source, detector = _object(text, "Source"), _object(text, "Detector")
     _drop(source, "Position", "Direction", "From")

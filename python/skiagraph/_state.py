@@ -33,6 +33,8 @@ class State:
     motion: Any = ffi.NULL
     #: The skg_scene if it is not that of the set-up, because parts were removed.
     own_handle: Any = ffi.NULL
+    #: The skg_setup whose options hold if it is not `setup`: source and detector as a page of live() has set them, without parts.
+    tuned: Any = ffi.NULL
     view: View | None = None
     beam: Beam | None = None
     trajectory: Scan | None = None
@@ -64,13 +66,9 @@ class State:
         state = cls(opened, source, Plans(opened))
         with opened.calls(state.said):
             state.setup = source.load(opened.handle, elsewhere)
-            handle, spectrum, view = ffi.new("skg_scene **"), ffi.new("skg_spectrum **"), struct("skg_view")
+            handle = ffi.new("skg_scene **")
             call("skg_setup_scene_get", state.setup, handle)
-            call("skg_setup_spectrum_get", state.setup, spectrum)
-            call("skg_setup_view_get", state.setup, view)
-            state.handle = handle[0]
-            state.beam = Beam._borrowed(spectrum[0]) if spectrum[0] != ffi.NULL else None
-            state.view = View._read(view) if view.columns else None
+            state.handle, state.beam, state.view = handle[0], beam_of(state.setup), view_of(state.setup)
             state.file_parts = state.count()
             state.names = list(range(state.file_parts))
             state.read_view = copy.deepcopy(state.view)
@@ -133,13 +131,32 @@ class State:
 
     def plan(self, options: Mapping[str, Any], view: View | None = None, anew: bool = False) -> Any:
         """The plan of these options, with another view than the scene's if one is given."""
-        return self.plans.get(self.setup, self.handle, view or self.require_view(), self.require_beam(), options, anew)
+        return self.plans.get(self.options_setup, self.handle, view or self.require_view(), self.require_beam(), options, anew)
+
+    @property
+    def options_setup(self) -> Any:
+        """The set-up that has the options of plans."""
+        return self.setup if self.tuned == ffi.NULL else self.tuned
+
+    def light(self, text: str, settings: list[str]) -> Any:
+        """A set-up without parts, which the caller releases or gives to tune()."""
+        source = Source(text.encode(), self.source.path, True, settings, self.source.lenient)
+        setup = source.load(self.device.handle, self.kept.elsewhere if self.kept else None)
+        self.source.files.update(source.files)
+        return setup
+
+    def tune(self, setup: Any) -> None:
+        """Takes over a set-up whose options hold from now on."""
+        self.plans.clear()
+        tuned, self.tuned = self.tuned, setup
+        if tuned != ffi.NULL:
+            self.device.drop("skg_setup", tuned)
 
     def is_changed(self) -> bool:
         """Whether it differs from what its source says."""
         moved = any(mesh._changed for mesh in self.meshes.values()) or any(
             (part.pose != pose).any() for part, pose in zip(self.parts(), self.read_poses))
-        return bool(self.changed or self.removed or self.materials or self.count() > self.file_parts or moved or self.breath
+        return bool(self.changed or self.removed or self.materials or self.tuned != ffi.NULL or self.count() > self.file_parts or moved or self.breath
                     or self.view != self.read_view)
 
     # Breath
@@ -175,7 +192,7 @@ class State:
     def close(self) -> None:
         if self.setup == ffi.NULL:
             return
-        self.plans.clear()
+        self.tune(ffi.NULL)
         self.forget_motion()
         setup, self.setup = self.setup, ffi.NULL
         own, self.own_handle = self.own_handle, ffi.NULL
@@ -187,6 +204,18 @@ class State:
 
     def __del__(self) -> None:
         self.close()
+
+
+def beam_of(setup: Any) -> Beam | None:
+    spectrum = ffi.new("skg_spectrum **")
+    call("skg_setup_spectrum_get", setup, spectrum)
+    return Beam._borrowed(spectrum[0]) if spectrum[0] != ffi.NULL else None
+
+
+def view_of(setup: Any) -> View | None:
+    view = struct("skg_view")
+    call("skg_setup_view_get", setup, view)
+    return View._read(view) if view.columns else None
 
 
 def _address(handle: Any) -> int:

@@ -15,6 +15,7 @@ from ._device import Device
 from ._frames import Batch
 from ._interface import ArgumentError, SceneError
 from ._library import call, encode, ffi, filled, listed, struct
+from ._live import widget as _widget
 from ._picture import write_picture
 from ._progress import Progress
 from ._state import State
@@ -345,6 +346,16 @@ class Scene(_gradient.Differentiable):
         """
         with self._state.calls():
             return _show.page(self._state, height)
+
+    def live(self, *, height: int = 640) -> Any:
+        """The scene under one's hands, for a cell of a notebook: the page of the command `skiagraph live` as a widget.
+
+        What is dragged there is in the scene: poses, view, beam, breath, and the options of its images. What Python assigns is
+        shown when its cell has ended, or by refresh(). While a cell runs, what is dragged waits. height: of the cell, in pixels.
+        Needs anywidget: pip install "skiagraph[notebook]".
+        """
+        with self._state.calls():
+            return _widget.widget(self._state, height)
 
     # Breath
 

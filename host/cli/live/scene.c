@@ -10,8 +10,8 @@
 #include <strings.h>
 
 /* Keys that frames can follow without another plan: they move source and detector. */
-static const char *const moving[] = {"Source.Position", "Detector.Position", "Detector.UpVector",
-                                     "Detector.RightVector"};
+static const char *const moving[] = {"Source.Position",      "Detector.Position",   "Detector.UpVector",
+                                     "Detector.RightVector", "Detector.ColumnStep", "Detector.RowStep"};
 enum { MOVING = sizeof moving / sizeof *moving };
 
 static int fail(char *sentence) {

@@ -39,12 +39,17 @@ function moveChosen(by, dragging = false, begun = null) {
     set('Source.Position', [...round(carry(by, from.source)), 'mm'], dragging, old);
   } else if (chosen.kind === 'detector') {
     if (!valueOf('Detector.Position')) return say3D('The detector is fitted to the samples; a Position in the scene file makes it movable.');
-    if (valueOf('Detector.ColumnStep')) return say3D('The detector has ColumnStep and RowStep; they are set under "any key".');
-    const [a, b, , d] = from.corners, axis = (p, q) => round(unit(add(carry(by, q), -1, carry(by, p))));
+    const [a, b, , d] = from.corners, side = (p, q) => add(carry(by, q), -1, carry(by, p)), axis = (p, q) => round(unit(side(p, q)));
+    const step = (p, q, count) => [...round(side(p, q).map(x => x / count)), 'mm'];
     alter(s => {
       s.settings['Detector.Position'] = [...round(carry(by, from.centre)), 'mm'];
-      s.settings['Detector.UpVector'] = axis(a, d);
-      s.settings['Detector.RightVector'] = axis(a, b);
+      if (valueOf('Detector.ColumnStep')) {
+        s.settings['Detector.ColumnStep'] = step(a, b, from.columns);
+        s.settings['Detector.RowStep'] = step(a, d, from.rows);
+      } else {
+        s.settings['Detector.UpVector'] = axis(a, d);
+        s.settings['Detector.RightVector'] = axis(a, b);
+      }
     }, dragging, old);
   }
   describe();

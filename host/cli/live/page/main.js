@@ -7,6 +7,8 @@ function showRole(text) {
   document.documentElement.classList.toggle('reader', !isOwner());
 }
 
+const tellRole = () => showRole(isOwner() ? '' : 'another page changes the scene; this one shows it');
+
 function showSentence(text, stays = false) {
   const box = byId('sentence');
   box.textContent = text;
@@ -29,7 +31,7 @@ function setDark(on) {
 function takeScene(message) {
   const is_first = live === null;
   live = message.scene;
-  if (firstGeometry !== null && live.geometry !== firstGeometry) { keepHistory(); location.reload(); return; }
+  if (firstGeometry !== null && live.geometry !== firstGeometry) return net.channel.renew();
   firstGeometry = live.geometry;
   if (is_first) {
     const {wish, ...kept} = live.state;
@@ -48,6 +50,18 @@ function takeScene(message) {
   showExposure(live.beam);
   showPlan();
   changed();
+}
+// What was changed outside of the page: its state is another. fresh: and older states are about another document.
+function adopt({adopted, fresh}) {
+  const {wish, ...kept} = adopted;
+  if (fresh) trail.past = [];
+  else trail.past.push(JSON.stringify(state));
+  trail.future = [];
+  state = kept, net.sent = wish;
+  asked.clear();
+  good = JSON.stringify(state);
+  changed();
+  ask3D();
 }
 const ask3D = () => { describe(); change(); byId('undo').disabled = !trail.past.length; byId('redo').disabled = !trail.future.length; };
 
@@ -109,8 +123,9 @@ function begin() {
   listenToTakes();
   findHistory();
   Object.assign(net, {show: showFrame});
-  net.hear.role = message => { net.role = message.role; showRole(isOwner() ? '' : 'another page changes the scene; this one shows it'); change(); };
+  net.hear.role = message => { net.role = message.role; tellRole(); change(); };
   net.hear.scene = takeScene;
+  net.hear.adopted = adopt;
   net.hear.error = message => { giveUp(message.wish); showSentence(message.error, true); };
   net.hear.refused = message => showSentence(message.refused);
   for (const [id, act] of Object.entries({undo, redo, reset})) byId(id).onclick = () => { act(); describe(); change(); };
@@ -118,8 +133,12 @@ function begin() {
   document.addEventListener('keydown', pressed);
   document.querySelectorAll('details').forEach(box => { box.ontoggle = drawHistogram; });
   setDark(dark.matches);
-  dark.addEventListener('change', () => setDark(dark.matches));
+  if (!isNotebook) dark.addEventListener('change', () => setDark(dark.matches));
+  if (isNotebook) {
+    document.documentElement.classList.add('notebook');
+    Object.assign(byId('reset'), {textContent: AS_FIRST, title: 'the scene as it was when this page began, or Python last placed source, detector or beam'});
+  }
   describe();
-  connect();
+  net.channel = isNotebook ? frameChannel() : socketChannel();
 }
 begin();

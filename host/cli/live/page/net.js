@@ -1,7 +1,7 @@
-// The socket: what the server says goes to `hear`, frames to `show`, and wishes go the other way.
+// What the server says goes to `hear`, frames to `show`, and wishes go the other way.
 'use strict';
 // shot: the newest message about a frame.
-const net = {socket: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, file: null, waits: false, tries: 0};
+const net = {channel: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, file: null, waits: false};
 const HEADER = 48; // bytes before the pixels of a frame, live_header of host/cli/live/frame.h
 
 function readFrame(buffer) {
@@ -36,7 +36,7 @@ function receive(data) {
 }
 
 function say(message) {
-  if (net.socket && net.socket.readyState === WebSocket.OPEN) net.socket.send(JSON.stringify(message));
+  if (net.channel) net.channel.send(message);
 }
 
 // At most one wish for each picture of the browser: the newest. make: called when it is sent.
@@ -48,16 +48,4 @@ function sendWish(make) {
     net.waits = false;
     say({wish: ++net.sent, ...net.make()});
   });
-}
-
-function connect() {
-  const scheme = location.protocol === 'https:' ? 'wss' : 'ws', folder = location.pathname.replace(/[^/]*$/, '');
-  net.socket = new WebSocket(`${scheme}://${location.host}${folder}socket${location.search}`);
-  net.socket.binaryType = 'arraybuffer';
-  net.socket.onopen = () => { net.tries = 0; };
-  net.socket.onmessage = event => receive(event.data);
-  net.socket.onclose = () => {
-    showRole(net.tries < 20 ? 'not connected' : 'the server has ended; this is its last image');
-    if (net.tries++ < 20) setTimeout(connect, 500 * Math.min(net.tries, 6));
-  };
 }

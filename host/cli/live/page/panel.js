@@ -70,7 +70,7 @@ function fillMotion() {
   projection.onchange = () => { const old = begun; begun = null; alter(s => { s.projection = Number(projection.value); }, false, old); };
   watch(() => {
     if (!begun) phase.value = state.phase ?? 0, projection.value = state.projection ?? 0;
-    byId('phase-text').textContent = state.phase === null ? 'as in the file' : number(state.phase, 3);
+    byId('phase-text').textContent = state.phase === null ? AS_FIRST : number(state.phase, 3);
     byId('projection-text').textContent = state.projection === null ? 'the scene\u2019s own view' : `${state.projection} of ${live.projections}, ${number(live.angles[state.projection] ?? NaN, 4)}\u00b0`;
     play.textContent = state.play ? 'stop' : 'breathe';
   });
@@ -99,7 +99,7 @@ function fillDials() {
   };
   watch(() => {
     byId('keys').replaceChildren(...Object.entries(state.settings).map(([key, value]) => {
-      const row = make('div', '', 'row'), drop = make('button', 'as in the file');
+      const row = make('div', '', 'row'), drop = make('button', AS_FIRST);
       drop.onclick = () => alter(s => { delete s.settings[key]; });
       row.append(make('code', `${key}=${JSON.stringify(value)}`), drop);
       return row;

@@ -1,0 +1,370 @@
+"""scene.live() without a browser: messages in, texts and frames out, and the scene in between."""
+import importlib.util
+import json
+import pathlib
+import pickle
+import struct
+import sys
+
+import numpy as np
+import pytest
+
+import skiagraph as sk
+from skiagraph._live import hub as hubs
+from skiagraph._live import page, widget
+
+HEADER = struct.Struct("<4sIIHHdddfHBB")
+SAME = [1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
+
+
+def shift(x, y=0.0, z=0.0):
+    return [1, 0, 0, x, 0, 1, 0, y, 0, 0, 1, z, 0, 0, 0, 1]
+
+
+class Page:
+    """A view of the hub, as the page is one."""
+
+    def __init__(self, hub, name="a"):
+        self.hub, self.name, self.heard, self.files, self.frames, self.texts, self.pages = hub, name, 0, [], [], [], 0
+        before = hub.send
+        hub.send = lambda content, buffers: (before(content, buffers), self.take(json.loads(json.dumps(content)), buffers))
+        self.say()
+        self.sent = self.last("scene")["scene"]["state"]["wish"] if self.texts else 0
+
+    def take(self, content, buffers):
+        if content.get("to", self.name) != self.name:
+            return
+        if "text" in content:
+            self.texts.append(content["text"])
+            if "adopted" in content["text"]:
+                self.sent = content["text"]["adopted"]["wish"]
+        elif content.get("heard"):
+            self.heard += 1
+        elif content.get("page"):
+            self.pages += 1
+        else:
+            (self.frames if buffers[0][:4] == b"SKLF" else self.files).append(buffers[0])
+
+    def say(self, *messages):
+        heard = self.heard
+        self.hub.hear({"view": self.name, "messages": list(messages)})
+        assert self.heard == heard + 1
+
+    def ack(self):
+        self.say({"ack": self.number})
+
+    def wish(self, **keys):
+        self.sent += 1
+        self.say({"ack": self.number}, {"wish": self.sent, **keys})
+
+    @property
+    def number(self):
+        return HEADER.unpack_from(self.frames[-1])[1]
+
+    def last(self, key):
+        return next(text for text in reversed(self.texts) if key in text)
+
+    def image(self):
+        """The last frame as values."""
+        _, _, _, columns, rows, low, step, *_ = HEADER.unpack_from(self.frames[-1])
+        return low + step * np.frombuffer(self.frames[-1], "<u2", offset=HEADER.size).reshape(rows, columns)
+
+    def check(self, scene, quantity="attenuation"):
+        """The last frame is the scene's image; a number stands for values within half a step."""
+        image, step = scene.image(quantity, index=0), HEADER.unpack_from(self.frames[-1])[6]
+        np.testing.assert_allclose(self.image(), image, atol=0.51 * step + 1e-6 * np.abs(image).max())
+
+
+@pytest.fixture
+def solid(view):
+    """A scene of matter that depends on the energy."""
+    made = sk.Scene()
+    made.add("block", sk.Mesh.cube(40), material="Water")
+    made.add("ball", sk.Mesh.sphere(10, 64), material="Aluminium", inside="block")
+    made.view, made.beam = view, sk.Beam.mono(60, 1000)
+    return made
+
+
+@pytest.fixture
+def hub(solid):
+    return hubs.Hub(solid._state)
+
+
+def test_a_page_begins(solid, hub):
+    one = Page(hub)
+    assert one.last("role") == {"role": "owner"}
+    its = one.last("scene")["scene"]
+    assert its["parts"] == 2 and its["projections"] == 0 and its["period"] is None and its["jaws"] is None
+    assert its["document"]["Source"]["Beam"] == [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]
+    assert one.last("shot")["view"]["source"] == [0, 0, -1000] and one.last("shot")["beam"]["photons"] == 1000
+    one.check(solid)
+    html = page.html(hub._subject).decode()
+    assert '"SCENE"' not in html and ">BYTES<" not in html and "<script src=" not in html
+
+
+def test_what_is_dragged_is_in_the_scene(solid, hub):
+    one = Page(hub)
+    first = one.image()
+    one.wish(poses={"1": shift(5)}, settings={"Source.Position": [3, 0, -900, "mm"]}, drag=True)
+    assert (solid["ball"].pose == sk.translate(5, 0, 0)).all() and solid.view.source.tolist() == [3, 0, -900]
+    one.check(solid)
+    one.wish(settings={"Detector.Position": [0, 0, 150, "mm"], "Detector.ColumnStep": [0, 2, 0, "mm"], "Detector.RowStep": [2, 0, 0, "mm"]})
+    assert solid.view.detector.tolist() == [0, 0, 150] and solid.view.column_step.tolist() == [0, 2, 0]
+    assert (solid["ball"].pose == np.eye(4)).all()
+    one.check(solid)
+    one.wish()
+    assert (one.image() == first).all() and solid.view.source.tolist() == [0, 0, -1000]
+
+
+def test_beam_and_options_are_in_the_scene(solid, hub, tmp_path):
+    one = Page(hub)
+    settings = {"Source.Beam": {"kVp": 80, "mAs": 1, "Filter": [["Al", 2.5, "mm"]]}, "Source.Shape": ["Disc", 2, "mm"],
+                "Collimation": {"Field": "detector", "Margin": [-20, "mm"]}, "Tolerance": 0.01}
+    one.wish(settings=settings, quantity="transmission")
+    assert solid.beam.absolute and 30 < solid.beam.quality["mean_kev"] < 60
+    one.check(solid, "transmission")
+    its = one.last("scene")["scene"]
+    assert its["jaws"] == {"margin": -20} and its["spot"] == {"shape": 4, "extent": [2, 2]} and its["document"]["Source"]["Shape"] == "PointSource"
+    image = solid.image()
+    solid.save(tmp_path / "scene.json")
+    assert (sk.Scene(tmp_path / "scene.json").image() == image).all()
+    assert (pickle.loads(pickle.dumps(solid)).image() == image).all()
+    assert json.loads((tmp_path / "scene.json").read_text())["Source"]["Beam"]["kVp"] == 80
+    one.wish()
+    assert len(solid.beam.energies) == 1 and one.last("scene")["scene"]["jaws"] is None
+
+
+@pytest.mark.parametrize("message, sentence", [
+    (7, "a message is an object"), ([], "a message is an object"), ({}, "keys wish, ack"), ({"wish": "x"}, "no number of a wish"),
+    ({"wish": -1}, "no number"), ({"wish": True}, "no number"), ({"wish": 1, "drag": 1}, "neither true nor false"), ({"wish": 1, "what": 2}, 'no key "what"'),
+    ({"wish": 1, "settings": [1]}, "no object"), ({"wish": 1, "settings": {"": 1}}, "no key of a scene file"),
+    ({"wish": 1, "settings": {"a=b": 1}}, "no key of a scene file"), ({"wish": 1, "poses": {"x": SAME}}, "no number of a part"),
+    ({"wish": 1, "poses": {"0": SAME[:15]}}, "16 numbers"), ({"wish": 1, "poses": {"0": [*SAME[:12], 0, 0, 0, 2]}}, "16 numbers"),
+    ({"wish": 1, "poses": {"0": [float("nan"), *SAME[1:]]}}, "16 numbers"), ({"wish": 1, "phase": 1.5}, "below 1"),
+    ({"wish": 1, "projection": 0.5}, "whole number"), ({"wish": 1, "quantity": ["energy"]}, "quantity"), ({"ack": None}, "number of a frame"),
+    ({"probe": [1]}, "column, row"), ({"take": "exe"}, "png, tif or mha"), ({"measure": True}, "skiagraph live")])
+def test_malformed_messages_are_refused(hub, message, sentence):
+    one = Page(hub)
+    frames = len(one.frames)
+    one.say(message)
+    assert sentence in one.last("refused")["refused"] and len(one.frames) == frames
+    for nothing in (None, 3, {}, {"view": 1}, {"view": "a"}, {"view": "a", "messages": 1}):
+        hub.hear(nothing)
+
+
+@pytest.mark.parametrize("keys, sentence", [
+    ({"settings": {"Source.Beem": 1}}, "Beem"), ({"settings": {"Samples.ball.Density": 3}}, "changed by Python"), ({"poses": {"2": SAME}}, "no part 2"),
+    ({"phase": 0.5}, "does not breathe"), ({"projection": 3}, "no projection 3"), ({"poses": {"0": [0.0] * 15 + [1]}}, "part")])
+def test_an_error_keeps_the_last_frame(solid, hub, keys, sentence):
+    one = Page(hub)
+    one.wish(poses={"1": shift(4)})
+    frames = len(one.frames)
+    one.wish(**keys)
+    assert sentence in one.last("error")["error"] and one.last("error")["wish"] == one.sent and len(one.frames) == frames
+    assert (solid["ball"].pose == sk.translate(4, 0, 0)).all() or "poses" in keys
+    one.wish(poses={"1": shift(6)})
+    assert len(one.frames) == frames + 1
+    one.check(solid)
+
+
+def test_frames_that_are_not_taken_are_dropped(solid, hub):
+    one = Page(hub)
+    one.ack()
+    for x in (1, 2, 3, 4):
+        one.sent += 1
+        one.say({"wish": one.sent, "poses": {"1": shift(x)}})
+    assert len(one.frames) == 3  # the first, and two under way
+    assert one.last("shot")["wish"] == one.sent - 2
+    one.ack()
+    assert len(one.frames) == 4 and one.last("shot")["wish"] == one.sent
+    one.check(solid)
+
+
+def test_what_python_assigns_is_shown(solid, hub):
+    one = Page(hub)
+    one.wish(poses={"0": shift(1), "1": shift(2)})
+    solid["ball"].pose = sk.translate(0, 3, 0)
+    late = one.sent + 1
+    hub.refresh()
+    adopted = one.last("adopted")
+    assert adopted["adopted"]["poses"] == {"0": shift(1), "1": shift(0, 3)} and not adopted["fresh"]
+    one.check(solid)
+    frames = len(one.frames)
+    one.say({"wish": late, "poses": {}})  # sent before the page knew
+    assert solid["ball"].pose[1, 3] == 3 and len(one.frames) == frames
+    hub.refresh()
+    assert len(one.frames) == frames  # nothing has changed
+    solid["ball"].material = "Iron"
+    hub.refresh()
+    assert len(one.frames) == frames + 1
+    one.check(solid)
+
+
+def test_view_and_beam_that_python_assigns_are_a_new_beginning(solid, hub):
+    one = Page(hub)
+    one.wish(poses={"1": shift(2)}, settings={"Source.Position": [5, 0, -1000, "mm"], "Noise": True})
+    solid.view.source[1] = 40
+    hub.refresh()
+    assert one.last("adopted")["fresh"] and one.last("adopted")["adopted"]["settings"] == {}
+    document = one.last("scene")["scene"]["document"]
+    assert document["Source"]["Position"] == [5, 40, -1000, "mm"] and document["Noise"] is True
+    one.check(solid)
+    solid.beam = sk.Beam.tube(90, filters={"Al": 2})
+    hub.refresh()
+    assert "Bins" in one.last("scene")["scene"]["document"]["Source"]["Beam"]
+    one.wish(settings={"Noise": False})
+    one.check(solid)
+    assert len(solid.beam.energies) > 10 and solid["ball"].pose[0, 3] == 2
+
+
+def test_other_parts_are_another_page(solid, hub):
+    one = Page(hub)
+    solid.add("rod", sk.Mesh.cylinder(3, 60, 24), material="Iron")
+    hub.refresh()
+    assert one.pages == 1
+    one.say()
+    assert one.last("scene")["scene"]["parts"] == 3
+    one.check(solid)
+    solid["block"].mesh.vertices = 1.2 * solid["block"].mesh.vertices
+    hub.refresh()
+    assert one.pages == 2
+    solid.close()
+    hub.refresh()
+    assert "closed" in one.last("error")["error"]
+    count = len(one.texts)
+    hub.refresh()
+    assert len(one.texts) == count
+
+
+def test_the_newest_of_several_pages_changes_the_scene(solid, hub):
+    first = Page(hub, "first")
+    second = Page(hub, "second")
+    assert first.last("role")["role"] == "reader" and second.last("role")["role"] == "owner"
+    first.wish(poses={"1": shift(9)})
+    assert "another page" in first.last("refused")["refused"] and solid["ball"].pose[0, 3] == 0
+    second.wish(poses={"1": shift(9)})
+    assert first.frames[-1] == second.frames[-1] and solid["ball"].pose[0, 3] == 9
+    hub.hear({"view": "second", "gone": True})
+    assert first.last("role")["role"] == "owner"
+
+
+def test_probe_and_files(solid, hub):
+    one = Page(hub)
+    one.say({"probe": [32, 24]})
+    found = dict(one.last("probed")["parts"])
+    assert found == pytest.approx({label: lengths[24, 32] for label, lengths in solid.lengths().items()}, abs=1e-4)
+    one.say({"probe": [64, 0]})
+    assert "no such pixel" in one.last("error")["error"]
+    for ending in ("png", "tif", "mha"):
+        one.say({"take": ending})
+        length = struct.unpack_from("<I", one.files[-1], 4)[0]
+        assert one.files[-1][:4] == b"SKLB" and one.files[-1][8:8 + length].decode() == f"image.{ending}"
+
+
+def test_projections_follow_the_source():
+    made = sk.Scene({"Source": {"Position": [0, 0, -1000, "mm"], "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+                     "Detector": {"Position": [0, 0, 200, "mm"], "UpVector": [0, 1, 0], "NumberOfPixels": [64, 48], "Size": [128, 96, "mm"]},
+                     "Scan": {"NumberOfProjections": 4, "AngleStep": 90}})
+    made.add("block", sk.Mesh.cube(40), material="Water")
+    one = Page(hubs.Hub(made._state))
+    its = one.last("scene")["scene"]
+    assert its["projections"] == 4 and np.allclose(its["angles"], [0, 90, 180, 270])
+    one.wish(projection=1)
+    seen = np.array(one.last("shot")["view"]["source"])
+    one.wish(projection=1, settings={"Source.Position": [0, 0, -1200, "mm"]})
+    assert np.allclose(np.linalg.norm(one.last("shot")["view"]["source"]), 1200) and not np.allclose(seen, one.last("shot")["view"]["source"])
+    assert made.view.source.tolist() == [0, 0, -1200]  # the scene's own view
+
+
+def test_a_scene_breathes(tmp_path):
+    sk.thorax(tmp_path, 10000, simple=True)
+    scene = sk.Scene(tmp_path / "thorax.json", settings={"Detector.NumberOfPixels": [60, 60], "Tolerance": 0})
+    before = [part.mesh.vertices for part in scene]
+    one = Page(hubs.Hub(scene._state))
+    its = one.last("scene")["scene"]
+    assert its["period"] > 1
+    first = one.image()
+    one.wish(phase=0.5)
+    assert scene._state.breath == {"phase": 0.5} and np.abs(one.image() - first).max() > 0.01
+    one.check(scene)
+    scene.breathe(phase=0.25)
+    one.hub.refresh()
+    assert one.last("adopted")["adopted"]["phase"] == 0.25
+    one.wish(phase=0.25, play=True)
+    for _ in range(3):
+        one.ack()
+    assert one.last("shot")["phase"] > 0.25
+    one.wish(play=False)
+    assert (one.image() == first).all() and all((part.mesh.vertices == old).all() for part, old in zip(scene, before))
+    assert one.pages == 0
+
+
+def test_the_command_says_the_same(command, solid, tmp_path):
+    """Frames and texts of `skiagraph live` of the same scene."""
+    path = pathlib.Path(__file__).parents[1] / "cli" / "live_client.py"
+    spec = importlib.util.spec_from_file_location("live_client", path)
+    client = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(client)
+    solid.save(tmp_path / "scene.json")
+    scene = sk.Scene(tmp_path / "scene.json")
+    one = Page(hubs.Hub(scene._state))
+    keys = {"poses": {"1": shift(5)}, "settings": {"Source.Position": [3, 0, -900, "mm"], "Collimation": {"Field": "detector"}}}
+    one.wish(**keys)
+    try:
+        server = client.Server("skiagraph", str(tmp_path / "scene.json"))
+    except RuntimeError as error:
+        pytest.skip(str(error))
+    with server:
+        other = client.Page(server)
+        wish = other.wish(**keys)
+        frame, shot, told = other.frame(wish), None, None
+        while shot is None or shot["wish"] < wish:
+            message = other.receive()
+            shot = message if isinstance(message, dict) and "shot" in message else shot
+            told = message if isinstance(message, dict) and "scene" in message else told
+        other.close()
+    mine = HEADER.unpack_from(one.frames[-1])
+    assert (frame.columns, frame.rows, frame.low, frame.step, frame.flat, frame.quantity, frame.notes) == (*mine[3:8], *mine[10:])
+    assert list(frame.numbers) == np.frombuffer(one.frames[-1], "<u2", offset=HEADER.size).tolist()
+    assert shot.keys() == one.last("shot").keys() and shot["state"].keys() == one.last("shot")["state"].keys()
+    for key, value in shot["view"].items():
+        assert one.last("shot")["view"][key] == (value if isinstance(value, (str, int)) else pytest.approx(np.array(value), rel=1e-12, abs=1e-9)), key
+    assert one.last("shot")["beam"] == pytest.approx(shot["beam"])
+    assert told is None or told["scene"].keys() == one.last("scene")["scene"].keys()
+
+
+def test_a_large_scene_is_shown_by_fewer_triangles():
+    ball = sk.Mesh.sphere(10, 256)
+    origin, faces = page._thin(ball.vertices, ball.faces, 0.1)
+    assert 0.02 * len(ball.faces) < len(faces) < 0.3 * len(ball.faces) and faces.max() < len(origin)
+    assert np.allclose(np.linalg.norm(ball.vertices[origin], axis=1), 10)
+
+
+def test_without_anywidget_it_says_what_to_install(solid, monkeypatch):
+    monkeypatch.setitem(sys.modules, "anywidget", None)
+    widget._kind.cache_clear()
+    with pytest.raises(sk.UnsupportedError, match=r"pip install \"skiagraph\[notebook\]\""):
+        solid.live()
+    widget._kind.cache_clear()
+
+
+def test_the_widget(solid):
+    pytest.importorskip("anywidget")
+    made = solid.live(height=500)
+    told = []
+    made.send = lambda content, buffers=None: told.append((content, buffers))
+    made._handle_custom_msg({"view": "a", "page": True}, [])
+    assert made.height == 500 and told[-1][0]["page"] and b"</html>" in told[-1][1][0]
+    made._handle_custom_msg({"view": "a", "messages": []}, [])
+    made._handle_custom_msg({"view": "a", "messages": [{"wish": 2 ** 17, "poses": {"1": shift(5)}}]}, [])
+    assert solid["ball"].pose[0, 3] == 5
+    told.clear()
+    solid["ball"].pose = np.eye(4)
+    made.refresh()
+    assert any("adopted" in content.get("text", {}) for content, _ in told)
+    made.close()
+
+
+def test_a_scene_that_cannot_be_shown_fails_at_once():
+    with pytest.raises(sk.SceneError, match="no beam"):
+        hubs.Hub(sk.Scene()._state)
