@@ -75,6 +75,18 @@ static int list_poses(const live_scene *scene, const live_wish *wish, pose_list 
     return 1;
 }
 
+int live_frame_poses(const live_scene *scene, const live_wish *wish, double *poses, char *sentence) {
+    pose_list list = {0};
+    int is_made = list_poses(scene, wish, &list, sentence);
+    for (int64_t i = 0; is_made && i < scene->parts; i++)
+        if (pose_of(scene, wish, i, poses + 16 * i) != SKG_OK) is_made = fail(sentence);
+    for (int64_t i = 0; is_made && i < list.count; i++)
+        memcpy(poses + 16 * list.parts[i], list.poses + 16 * i, 16 * sizeof *poses);
+    free(list.parts);
+    free(list.poses);
+    return is_made;
+}
+
 /* Waits for the image, and cancels what the device was not given yet when a newer wish comes. */
 static skg_status wait_for(skg_job **job, live_hub *hub, double expected_ms, int *dropped) {
     static const struct timespec pause = {.tv_nsec = 2000000};
@@ -165,6 +177,7 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
     if (!live_scene_view(base, scene, wish, &view, sentence) || !live_frame_pose(scene, wish, sentence))
         return 0;
     if (is_draft) live_view_coarsen(&view, scene->factor);
+    scene->is_shown = 0;
     if (!live_frame_render(scene, wish, is_draft ? scene->draft : scene->plan, &view, hub, &output, 1,
                            &shot->is_dropped, &is_outside, sentence))
         return 0;
@@ -187,6 +200,9 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
         skg_channel_init(&channel);
         if (skg_plan_channel_get(scene->draft, 0, &channel) == SKG_OK) header.flat_field = channel.flat_field;
     }
+    scene->is_shown = 1;
+    scene->shown = view;
+    scene->shown_flat = header.flat_field;
     if (pack(scene->values, &header, shot)) return 1;
     snprintf(sentence, LIVE_SENTENCE, "out of host memory for the frame");
     return 0;

@@ -40,6 +40,9 @@ int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *
                       live_hub *hub, const skg_output *outputs, int64_t output_count, int *dropped,
                       int *is_outside, char *sentence);
 
+/* The poses of all parts, [parts][16]. Returns 0 with a sentence. */
+int live_frame_poses(const live_scene *scene, const live_wish *wish, double *poses, char *sentence);
+
 /* Poses the breath of a wish. */
 int live_frame_pose(live_scene *scene, const live_wish *wish, char *sentence);
 

@@ -43,7 +43,7 @@ function showShot(message) {
   const view = JSON.stringify(message.view);
   if (view !== lastView) {
     lastView = view;
-    if (gl) takeView(message.view); else scene.view = message.view;
+    takeView(message.view);
   }
   if (state.play && message.phase !== null) {
     state.phase = message.phase;
