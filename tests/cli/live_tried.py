@@ -45,7 +45,8 @@ class Tried:
         return self.browser.run("viewSum()")
 
     def drawn(self, by):
-        """Lets the browser or the server draw the 3D view."""
+        """Lets the browser or the server draw the 3D view, of all parts as at first."""
+        self.browser.run("choose(''); lookAs('start'); meshes.forEach((m, i) => { m.visible = true; m.colour[3] = scene.parts[i].colour[3] / 255; })")
         self.browser.run(f"typed(byId('drawer'), '{by}')")
         self.still()
         check("drawn by", self.browser.run("isServed()") == (by == "server") and self.browser.run("byId('picture').hidden") == (by != "server"), by)

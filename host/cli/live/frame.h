@@ -27,6 +27,7 @@ typedef struct {
     unsigned char *bytes; /* for live_hub_show; NULL: there is no image */
     size_t size;
     double ms;
+    skg_view view;  /* of the whole detector */
     int is_dropped; /* a newer wish came before the image was begun */
 } live_shot;
 

@@ -17,6 +17,7 @@ struct live_client {
     void *connection;
     pthread_t sender;
     int sends, leaves; /* leaves: the sender ends */
+    int is_busy;       /* the sender sends */
     int64_t order;     /* the page that was greeted first may change the scene */
     int64_t sent[UNTAKEN_MAX];
     int untaken;
@@ -120,9 +121,11 @@ static void *run_sender(void *user) {
             pthread_cond_wait(&hub->sent, &hub->lock);
             continue;
         }
+        client->is_busy = 1;
         pthread_mutex_unlock(&hub->lock);
         const int is_there = hub->send(client->connection, is_binary, packet->bytes, packet->size);
         pthread_mutex_lock(&hub->lock);
+        client->is_busy = 0;
         live_packet_release(&packet);
         if (!is_there) client->leaves = 1;
     }
@@ -330,7 +333,9 @@ int live_hub_is_thirsty(live_hub *hub) {
     pthread_mutex_lock(&hub->lock);
     for (int i = 0; i < LIVE_PAGES_MAX; i++) {
         const live_client *client = hub->clients[i];
-        if (client && client->sends && !client->frame) is_thirsty = 1;
+        /* a frame that a free sender is about to take is as good as taken */
+        if (client && client->sends && (!client->frame || (can_take(client) && !client->is_busy)))
+            is_thirsty = 1;
     }
     pthread_mutex_unlock(&hub->lock);
     return is_thirsty;

@@ -19,6 +19,9 @@ enum { WARNINGS_MAX = 20 };
 /* ms: how long to wait for something asked, how often files are looked at, and what an image may take while something is dragged. */
 static const double PAUSE = 100, LOOK = 500, FLUENT = 40;
 
+/* ms between two frames of which pages are told all while the scene breathes by itself. */
+static const double TELL = 200;
+
 /* While images follow each other, pictures of the 3D view leave this many times their own time to them. */
 static const double X_RAYS = 3;
 
@@ -74,9 +77,21 @@ static int change_scene(live_loop *loop, const live_wish *wish, char *sentence) 
     return 1;
 }
 
+/* Tells pages of a frame: all of it, or while the scene breathes by itself often only the phase. */
+static void tell_frame(live_loop *loop, const live_shot *shot) {
+    const double now = cli_now_ms();
+    if (loop->wish.plays && loop->told == loop->wish.number && now - loop->told_ms < TELL) {
+        live_hub_tell_json(loop->hub, live_describe_phase(&loop->wish, loop->number, shot->ms));
+        return;
+    }
+    loop->told = loop->wish.number;
+    loop->told_ms = now;
+    live_hub_shot_tell(loop->hub,
+                       live_describe_shot(&loop->scene, &loop->wish, &shot->view, loop->number, shot->ms));
+}
+
 static int make_frame(live_loop *loop, char *sentence) {
     live_shot shot;
-    skg_view view;
     const int64_t number = loop->number + 1;
     loop->is_wanted = 0;
     if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, loop->hub, number, &shot, sentence))
@@ -85,8 +100,7 @@ static int make_frame(live_loop *loop, char *sentence) {
     loop->number = number;
     loop->framed_ms = cli_now_ms();
     live_hub_show(loop->hub, number, shot.bytes, shot.size);
-    if (live_scene_view(&loop->base, &loop->scene, &loop->wish, &view, sentence))
-        live_hub_shot_tell(loop->hub, live_describe_shot(&loop->scene, &loop->wish, &view, number, shot.ms));
+    tell_frame(loop, &shot);
     return 1;
 }
 

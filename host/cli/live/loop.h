@@ -17,6 +17,8 @@ typedef struct {
     int is_told;       /* 1: pages that begin are told of this wish */
     double looked_ms;  /* when the files were last looked at */
     double played_ms;  /* when the last frame that plays was posed; 0: it does not play */
+    double told_ms;    /* when pages were last told all of a frame */
+    int64_t told;      /* its wish */
     double framed_ms;  /* when the last frame was made */
     double picture_ms; /* when the next picture of the 3D view may be drawn */
 } live_loop;
