@@ -102,7 +102,7 @@ __kernel void skg_show_count(skg_show_args args, __global const float *vertices,
     __global skg_show_face *face = faces + triangle;
     __global const int *corner = corners + 3 * triangle;
     face->box[0] = 0, face->box[1] = 0, face->box[2] = -1, face->box[3] = -1;
-    face->image = triangle >= args.triangles - 2;
+    face->surface = triangle >= args.triangles - args.images ? SKG_SHOW_IMAGE : SKG_SHOW_LIT;
     const uint colour = colours[triangle];
     for (int k = 0; k < 4; k++) face->colour[k] = (float)(colour >> 8 * k & 0xff) / 255.0f;
     const float4 clip_a = skg_show_clip(args, vertices + 3 * corner[0]);
@@ -122,9 +122,11 @@ __kernel void skg_show_count(skg_show_args args, __global const float *vertices,
     a.xy -= convert_float2(box.xy);
     const float inverse = 1.0f / area;
     skg_show_plane(face->depth, ab, ac, inverse, a.z, b.z, c.z, a.xy);
-    if (face->image) { /* its corners, in the order of the host: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) */
-        const float4 u = triangle == args.triangles - 2 ? (float4)(0, 1, 1, 0) : (float4)(0, 1, 0, 0);
-        const float4 v = triangle == args.triangles - 2 ? (float4)(0, 0, 1, 0) : (float4)(0, 1, 1, 0);
+    if (area >= 0.0f && triangle < args.sections) face->surface = SKG_SHOW_PLAIN;
+    if (face->surface == SKG_SHOW_IMAGE) { /* places in the image take the room of normals */
+        __global const short4 *at = normals + 3 * triangle;
+        const float3 u = (float3)((float)at[0].x, (float)at[1].x, (float)at[2].x) * (1.0f / 16384.0f);
+        const float3 v = (float3)((float)at[0].y, (float)at[1].y, (float)at[2].y) * (1.0f / 16384.0f);
         skg_show_plane(face->values, ab, ac, inverse, u.x / clip_a.w, u.y / clip_b.w, u.z / clip_c.w, a.xy);
         skg_show_plane(face->values + 3, ab, ac, inverse, v.x / clip_a.w, v.y / clip_b.w, v.z / clip_c.w, a.xy);
         skg_show_plane(face->values + 6, ab, ac, inverse, 1 / clip_a.w, 1 / clip_b.w, 1 / clip_c.w, a.xy);
@@ -203,6 +205,12 @@ static skg_uintv skg_show_shade(skg_show_args args, __global const skg_show_face
                          fmin(fma(shade, face->colour[2], gleam), 1.0f), fma(edge, 0.75f * (1.0f - opacity), opacity));
 }
 
+/* The inside of a part that is cut: darker, and without shading, so that it looks like a section. */
+static skg_uintv skg_show_inside(__global const skg_show_face *face) {
+    return skg_show_pack((skg_floatv)(0.7f * face->colour[0]), (skg_floatv)(0.7f * face->colour[1]),
+                         (skg_floatv)(0.7f * face->colour[2]), (skg_floatv)(face->colour[3]));
+}
+
 /* One strip of SKG_WIDE columns of a tile. */
 typedef struct {
     skg_floatv depth[SKG_SHOW_TILE];  /* of the nearest opaque surface */
@@ -268,8 +276,9 @@ static skg_uintv skg_show_colours(skg_show_args args, __global const skg_show_fa
         const skg_intv mask = numbers == number[k];
         const skg_floatv x = SKG_LANES + (float)(column - face->box[0]);
         const float y = (float)(row - face->box[1]);
-        const skg_uintv colour = face->image ? skg_show_image(args, face, image, x, y, mask)
-                                             : skg_show_shade(args, face, x, y);
+        const skg_uintv colour = face->surface == SKG_SHOW_IMAGE   ? skg_show_image(args, face, image, x, y, mask)
+                                 : face->surface == SKG_SHOW_PLAIN ? skg_show_inside(face)
+                                                                   : skg_show_shade(args, face, x, y);
         colours = select(colours, colour, mask);
     }
     return colours;

@@ -19,6 +19,11 @@
 #define SKG_SHOW_CLEAR 2
 #define SKG_SHOW_LISTS 3
 
+/* How a triangle looks: lit, showing the detector's image, or in one colour. */
+#define SKG_SHOW_LIT 0
+#define SKG_SHOW_IMAGE 1
+#define SKG_SHOW_PLAIN 2
+
 /* How many translucent surfaces over each other are drawn; more would hardly be seen. */
 #define SKG_SHOW_LAYERS 8
 
@@ -29,9 +34,10 @@ typedef struct {
     float background[3];
     SKG_SHOW_INT columns, rows; /* pixels */
     SKG_SHOW_INT across, down;  /* tiles */
-    SKG_SHOW_INT triangles;     /* the last two are the detector's */
+    SKG_SHOW_INT triangles;
+    SKG_SHOW_INT sections; /* the first triangles, whose inside is plain */
+    SKG_SHOW_INT images;   /* the last triangles, which are the detector's */
     SKG_SHOW_INT image_columns, image_rows;
-    SKG_SHOW_INT reserved[2];
 } skg_show_args;
 
 /* A triangle in the picture. Each plane p has the value p[0] x + p[1] y + p[2] at the sample that lies x columns and y
@@ -48,9 +54,9 @@ typedef struct {
     SKG_SHOW_INT
     sides; /* bit k: the triangle is where the normal of edge k points to, edge included; otherwise it is on
                           * the other side, edge excluded */
-    SKG_SHOW_INT image; /* 1: shows the detector's image */
-    SKG_SHOW_INT list;  /* SKG_SHOW_FACING, SKG_SHOW_AWAY or SKG_SHOW_CLEAR */
-    float nearest;      /* least depth of its corners; no sample of it is nearer */
+    SKG_SHOW_INT surface; /* SKG_SHOW_LIT, SKG_SHOW_IMAGE or SKG_SHOW_PLAIN */
+    SKG_SHOW_INT list;    /* SKG_SHOW_FACING, SKG_SHOW_AWAY or SKG_SHOW_CLEAR */
+    float nearest;        /* least depth of its corners; no sample of it is nearer */
 } skg_show_face;
 
 #ifndef __OPENCL_C_VERSION__

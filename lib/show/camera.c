@@ -12,6 +12,9 @@ static const double FIELD = 28 * SKG_PI / 180, FILLED = 0.92;
 /* Distance of the eye from the nearest point, as a share of half the scene's depth. */
 static const double NEAREST = 0.5;
 
+/* With a target: what is nearer to the eye than this share of the farthest thing is not drawn, because depths are float. */
+static const double CLOSEST = 2e-3;
+
 /* What has to be in the picture, one point after the other: extents in the eye's axes. */
 typedef struct {
     const double (*axes)[3];
@@ -119,10 +122,67 @@ static void frame_everything(frame *f, const skg_view *view, const skg_look *loo
     for (int64_t i = 0; i < look->path_count; i++) frame_point(f, look->path + 3 * i);
 }
 
+/* Where the eye stands so that everything is in the picture: centre, distance and mm that the picture is high there. */
+static void fit(const frame *f, const skg_look *look, double aspect, skg_show_camera *camera, double *height,
+                double *depth) {
+    const double tangent = tan(FIELD / 2) * FILLED, middle = 0.5 * (f->near + f->far);
+    double half[2];
+    for (int k = 0; k < 3; k++) camera->centre[k] = middle * camera->axes[2][k];
+    for (int k = 0; k < 2; k++) {
+        half[k] = 0.5 * (f->highest[k] - f->lowest[k]);
+        skg_add_scaled(camera->centre, 0.5 * (f->highest[k] + f->lowest[k]), camera->axes[k], camera->centre);
+    }
+    /* everything may lie on the axis */
+    *height = fmax(fmax(half[1], half[0] / aspect), 1e-6 * (1 + f->near - f->far));
+    *depth = fmax(0.5 * (f->near - f->far), 0.01 * *height);
+    /* in perspective everything is in the picture from z = height / tangent on; the eye keeps off the nearest point */
+    const double eye_z = fmax(*height / tangent, f->near + NEAREST * *depth);
+    camera->distance = look->orthographic ? 2 * *depth : eye_z - middle;
+    camera->pixel = look->orthographic ? 2 * *height / FILLED / (double)look->rows
+                                       : 2 * camera->distance * tan(FIELD / 2) / (double)look->rows;
+}
+
+/* From positions relative to the centre to clip coordinates. near, far: mm in front of the eye; top: half of the height of an
+ * orthographic picture, mm. */
+static void make_matrix(const skg_look *look, double aspect, float near, float far, float top,
+                        skg_show_camera *camera) {
+    vec3 eye, up, origin = {0, 0, 0};
+    mat4 seen, lens, whole;
+    for (int k = 0; k < 3; k++) {
+        eye[k] = (float)(camera->distance * camera->axes[2][k]);
+        up[k] = (float)camera->axes[1][k];
+    }
+    glm_lookat(eye, origin, up, seen);
+    if (look->orthographic)
+        glm_ortho(-top * (float)aspect, top * (float)aspect, -top, top, near, far, lens);
+    else
+        glm_perspective((float)FIELD, (float)aspect, near, far, lens);
+    glm_mat4_mul(lens, seen, whole);
+    memcpy(camera->matrix, whole, sizeof camera->matrix);
+}
+
+/* The eye where the look has it. */
+static void aim(const frame *f, const skg_look *look, double aspect, skg_show_camera *camera) {
+    const double height = look->distance * tan(FIELD / 2), target = skg_dot(camera->axes[2], look->target);
+    const double far = look->distance + target - f->far;
+    memcpy(camera->centre, look->target, sizeof camera->centre);
+    camera->distance = look->distance;
+    camera->pixel = 2 * height / (double)look->rows;
+    double near = look->distance + target - f->near;
+    if (!look->orthographic) {
+        camera->nearest = CLOSEST * fmax(far, look->distance);
+        near = fmax(near, camera->nearest);
+    }
+    make_matrix(look, aspect, (float)near, (float)fmax(far, near + 1e-3 * look->distance), (float)height,
+                camera);
+}
+
 skg_status skg_show_camera_make(const skg_view *view, const skg_look *look, const double low[3],
                                 const double high[3], skg_show_camera *camera) {
+    *camera = (skg_show_camera){0};
     SKG_TRY(find_axes(view, look, camera->axes));
     const double aspect = (double)look->columns / (double)look->rows, tangent = tan(FIELD / 2) * FILLED;
+    double height, depth;
     frame f = {.axes = (const double(*)[3])camera->axes,
                .tangent = {look->orthographic ? 0 : tangent * aspect, look->orthographic ? 0 : tangent},
                .highest = {-HUGE_VAL, -HUGE_VAL},
@@ -130,36 +190,27 @@ skg_status skg_show_camera_make(const skg_view *view, const skg_look *look, cons
                .near = -HUGE_VAL,
                .far = HUGE_VAL};
     frame_everything(&f, view, look, low, high);
-    double half[2], middle = 0.5 * (f.near + f.far);
-    for (int k = 0; k < 3; k++) camera->centre[k] = middle * camera->axes[2][k];
-    for (int k = 0; k < 2; k++) {
-        half[k] = 0.5 * (f.highest[k] - f.lowest[k]);
-        skg_add_scaled(camera->centre, 0.5 * (f.highest[k] + f.lowest[k]), camera->axes[k], camera->centre);
+    if (look->target) {
+        aim(&f, look, aspect, camera);
+        return SKG_OK;
     }
-    /* everything may lie on the axis */
-    const double height = fmax(fmax(half[1], half[0] / aspect), 1e-6 * (1 + f.near - f.far));
-    const double depth = fmax(0.5 * (f.near - f.far), 0.01 * height);
-    /* in perspective everything is in the picture from z = height / tangent on; the eye keeps off the nearest point */
-    const double eye_z = fmax(height / tangent, f.near + NEAREST * depth);
-    const double distance = look->orthographic ? 2 * depth : eye_z - middle;
-    camera->pixel = look->orthographic ? 2 * height / FILLED / (double)look->rows
-                                       : 2 * distance * tan(FIELD / 2) / (double)look->rows;
-    vec3 eye, up, origin = {0, 0, 0};
-    mat4 seen, lens, whole;
-    for (int k = 0; k < 3; k++) {
-        eye[k] = (float)(distance * camera->axes[2][k]);
-        up[k] = (float)camera->axes[1][k];
-    }
-    glm_lookat(eye, origin, up, seen);
-    const float near = (float)(distance - 1.05 * depth), far = (float)(distance + 1.05 * depth);
-    const float top = (float)(height / FILLED);
-    if (look->orthographic)
-        glm_ortho(-top * (float)aspect, top * (float)aspect, -top, top, near, far, lens);
-    else
-        glm_perspective((float)FIELD, (float)aspect, fmaxf(near, 1e-3f * far), far, lens);
-    glm_mat4_mul(lens, seen, whole);
-    memcpy(camera->matrix, whole, sizeof camera->matrix);
+    fit(&f, look, aspect, camera, &height, &depth);
+    const float near = (float)(camera->distance - 1.05 * depth),
+                far = (float)(camera->distance + 1.05 * depth);
+    make_matrix(look, aspect, look->orthographic ? near : fmaxf(near, 1e-3f * far), far,
+                (float)(height / FILLED), camera);
     return SKG_OK;
+}
+
+double skg_show_camera_depth(const skg_show_camera *camera, const double point[3]) {
+    double from[3];
+    skg_add_scaled(point, -1, camera->centre, from);
+    return camera->distance - skg_dot(camera->axes[2], from);
+}
+
+double skg_show_camera_pixel(const skg_show_camera *camera, const double point[3]) {
+    if (!(camera->nearest > 0)) return camera->pixel;
+    return camera->pixel * fmax(skg_show_camera_depth(camera, point), camera->nearest) / camera->distance;
 }
 
 void skg_show_camera_place(const skg_show_camera *camera, const skg_look *look, const double point[3],

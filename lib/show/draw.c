@@ -7,6 +7,7 @@
 #include "stage/kernels.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 /* Towards the light, in the eye's axes: from the upper left, beside the eye. */
@@ -51,12 +52,14 @@ static skg_show_args arguments_of(const skg_show_model *model, const skg_show_ca
                           .across = (int32_t)skg_divide_up(2 * look->columns, SKG_SHOW_TILE),
                           .down = (int32_t)skg_divide_up(2 * look->rows, SKG_SHOW_TILE),
                           .triangles = (int32_t)model->triangles,
+                          .sections = (int32_t)model->sections,
+                          .images = (int32_t)model->images,
                           .image_columns = (int32_t)image_columns,
                           .image_rows = (int32_t)image_rows};
     for (int k = 0; k < 16; k++) args.matrix[k] = camera->matrix[k];
     for (int k = 0; k < 3; k++) {
         args.light[k] = LIGHT[k];
-        args.background[k] = BACKGROUND[k];
+        args.background[k] = look->background ? (float)look->background[k] / 255.0f : BACKGROUND[k];
         for (int axis = 0; axis < 3; axis++) args.turn[3 * axis + k] = (float)camera->axes[k][axis];
     }
     return args;
@@ -144,6 +147,11 @@ skg_status skg_show_draw(skg_context *context, const skg_show_model *model, cons
     scratch s = {0};
     int32_t *starts = NULL;
     skg_status status = SKG_OK;
+    if (model->triangles == 0) { /* nothing is in front of the eye */
+        for (int64_t i = 0; i < 4 * look->columns * look->rows; i++)
+            rgba[i] = i % 4 < 3 ? (uint8_t)lroundf(255 * args.background[i % 4]) : 255;
+        return SKG_OK;
+    }
     skg_work_begin();
     SKG_TRY_CLEANUP(skg_alloc((int64_t)SKG_SHOW_LISTS * args.across * args.down + 1, sizeof *starts,
                               "lists of the 3D view", &starts));

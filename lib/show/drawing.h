@@ -14,7 +14,10 @@ typedef struct {
     double centre[3];  /* mm: where the axis of the eye passes the scene; positions are relative to it */
     double axes[3][3]; /* right, up and towards the eye, length 1 */
     double pixel;      /* mm that a pixel covers at the centre */
-    float matrix[16];  /* from positions to clip coordinates, column after column */
+    double distance;   /* mm from the eye to the centre */
+    double
+        nearest; /* what is less than this in front of the eye is not drawn, mm; 0: everything is in the picture */
+    float matrix[16]; /* from positions to clip coordinates, column after column */
 } skg_show_camera;
 
 /* Where the beam starts that meets a point of the detector: the source, or a point from which a parallel ray passes all
@@ -28,10 +31,17 @@ void skg_show_detector_corner(const skg_view *view, int column, int row, double 
 /* Where the edges of the beam meet the plane of the detector, in turn around it. Errors: of skg_collimation_corners_get. */
 skg_status skg_show_beam_corners(const skg_view *view, const skg_look *look, double corners[4][3]);
 
-/* Places the eye so that everything is in the picture: the box of the parts (mm), source, detector, path. Errors:
- * SKG_ERR_ARGUMENT for directions that are not finite. */
+/* Places the eye as the look says, or so that everything is in the picture: the box of the parts (mm), source, detector, path.
+ * Errors: SKG_ERR_ARGUMENT for directions that are not finite. */
 skg_status skg_show_camera_make(const skg_view *view, const skg_look *look, const double low[3],
                                 const double high[3], skg_show_camera *camera);
+
+/* mm that a pixel covers at a point: with a target its size in the picture does not depend on the depth, otherwise that at the
+ * centre. */
+double skg_show_camera_pixel(const skg_show_camera *camera, const double point[3]);
+
+/* mm that a point lies in front of the eye. */
+double skg_show_camera_depth(const skg_show_camera *camera, const double point[3]);
 
 /* Column and row of a point in the picture. */
 void skg_show_camera_place(const skg_show_camera *camera, const skg_look *look, const double point[3],
@@ -45,12 +55,15 @@ void skg_show_camera_place(const skg_show_camera *camera, const skg_look *look, 
 
 /* Triangles that grow while they are added. All zero: none. */
 typedef struct {
-    double centre[3];  /* mm; positions are relative to it */
-    float *positions;  /* [vertices][3] */
-    int32_t *corners;  /* [triangles][3] */
-    int16_t *normals;  /* [triangles][3][4] of each corner, times 32767; the fourth is 0 */
+    double centre[3]; /* mm; positions are relative to it */
+    float *positions; /* [vertices][3] */
+    int32_t *corners; /* [triangles][3] */
+    int16_t *
+        normals; /* [triangles][3][4] of each corner, times 32767; of the detector places in the image, times 16384 */
     uint32_t *colours; /* [triangles] SKG_SHOW_COLOUR */
     int64_t vertices, triangles;
+    int64_t sections; /* the first triangles, whose inside is drawn without shading */
+    int64_t images;   /* the last triangles, which show the detector's image */
     int64_t vertex_capacity, triangle_capacity;
 } skg_show_model;
 
@@ -68,14 +81,26 @@ void skg_show_model_add_triangle(skg_show_model *model, const int64_t corners[3]
 
 /* --- The parts of a scene as triangles of the 3D view. */
 
-/* Adds every part whose opacity is not 0.
+/* Adds every part whose opacity in look->colours is not 0, as far as the look's cut and the eye leave it.
  *
- * colours   [parts][4] red, green, blue, opacity
  * errors    SKG_ERR_SCENE if a vertex is not finite */
-skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const uint8_t *colours);
+skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const skg_look *look,
+                              const skg_show_camera *camera);
 
-/* Widens a box (mm, in the world) by a part at its pose: by the corners of the part's own box. */
-void skg_show_part_bounds(const skg_scene_part_data *part, double low[3], double high[3]);
+/* The pose of a part: the look's, or the scene's. */
+const double *skg_show_pose_of(const skg_scene *scene, const skg_look *look, int64_t part);
+
+/* Widens a box (mm, in the world) by a mesh at a pose: by the corners of the mesh's own box. */
+void skg_show_part_bounds(const skg_mesh *mesh, const double *pose, double low[3], double high[3]);
+
+/* --- Triangles of the 3D view that planes cut. */
+
+/* Of the triangles from `first` on, removes what lies beyond a plane: points p with dot(plane, p) > plane[3], mm in the world.
+ * Triangles that cross it are cut; what is left of them stays in order, but for second triangles, which come last. */
+skg_status skg_show_clip(skg_show_model *model, int64_t first, const double plane[4]);
+
+/* Likewise what is nearer to the eye than camera->nearest, or behind it. */
+skg_status skg_show_clip_near(skg_show_model *model, const skg_show_camera *camera, int64_t first);
 
 /* --- Draws the triangles of the 3D view on the device. */
 
@@ -90,5 +115,8 @@ skg_status skg_show_draw(skg_context *context, const skg_show_model *model, cons
  * the kernel wants them. */
 skg_status skg_show_markers_add(skg_show_model *model, const skg_view *view, const skg_look *look,
                                 const skg_show_camera *camera, const double low[3], const double high[3]);
+
+/* Adds a triangle of the detector's area, likewise. places: [3][2] fractions of the image's width and height at its corners. */
+void skg_show_model_add_image(skg_show_model *model, const int64_t corners[3], double places[3][2]);
 
 #endif

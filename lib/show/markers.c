@@ -6,6 +6,9 @@
 
 enum { SIDES = 8 };
 
+/* The corners of the detector one after the other, in widths and heights. */
+static const int turn[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+
 /* Sizes in pixels at the centre of the picture. */
 static const double BEAM_RADIUS = 0.7, FRAME_RADIUS = 1.1, AXIS_RADIUS = 1.6, SOURCE_RADIUS = 7,
                     POINT_RADIUS = 2.2;
@@ -58,9 +61,31 @@ static skg_status add_tube(skg_show_model *model, const double from[3], const do
     return SKG_OK;
 }
 
+/* A line of some pixels in radius, from the first point in front of the eye on. */
+static skg_status add_line(skg_show_model *model, const skg_show_camera *camera, const double from[3],
+                           const double to[3], double radius, double end_radius, uint32_t colour) {
+    const double *ends[2] = {from, to},
+                 depths[2] = {skg_show_camera_depth(camera, from), skg_show_camera_depth(camera, to)};
+    double cut[2][3];
+    for (int k = 0; k < 2; k++) {
+        if (depths[k] >= camera->nearest) continue;
+        if (depths[1 - k] <= camera->nearest) return SKG_OK;
+        const double share = (camera->nearest - depths[k]) / (depths[1 - k] - depths[k]);
+        double along[3];
+        skg_add_scaled(ends[1 - k], -1, ends[k], along);
+        skg_add_scaled(ends[k], share, along, cut[k]);
+    }
+    for (int k = 0; k < 2; k++)
+        if (depths[k] < camera->nearest) ends[k] = cut[k];
+    return add_tube(model, ends[0], ends[1], radius * skg_show_camera_pixel(camera, ends[0]),
+                    end_radius * skg_show_camera_pixel(camera, ends[1]), colour);
+}
+
 /* A ball of rings and meridians. */
-static skg_status add_ball(skg_show_model *model, const double centre[3], double radius, uint32_t colour) {
+static skg_status add_ball(skg_show_model *model, const skg_show_camera *camera, const double centre[3],
+                           double pixels, uint32_t colour) {
     enum { RINGS = 6, TURN = 12 };
+    const double radius = pixels * skg_show_camera_pixel(camera, centre);
     const int64_t first = model->vertices;
     double normals[RINGS + 1][TURN][3];
     SKG_TRY(skg_show_model_reserve(model, (RINGS + 1) * TURN, 2 * RINGS * TURN));
@@ -90,34 +115,36 @@ static skg_status add_ball(skg_show_model *model, const double centre[3], double
 }
 
 /* The opening of the jaws. */
-static skg_status add_jaws(skg_show_model *model, const skg_view *view, const skg_look *look, double pixel) {
+static skg_status add_jaws(skg_show_model *model, const skg_view *view, const skg_look *look,
+                           const skg_show_camera *camera) {
     double opening[4][3];
     if (!look->collimation || look->collimation->kind != SKG_COLLIMATION_RECTANGLE) return SKG_OK;
     SKG_TRY(skg_collimation_corners_get(look->collimation, view, 1, opening[0]));
     for (int i = 0; i < 4; i++)
-        SKG_TRY(add_tube(model, opening[i], opening[(i + 1) % 4], FRAME_RADIUS * pixel, FRAME_RADIUS * pixel,
+        SKG_TRY(add_line(model, camera, opening[i], opening[(i + 1) % 4], FRAME_RADIUS, FRAME_RADIUS,
                          FRAME_COLOUR));
     return SKG_OK;
 }
 
-static skg_status add_beam(skg_show_model *model, const skg_view *view, const skg_look *look, double pixel,
-                           const double low[3], const double high[3]) {
+static skg_status add_beam(skg_show_model *model, const skg_view *view, const skg_look *look,
+                           const skg_show_camera *camera, const double low[3], const double high[3]) {
     double corners[4][3], start[3], next_start[3];
     SKG_TRY(skg_show_beam_corners(view, look, corners));
     for (int i = 0; i < 4; i++) {
         skg_show_beam_start(view, low, high, corners[i], start);
-        SKG_TRY(add_tube(model, start, corners[i], BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, BEAM_COLOUR));
+        SKG_TRY(add_line(model, camera, start, corners[i], BEAM_RADIUS, BEAM_RADIUS, BEAM_COLOUR));
         if (view->projection == SKG_PROJECTION_POINT) continue;
         skg_show_beam_start(view, low, high, corners[(i + 1) % 4],
                             next_start); /* on the plane where rays start */
-        SKG_TRY(add_tube(model, start, next_start, BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, BEAM_COLOUR));
+        SKG_TRY(add_line(model, camera, start, next_start, BEAM_RADIUS, BEAM_RADIUS, BEAM_COLOUR));
     }
-    SKG_TRY(add_jaws(model, view, look, pixel));
+    SKG_TRY(add_jaws(model, view, look, camera));
     skg_show_beam_start(view, low, high, view->centre, start);
-    return add_ball(model, start, SOURCE_RADIUS * pixel, BEAM_COLOUR);
+    return add_ball(model, camera, start, SOURCE_RADIUS, BEAM_COLOUR);
 }
 
-static skg_status add_axes(skg_show_model *model, double pixel, const double low[3], const double high[3]) {
+static skg_status add_axes(skg_show_model *model, const skg_show_camera *camera, const double low[3],
+                           const double high[3]) {
     static const uint32_t colours[3] = {SKG_SHOW_COLOUR(208, 52, 44, 255), SKG_SHOW_COLOUR(46, 150, 60, 255),
                                         SKG_SHOW_COLOUR(44, 92, 210, 255)};
     const double length = fmax(high[0] - low[0], fmax(high[1] - low[1], high[2] - low[2])) * 0.2;
@@ -126,43 +153,53 @@ static skg_status add_axes(skg_show_model *model, double pixel, const double low
         double neck[3], tip[3];
         skg_add_scaled(low, 0.8 * length, along, neck);
         skg_add_scaled(low, length, along, tip);
-        SKG_TRY(add_tube(model, low, neck, AXIS_RADIUS * pixel, AXIS_RADIUS * pixel, colours[k]));
-        SKG_TRY(add_tube(model, neck, tip, 3 * AXIS_RADIUS * pixel, 0, colours[k]));
+        SKG_TRY(add_line(model, camera, low, neck, AXIS_RADIUS, AXIS_RADIUS, colours[k]));
+        SKG_TRY(add_line(model, camera, neck, tip, 3 * AXIS_RADIUS, 0, colours[k]));
     }
     return SKG_OK;
 }
 
-static skg_status add_path(skg_show_model *model, const skg_look *look, double pixel) {
+static skg_status add_path(skg_show_model *model, const skg_look *look, const skg_show_camera *camera) {
     for (int64_t i = 0; i < look->path_count; i++) {
         const double *at = look->path + 3 * i;
-        SKG_TRY(add_ball(model, at, POINT_RADIUS * pixel, PATH_COLOUR));
-        if (i > 0)
-            SKG_TRY(add_tube(model, at - 3, at, BEAM_RADIUS * pixel, BEAM_RADIUS * pixel, PATH_COLOUR));
+        SKG_TRY(add_ball(model, camera, at, POINT_RADIUS, PATH_COLOUR));
+        if (i > 0) SKG_TRY(add_line(model, camera, at - 3, at, BEAM_RADIUS, BEAM_RADIUS, PATH_COLOUR));
     }
     return SKG_OK;
 }
 
-/* The frame, then the area: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) in widths and heights. */
-static skg_status add_detector(skg_show_model *model, const skg_view *view, double pixel) {
-    static const int turn[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    double corners[4][3], normals[3][3] = {{0}};
-    for (int i = 0; i < 4; i++) skg_show_detector_corner(view, turn[i][0], turn[i][1], corners[i]);
+/* The frame of the detector. */
+static skg_status add_frame(skg_show_model *model, const skg_show_camera *camera, double corners[4][3]) {
     for (int i = 0; i < 4; i++)
-        SKG_TRY(add_tube(model, corners[i], corners[(i + 1) % 4], FRAME_RADIUS * pixel, FRAME_RADIUS * pixel,
+        SKG_TRY(add_line(model, camera, corners[i], corners[(i + 1) % 4], FRAME_RADIUS, FRAME_RADIUS,
                          FRAME_COLOUR));
-    const int64_t first = model->vertices;
+    return SKG_OK;
+}
+
+/* Its area: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) in widths and heights. */
+static skg_status add_detector(skg_show_model *model, const skg_show_camera *camera, double corners[4][3]) {
+    const int64_t first = model->vertices, before = model->triangles;
     SKG_TRY(skg_show_model_reserve(model, 4, 2));
     for (int i = 0; i < 4; i++) skg_show_model_add_vertex(model, corners[i]);
-    for (int t = 0; t < 2; t++)
-        skg_show_model_add_triangle(model, (const int64_t[3]){first, first + t + 1, first + t + 2}, normals,
-                                    SKG_SHOW_COLOUR(255, 255, 255, 255));
+    for (int t = 0; t < 2; t++) {
+        double places[3][2];
+        for (int k = 0; k < 6; k++) places[k / 2][k % 2] = turn[k / 2 > 0 ? k / 2 + t : 0][k % 2];
+        skg_show_model_add_image(model, (const int64_t[3]){first, first + t + 1, first + t + 2}, places);
+    }
+    SKG_TRY(skg_show_clip_near(model, camera, before));
+    model->images = model->triangles - before;
     return SKG_OK;
 }
 
 skg_status skg_show_markers_add(skg_show_model *model, const skg_view *view, const skg_look *look,
                                 const skg_show_camera *camera, const double low[3], const double high[3]) {
-    SKG_TRY(add_beam(model, view, look, camera->pixel, low, high));
-    SKG_TRY(add_axes(model, camera->pixel, low, high));
-    SKG_TRY(add_path(model, look, camera->pixel));
-    return add_detector(model, view, camera->pixel);
+    const int64_t first = model->triangles;
+    double corners[4][3];
+    for (int i = 0; i < 4; i++) skg_show_detector_corner(view, turn[i][0], turn[i][1], corners[i]);
+    SKG_TRY(add_beam(model, view, look, camera, low, high));
+    SKG_TRY(add_axes(model, camera, low, high));
+    SKG_TRY(add_path(model, look, camera));
+    SKG_TRY(add_frame(model, camera, corners));
+    SKG_TRY(skg_show_clip_near(model, camera, first));
+    return add_detector(model, camera, corners);
 }

@@ -55,3 +55,11 @@ void skg_show_model_add_triangle(skg_show_model *model, const int64_t corners[3]
     model->colours[model->triangles] = colour;
     model->triangles++;
 }
+
+void skg_show_model_add_image(skg_show_model *model, const int64_t corners[3], double places[3][2]) {
+    double none[3][3] = {{0}};
+    int16_t *normals = model->normals + 12 * model->triangles;
+    skg_show_model_add_triangle(model, corners, none, SKG_SHOW_COLOUR(255, 255, 255, 255));
+    for (int i = 0; i < 6; i++) normals[4 * (i / 2) + i % 2] = (int16_t)lround(16384 * places[i / 2][i % 2]);
+    model->images++;
+}

@@ -12,7 +12,7 @@ static const double CREASE = 0.5, SMOOTH = 0.85355339059327376;
 /* One part while it is added. */
 typedef struct {
     const skg_mesh *mesh;
-    const skg_scene_part_data *part;
+    const double *pose;
     double *world; /* [vertices][3] mm */
     double *faces; /* [triangles][4] normals as long as twice the area, and the square of that */
     double *
@@ -95,7 +95,7 @@ static skg_status add_surface(skg_show_model *model, surface *s, uint32_t colour
     for (int64_t v = 0; v < mesh->vertices; v++) {
         double at[3], *world = s->world + 3 * v;
         skg_mesh_vertex(mesh, v, at);
-        skg_pose_point(s->part->pose, at, world);
+        skg_pose_point(s->pose, at, world);
         skg_show_model_add_vertex(model, world);
     }
     for (int64_t t = 0; t < mesh->triangles; t++) find_normal(s, t, s->faces + 4 * t);
@@ -121,34 +121,43 @@ static void free_surface(surface *s) {
 }
 
 /* One thread adds all parts: those of OpenMP would spin beside the device's on the same cores. */
-skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const uint8_t *colours) {
+skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, const skg_look *look,
+                              const skg_show_camera *camera) {
     for (int64_t i = 0; i < scene->count; i++) {
-        const uint8_t *colour = colours + 4 * i;
-        surface s = {.mesh = scene->parts[i].mesh, .part = scene->parts + i};
+        const uint8_t *colour = look->colours + 4 * i;
+        surface s = {.mesh = scene->parts[i].mesh, .pose = skg_show_pose_of(scene, look, i)};
         if (colour[3] == 0) continue;
         if (s.mesh->first_bad >= 0)
             return skg_fail(SKG_ERR_SCENE,
                             "part %s: vertex %" PRId64 " is not finite; correct it or leave the part out",
-                            s.part->label, s.mesh->first_bad);
+                            scene->parts[i].label, s.mesh->first_bad);
         SKG_TRY(skg_show_model_reserve(model, s.mesh->vertices, s.mesh->triangles));
         const skg_status status =
             add_surface(model, &s, SKG_SHOW_COLOUR(colour[0], colour[1], colour[2], colour[3]));
         free_surface(&s);
         SKG_TRY(status);
     }
+    SKG_TRY(skg_show_clip_near(model, camera, 0));
+    if (!look->cut) return SKG_OK;
+    SKG_TRY(skg_show_clip(model, 0, look->cut));
+    model->sections = model->triangles;
     return SKG_OK;
 }
 
-void skg_show_part_bounds(const skg_scene_part_data *part, double low[3], double high[3]) {
+const double *skg_show_pose_of(const skg_scene *scene, const skg_look *look, int64_t part) {
+    return look->poses ? look->poses + 16 * part : scene->parts[part].pose;
+}
+
+void skg_show_part_bounds(const skg_mesh *mesh, const double *pose, double low[3], double high[3]) {
     float lowest[3], highest[3];
     int64_t bad;
-    skg_mesh_bounds(part->mesh, lowest, highest, &bad);
-    if (part->mesh->vertices == 0 || !(lowest[0] <= highest[0])) return;
+    skg_mesh_bounds(mesh, lowest, highest, &bad);
+    if (mesh->vertices == 0 || !(lowest[0] <= highest[0])) return;
     for (int corner = 0; corner < 8; corner++) {
         double at[3], world[3];
         for (int k = 0; k < 3; k++)
-            at[k] = part->mesh->origin[k] + (double)(corner >> k & 1 ? highest[k] : lowest[k]);
-        skg_pose_point(part->pose, at, world);
+            at[k] = mesh->origin[k] + (double)(corner >> k & 1 ? highest[k] : lowest[k]);
+        skg_pose_point(pose, at, world);
         for (int k = 0; k < 3; k++) low[k] = fmin(low[k], world[k]), high[k] = fmax(high[k], world[k]);
     }
 }

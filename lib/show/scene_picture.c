@@ -32,6 +32,13 @@ static skg_status read_look(const skg_look *theirs, skg_look *look) {
     for (int64_t i = 0; i < look->path_count; i++)
         if (!skg_all_finite(look->path + 3 * i, 3))
             return skg_fail(SKG_ERR_ARGUMENT, "point %" PRId64 " of the look's path is not finite", i);
+    if ((look->target && !skg_all_finite(look->target, 3)) || (look->cut && !skg_all_finite(look->cut, 4)))
+        return skg_fail(SKG_ERR_ARGUMENT, "the look's %s is not finite",
+                        look->target && !skg_all_finite(look->target, 3) ? "target" : "cut");
+    if (look->target && !(look->distance > 0 && look->distance < HUGE_VAL))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "the eye is %g mm from the look's target; set distance to more than 0",
+                        look->distance);
     if (!look->bounds) return SKG_OK;
     for (int k = 0; k < 3; k++)
         if (!skg_all_finite(look->bounds, 6) || look->bounds[k] > look->bounds[3 + k])
@@ -41,12 +48,14 @@ static skg_status read_look(const skg_look *theirs, skg_look *look) {
 }
 
 /* The box of the parts that are drawn, mm. */
-static skg_status find_box(const skg_scene *scene, const uint8_t *colours, double low[3], double high[3]) {
+static skg_status find_box(const skg_scene *scene, const skg_look *look, double low[3], double high[3]) {
     for (int k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
     for (int64_t i = 0; i < scene->count; i++)
-        if (colours[4 * i + 3] > 0) skg_show_part_bounds(scene->parts + i, low, high);
+        if (look->colours[4 * i + 3] > 0)
+            skg_show_part_bounds(scene->parts[i].mesh, skg_show_pose_of(scene, look, i), low, high);
     if (scene->count == 0)
         return skg_fail(SKG_ERR_SCENE, "the scene has no parts; add one with skg_scene_part_add");
+    for (int k = 0; look->bounds && k < 3; k++) low[k] = look->bounds[k], high[k] = look->bounds[3 + k];
     if (!(low[0] <= high[0]))
         return skg_fail(SKG_ERR_SCENE, "the picture would be empty: every part of the scene is left out");
     return SKG_OK;
@@ -62,8 +71,11 @@ static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look
         SKG_TRY(skg_look_colours_get(scene, *colours));
         look->colours = *colours;
     }
-    SKG_TRY(find_box(scene, look->colours, low, high));
-    for (int k = 0; look->bounds && k < 3; k++) low[k] = look->bounds[k], high[k] = look->bounds[3 + k];
+    for (int64_t i = 0; look->poses && i < scene->count; i++)
+        if (!skg_all_finite(look->poses + 16 * i, 16))
+            return skg_fail(SKG_ERR_ARGUMENT, "the look's pose of part %s is not finite",
+                            scene->parts[i].label);
+    SKG_TRY(find_box(scene, look, low, high));
     return skg_show_camera_make(view, look, low, high, camera);
 }
 
@@ -84,7 +96,7 @@ static skg_status draw(skg_context *context, const skg_scene *scene, const skg_v
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(prepare(scene, view, &ours, &colours, low, high, &camera));
     for (int k = 0; k < 3; k++) model.centre[k] = camera.centre[k];
-    SKG_TRY_CLEANUP(skg_show_parts_add(&model, scene, ours.colours));
+    SKG_TRY_CLEANUP(skg_show_parts_add(&model, scene, &ours, &camera));
     SKG_TRY_CLEANUP(skg_show_markers_add(&model, view, &ours, &camera, low, high));
     SKG_TRY_CLEANUP(skg_show_draw(context, &model, &camera, &ours, ours.image ? view->columns : 1,
                                   ours.image ? view->rows : 1, ours.image ? ours.image : &PLAIN, rgba));

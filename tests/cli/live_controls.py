@@ -57,15 +57,15 @@ def cut(tried):
     """A plane cuts the parts, and what is cut off is not chosen."""
     browser, run = tried.browser, tried.browser.run
     run("choose(''); canvas.focus(); lookAs('start'); meshes.forEach(m => { m.colour[3] = 1; })")
-    whole = run("viewSum()")
+    whole = tried.view()
     for across in ("0", "1", "2", "view"):
         run(f"typed(byId('cut'), ''); if (cut.side > 0 === {'true' if across == '1' else 'false'}) byId('cut-side').click()")  # seen from -y
         tried.differs("cut " + across, f"typed(byId('cut'), '{across}')", "viewSum")
         tried.differs("place of cut " + across, "typed(byId('cut-slider'), 20)", "viewSum")
     run("typed(byId('cut'), '')")
-    check("no cut", run("viewSum()") == whole)
+    check("no cut", tried.view() == whole)
     run("lookAs('front')")
-    middle = "partAt(canvas.clientWidth / 2, canvas.clientHeight / 2)"
+    middle = "partUnder(canvas.clientWidth / 2, canvas.clientHeight / 2)"
     check("the tissue is in front", run(middle) == 0)
     for _ in range(2):
         browser.key("c")

@@ -106,6 +106,43 @@ def view(tried):
     tried.differs("dark", "byId('dark').click()", "viewSum")
 
 
+def served(tried):
+    """Pictures of the server: on change only, with fewer pixels while the view moves, and where the overlay has its points."""
+    browser, run = tried.browser, tried.browser.run
+    run("choose(''); lookAs('start'); meshes.forEach(m => { m.colour[3] = 1; m.visible = true; })")
+    first = tried.view()
+    browser.size(1280, 801)
+    tried.still()
+    check("another size", run("served.number > 0 && byId('picture').width === canvas.clientWidth && byId('picture').height === canvas.clientHeight"))
+    browser.size(1280, 800)
+    check("as at first", tried.view() == first)
+    asked = run("served.number")
+    run("change(); draw(); change(); draw()")
+    tried.still()
+    check("on change only", run("served.number") == asked)
+    run("served.ms = 2000; orbit(0.4, 0); draw()")
+    browser.until("!served.waits")
+    check("fewer pixels while it moves", run("byId('picture').width < 0.5 * canvas.clientWidth"), run("byId('picture').width"))
+    tried.still()
+    check("all pixels when it stands", run("byId('picture').width === canvas.clientWidth"))
+    run("lookAs('front')")
+    tried.still()
+    # the middle of the bone, alone, is where the overlay has it; beside it is the background
+    run("meshes[0].visible = false")
+    tried.still()
+    at = ("(() => { const [x, y] = onScreen(%s), p = byId('picture'); return [...p.getContext('2d').getImageData(Math.floor(x), Math.floor(y), 1, 1).data]; })()")
+    ground = run("shot.ground.map(x => Math.round(255 * x))")
+    corner = run("[...byId('picture').getContext('2d').getImageData(2, 2, 1, 1).data]")
+    check("background", corner[:3] == ground, f"{corner} {ground}")
+    bone = run(at % "[4, -30, 6]")
+    check("the bone", max(abs(a - b) for a, b in zip(bone, ground)) > 20 and bone[3] == 255, str(bone))
+    run("meshes[0].visible = true; choose('part', 1)")
+    tried.still()
+    run("choose('')")
+    tried.still()
+    run("lookAs('start')")
+
+
 def film(tried):
     browser, run = tried.browser, tried.browser.run
     wishes = run("net.sent")
@@ -193,7 +230,13 @@ def work(folder, path):
             tried = Tried(browser)
             beam_and_dials(tried)
             exposure(tried, path)
-            for part in (geometry, sinogram, film, view, cut, tape):
+            check("software draws slowly", tried.browser.run("isSlow && isServed()"))
+            for by in ("browser", "server"):
+                tried.drawn(by)
+                for part in (geometry, view, cut, tape):
+                    part(tried)
+            served(tried)
+            for part in (sinogram, film):
                 part(tried)
             shown, scene = cost_and_takes(tried)
             sizes(tried, "live")
@@ -213,7 +256,9 @@ def breathes(folder):
     with Server(command, os.path.join(folder, "thorax.json"), "--set", "Detector.NumberOfPixels=[80,80]") as server, Browser(server.url) as browser:
         tried = Tried(browser)
         tried.differs("phase", "typed(byId('phase'), 0.5)")
-        tried.differs("3D breathes", "typed(byId('phase'), 0.2)", "viewSum")
+        for by, phase in (("browser", 0.2), ("server", 0.7)):
+            tried.drawn(by)
+            tried.differs("3D breathes, " + by, f"typed(byId('phase'), {phase})", "viewSum")
         browser.run("byId('play').click()")
         browser.until("state.play && xray.frame.number > 20")
         browser.run("byId('play').click()")

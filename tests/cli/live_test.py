@@ -173,7 +173,7 @@ def errors(path):
 def malformed(path, seconds=4):
     """Messages at random: each gets a sentence, and the server goes on."""
     random.seed(1)
-    good = [{"wish": 1, "settings": {"Tolerance": 0.1}, "poses": {}, "drag": True}, {"ack": 1}, {"probe": [1, 2]}, {"take": "png"}]
+    good = [{"wish": 1, "settings": {"Tolerance": 0.1}, "poses": {}, "drag": True}, {"ack": 1}, {"probe": [1, 2]}, {"take": "png"}, {"look": LOOK}]
     with Server(command, path) as server:
         page = Page(server)
         page.frame()
@@ -242,6 +242,47 @@ def one_owner(path):
                 comer.join()
             roles = [page.text("role")["role"] for page in pages]
             assert sorted(roles) == ["owner", "reader", "reader", "reader"], roles
+
+
+LOOK = {"number": 7, "size": [60, 40], "target": [0, 0, 0], "distance": 400, "from": [0, -1, 0], "up": [0, 0, 1], "background": [10, 20, 30]}
+
+
+def looks(path):
+    """Pictures of the 3D view: for the page that asks, as it asks."""
+    def picture(page, **keys):
+        page.send({"look": LOOK | keys})
+        data = page.find(lambda m: isinstance(m, bytes) and m[:4] == b"SKLP")
+        number, columns, rows, ms = struct.unpack_from("<IHHf", data, 4)
+        assert number == 7 and len(data) == 16 + 4 * columns * rows and ms > 0
+        assert (columns, rows) == tuple((LOOK | keys)["size"])
+        return data[16:]
+
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        first = picture(page)
+        assert first[:4] == bytes([10, 20, 30, 255]) and picture(page) == first
+        middle = first[4 * (20 * 60 + 33):][:3]
+        assert max(middle) - min(middle) > 20 or max(middle) > 60  # the tissue
+        others = [picture(page, **keys) for keys in (
+            {"from": [0.1, -1, 0]}, {"up": [0.1, 0, 1]}, {"target": [5, 0, 0]}, {"distance": 420}, {"parallel": True}, {"background": [10, 20, 31]},
+            {"cut": [0, -1, 0, 0]}, {"parts": {"0": [1, 2, 3, 255]}}, {"parts": {"0": [1, 2, 3, 0]}}, {"distance": 900, "grey": [0, 3]},
+            {"distance": 900, "grey": [3, 0]})]
+        assert len(set(others)) == len(others) and first not in others
+        moved = [1, 0, 0, 16, 0, 1, 0, 0, 0, 0, 1, -8, 0, 0, 0, 1]
+        page.frame(page.wish(poses={"0": moved}))
+        assert picture(page) != first
+        page.frame(page.wish())
+        assert picture(page) == first
+        assert picture(page, parts={"0": [0, 0, 0, 0], "1": [0, 0, 0, 0]}) != first  # without parts there are source and detector
+        for bad in ({"size": [0, 1]}, {"size": [4096, 4096]}, {"distance": 0}, {"target": [1, 2]}, {"up": "x"}, {"what": 1}, {"cut": [1, 2, 3]},
+                    {"parts": {"x": [1, 2, 3, 4]}}, {"parts": {"0": [1, 2, 3, 256]}}, {"number": -1}, {"parallel": 1}):
+            page.send({"look": LOOK | bad})
+            assert "look" in page.text("refused")["refused"], bad
+        page.send({"look": 1})
+        assert page.text("refused")
+        other = Page(server)  # a reader may look from elsewhere
+        assert picture(other, size=[31, 17]) and picture(page) == first
 
 
 def lost_pages(path):
@@ -329,7 +370,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, wishes, answers, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, wishes, answers, looks, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

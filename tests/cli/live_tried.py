@@ -9,9 +9,11 @@ HELPERS = """
 const sumOf = numbers => { let s = 7; for (const x of numbers) s = (Math.imul(s, 31) + x) | 0; return s; };
 const frameSum = () => sumOf(xray.frame.numbers) + ' ' + xray.frame.low + ' ' + xray.frame.step + ' ' + xray.frame.columns;
 const filmSum = () => sumOf(pen.getImageData(0, 0, film.width, film.height).data);
-const viewSum = () => { draw(); const p = new Uint8Array(4 * canvas.width * canvas.height);
+const pictureSum = () => { const p = byId('picture'); return sumOf(p.getContext('2d').getImageData(0, 0, p.width, p.height).data); };
+const viewSum = () => { if (isServed()) return pictureSum(); draw(); const p = new Uint8Array(4 * canvas.width * canvas.height);
   gl.readPixels(0, 0, canvas.width, canvas.height, gl.RGBA, gl.UNSIGNED_BYTE, p); return sumOf(p); };
-const settled = () => xray.frame && !net.waits && xray.frame.wish === net.sent && net.shot && net.shot.shot === xray.frame.number;
+const settled = () => xray.frame && !net.waits && xray.frame.wish === net.sent && net.shot && net.shot.shot === xray.frame.number &&
+  (!isServed() || !dirty && !served.waits && !served.missed && !served.reduced && served.stamp > 0);
 const typed = (box, value) => { box.value = value; box.dispatchEvent(new Event('input')); box.dispatchEvent(new Event('change')); };
 const saved = []; save = (name, bytes) => saved.push([name, typeof bytes === 'string' ? bytes : bytes.length]);
 0
@@ -34,10 +36,24 @@ class Tried:
         self.still()
 
     def still(self):
+        self.browser.run("if (isServed()) change()")  # tests change things behind the page's back
         self.browser.until("settled()")
+
+    def view(self):
+        """The sum of the 3D view."""
+        self.still()
+        return self.browser.run("viewSum()")
+
+    def drawn(self, by):
+        """Lets the browser or the server draw the 3D view, of all parts as at first."""
+        self.browser.run("choose(''); lookAs('start'); meshes.forEach((m, i) => { m.visible = true; m.colour[3] = scene.parts[i].colour[3] / 255; })")
+        self.browser.run(f"typed(byId('drawer'), '{by}')")
+        self.still()
+        check("drawn by", self.browser.run("isServed()") == (by == "server") and self.browser.run("byId('picture').hidden") == (by != "server"), by)
 
     def differs(self, name, action, of="frameSum"):
         """The action changes this sum."""
+        self.still()
         before = self.browser.run(f"{of}()")
         action() if callable(action) else self.browser.run(action)
         self.still()

@@ -327,6 +327,120 @@ START_TEST(bounds_hold_the_eye) {
 }
 END_TEST
 
+/* With a target the eye stands where it is told: places by the formula of a pinhole, with a field of 28 degrees. */
+START_TEST(a_target_places_the_eye) {
+    const double target[3] = {10, -20, 5}, points[3][3] = {{10, -20, 5}, {30, 40, -12}, {-25, 0, 20}};
+    const double half = tan(14 * 3.14159265358979 / 180), distance = 300;
+    double places[3][2];
+    add_box("box", 20, 0, 0, 0, -1);
+    look.target = target, look.distance = distance;
+    for (int parallel = 0; parallel < 2; parallel++) {
+        look.orthographic = parallel;
+        ck_skg(skg_scene_places_get(scene, &view, &look, 3, points[0], places[0]));
+        for (int i = 0; i < 3; i++) {
+            const double depth = parallel ? distance : distance + points[i][1] - target[1];
+            const double scale = 0.5 * SIDE / (half * depth), middle = 0.5 * SIDE - 0.5;
+            /* positions are float: 1000 mm * 2^-24 * pixels for a mm */
+            ck_assert_double_eq_tol(places[i][0], middle + scale * (points[i][0] - target[0]), 1e-3);
+            ck_assert_double_eq_tol(places[i][1], middle - scale * (points[i][2] - target[2]), 1e-3);
+        }
+    }
+    look.distance = 0;
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "0 mm from");
+    const double nowhere[3] = {0, (double)NAN, 0};
+    look.distance = 1, look.target = nowhere;
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "target");
+}
+END_TEST
+
+/* The eye within a box sees its far wall alone, the box beyond it, and the detector, a corner of which is behind the eye. */
+START_TEST(what_is_behind_the_eye_is_not_drawn) {
+    const uint8_t colours[2][4] = {{0, 0, BLUE, 255}, {RED, 0, 0, 255}}, background[3] = {11, 22, 33};
+    const double target[3] = {0, 10, 0};
+    uint8_t image[10 * 20];
+    memset(image, 99, sizeof image);
+    add_box("room", 100, 0, 0, 0, -1);
+    add_box("box", 4, 0, 20, 0, 0);
+    look.colours = colours[0], look.background = background, look.image = image;
+    look.target = target, look.distance = 12, look.orthographic = 0;
+    draw(picture);
+    ck_assert(pixel_at(picture, 0, 18, 0)[0] > 60 && pixel_at(picture, 0, 18, 0)[2] < 30); /* with gleam */
+    ck_assert(pixel_at(picture, 8, 50, 8)[2] > 10 && pixel_at(picture, 8, 50, 8)[0] < 30);
+    const uint8_t hidden[2][4] = {{0, 0, 0, 0}, {0, 0, 0, 0}};
+    const double bounds[6] = {-50, -50, -50, 50, 50, 50};
+    look.colours = hidden[0], look.bounds = bounds;
+    draw(picture);
+    ck_assert_int_eq(pixel_at(picture, 15, 500, 9)[0], 99); /* the detector, beside the beam's axis */
+    look.from[1] = 1;                                       /* away from the detector, towards the source */
+    draw(picture);
+    ck_assert_int_eq(picture[0], 11);
+    ck_assert_int_eq(picture[1], 22);
+    ck_assert_int_eq(picture[2], 33);
+    /* obliquely along the detector, whose left half is behind the eye */
+    const double beside[3] = {50, 490, 0};
+    look.target = beside, look.distance = 45;
+    look.from[0] = -1, look.from[1] = -0.4;
+    draw(picture);
+    ck_assert_int_eq(pixel_at(picture, 60, 500, 1)[0], 99);
+    ck_assert_int_eq(pixel_at(picture, 80, 500, -4)[1], 99);
+}
+END_TEST
+
+/* A cut takes the near half of a box away: what is within it is seen, and its inside in one colour. The bytes on the kept side
+ * do not change. */
+START_TEST(a_cut_opens_parts) {
+    const uint8_t colours[2][4] = {{RED, 0, 0, 255}, {0, GREEN, 0, 255}};
+    const double cut[4] = {0, -1, 0, 0}; /* kept: y >= 0 */
+    add_box("shell", 60, 0, 0, 0, -1);
+    add_box("core", 20, 0, 0, 0, 0);
+    look.colours = colours[0];
+    draw(other);
+    ck_assert(pixel_at(other, 8, -30, 8)[1] < 30); /* beside the source */
+    look.cut = cut;
+    draw(picture);
+    /* the core is open too: both show the inside of their far walls, 0.7 of their colour */
+    ck_assert_int_eq(pixel_at(picture, 8, 0, 8)[1], lround(0.7 * GREEN));
+    ck_assert_int_eq(pixel_at(picture, 20, 0, 14)[0], lround(0.7 * RED));
+    ck_assert_int_eq(pixel_at(picture, 20, 0, 14)[1], 0);
+    look.from[1] = 1; /* from behind nothing is seen of it */
+    draw(picture);
+    look.cut = NULL;
+    draw(other);
+    ck_assert_int_eq(memcmp(pixel_at(picture, 10, 30, 10), pixel_at(other, 10, 30, 10), 4), 0);
+    ck_assert(pixel_at(picture, 10, 30, 10)[0] > 60);
+    const double nowhere[4] = {0, 1, 0, (double)INFINITY};
+    look.cut = nowhere;
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT, "cut");
+}
+END_TEST
+
+/* Poses of the look are those of the scene, bit for bit, and leave the scene as it is. */
+START_TEST(poses_replace_those_of_the_scene) {
+    double poses[2][16], pose[16] = {0, -1, 0, 35, 1, 0, 0, -5, 0, 0, 1, 12, 0, 0, 0, 1};
+    skg_part part;
+    add_box("box", 20, 0, 0, 0, -1);
+    add_box("other", 10, 30, 0, 0, -1);
+    for (int i = 0; i < 2; i++) {
+        skg_part_init(&part);
+        ck_skg(skg_scene_part_get(scene, i, &part));
+        memcpy(poses[i], part.pose, sizeof poses[i]);
+    }
+    memcpy(poses[1], pose, sizeof pose);
+    look.poses = poses[0];
+    draw(picture);
+    look.poses = NULL;
+    draw(other);
+    ck_assert(memcmp(picture, other, sizeof picture) != 0);
+    ck_skg(skg_scene_part_pose_set(scene, 1, pose));
+    draw(other);
+    ck_assert_mem_eq(picture, other, sizeof picture);
+    poses[1][7] = (double)NAN;
+    look.poses = poses[0];
+    ck_skg_fails(skg_scene_picture(context, scene, &view, &look, picture), SKG_ERR_ARGUMENT,
+                 "pose of part other");
+}
+END_TEST
+
 START_TEST(default_colours) {
     uint8_t colours[4][4];
     skg_part part;
@@ -396,6 +510,10 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, jaws_leave_a_smaller_beam);
     tcase_add_test(tests, failures_are_reported);
     tcase_add_test(tests, bounds_hold_the_eye);
+    tcase_add_test(tests, a_target_places_the_eye);
+    tcase_add_test(tests, what_is_behind_the_eye_is_not_drawn);
+    tcase_add_test(tests, a_cut_opens_parts);
+    tcase_add_test(tests, poses_replace_those_of_the_scene);
     tcase_add_test(tests, default_colours);
     tcase_add_test(tests, errors_name_the_thing);
 }

@@ -6,6 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 #include <sys/stat.h>
+#include <time.h>
 
 static int fail(char *sentence) {
     snprintf(sentence, LIVE_SENTENCE, "%s", skg_last_error());
@@ -28,8 +29,24 @@ static void forget_files(live_base *base) {
     base->file_count = 0;
 }
 
-/* Notes the files of a set-up, so that a change is seen. */
-static int note_files(live_base *base, const skg_setup *setup) {
+/* ns: clocks of files are that coarse. */
+static const int64_t TICK = 20000000;
+
+/* When a file that was read from `begun` on was last changed; -1, which no file has: it may have been while it was read, so it is
+ * read again. */
+static int64_t stamp_since(const char *path, int64_t begun) {
+    struct stat status;
+    if (stat(path, &status) != 0) return 0;
+    const int64_t changed = (int64_t)status.st_mtim.tv_sec * 1000000000 + status.st_mtim.tv_nsec;
+    struct timespec now;
+    clock_gettime(CLOCK_REALTIME, &now);
+    /* a file from the future would be read for ever */
+    const int is_past = changed <= (int64_t)now.tv_sec * 1000000000 + now.tv_nsec;
+    return changed >= begun - TICK && is_past ? -1 : changed + status.st_size;
+}
+
+/* Notes the files of a set-up, so that a change is seen. begun: when the first of them was opened, ns. */
+static int note_files(live_base *base, const skg_setup *setup, int64_t begun) {
     int64_t count = 0;
     forget_files(base);
     if (setup && skg_setup_file_count(setup, &count) != SKG_OK) return 0;
@@ -41,7 +58,7 @@ static int note_files(live_base *base, const skg_setup *setup) {
         if (i > 0 && skg_setup_file_get(setup, i - 1, &name, &path) != SKG_OK) return 0;
         base->files[i] = strdup(path);
         if (!base->files[i]) return 0;
-        base->stamps[i] = stamp_of(path);
+        base->stamps[i] = stamp_since(path, begun);
         base->file_count = i + 1;
     }
     return 1;
@@ -87,12 +104,16 @@ int live_base_read(live_base *base, char *sentence) {
     source.path = base->path;
     source.settings = settings;
     source.lenient = cli_given(base->arguments, &cli_flag_lenient);
+    struct timespec begun;
+    clock_gettime(CLOCK_REALTIME, &begun);
     skg_status status = settings ? skg_setup_create(base->context, &source, &setup) : SKG_ERR_MEMORY;
     if (status == SKG_OK) status = skg_setup_text_get(setup, &text);
     char *copy = status == SKG_OK ? strdup(text) : NULL;
     if (status != SKG_OK) fail(sentence);
     const int is_noted =
-        note_files(base, setup); /* also of a file that is wrong, so that its mending is seen */
+        note_files(base, setup,
+                   (int64_t)begun.tv_sec * 1000000000 +
+                       begun.tv_nsec); /* also of a file that is wrong, so that its mending is seen */
     if (copy) {
         free(base->text);
         base->text = copy;

@@ -152,14 +152,19 @@ static json_t *scatter_json(const live_scene *scene) {
     return object;
 }
 
-json_t *live_describe_shot(live_scene *scene, const live_wish *wish, const skg_view *view, int64_t number,
-                           double ms) {
-    json_t *object = json_object(), *seen = json_object();
-    const int is_draft = wish->dragging && scene->draft;
+json_t *live_describe_phase(const live_wish *wish, int64_t number, double ms) {
+    json_t *object = json_object();
     json_object_set_new(object, "shot", json_integer(number));
     json_object_set_new(object, "wish", json_integer(wish->number));
     json_object_set_new(object, "ms", cli_json_number(ms));
     json_object_set_new(object, "phase", cli_json_number(wish->phase));
+    return object;
+}
+
+json_t *live_describe_shot(live_scene *scene, const live_wish *wish, const skg_view *view, int64_t number,
+                           double ms) {
+    json_t *object = live_describe_phase(wish, number, ms), *seen = json_object();
+    const int is_draft = wish->dragging && scene->draft;
     json_object_set_new(object, "state", live_wish_json(wish));
     json_object_set_new(object, "stages", stages_json(is_draft ? scene->draft : scene->plan));
     json_object_set_new(object, "beam", beam_json(scene, view));

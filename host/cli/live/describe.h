@@ -12,6 +12,9 @@ json_t *live_describe_scene(const live_base *base, live_scene *scene, const live
 json_t *live_describe_shot(live_scene *scene, const live_wish *wish, const skg_view *view, int64_t number,
                            double ms);
 
+/* {"shot": ...}: number, wish, ms and phase alone, of a frame that differs from the one before by its phase. */
+json_t *live_describe_phase(const live_wish *wish, int64_t number, double ms);
+
 /* A number that differs where the surfaces of two scenes do. */
 int64_t live_geometry_of(const live_scene *scene);
 

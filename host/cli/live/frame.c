@@ -2,6 +2,7 @@
 
 #include "common/progress.h"
 #include "core/maths.h"
+#include "live/numbers.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -75,6 +76,18 @@ static int list_poses(const live_scene *scene, const live_wish *wish, pose_list 
     return 1;
 }
 
+int live_frame_poses(const live_scene *scene, const live_wish *wish, double *poses, char *sentence) {
+    pose_list list = {0};
+    int is_made = list_poses(scene, wish, &list, sentence);
+    for (int64_t i = 0; is_made && i < scene->parts; i++)
+        if (pose_of(scene, wish, i, poses + 16 * i) != SKG_OK) is_made = fail(sentence);
+    for (int64_t i = 0; is_made && i < list.count; i++)
+        memcpy(poses + 16 * list.parts[i], list.poses + 16 * i, 16 * sizeof *poses);
+    free(list.parts);
+    free(list.poses);
+    return is_made;
+}
+
 /* Waits for the image, and cancels what the device was not given yet when a newer wish comes. */
 static skg_status wait_for(skg_job **job, live_hub *hub, double expected_ms, int *dropped) {
     static const struct timespec pause = {.tv_nsec = 2000000};
@@ -116,38 +129,17 @@ int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *
     return is_listed;
 }
 
-/* The least and the largest finite value; both 0 if there is none. Returns whether all are finite. */
-static int find_range(const float *values, int64_t count, float *low, float *high) {
-    int64_t finite = 0;
-    *low = INFINITY, *high = -INFINITY;
-    for (int64_t i = 0; i < count; i++) {
-        if (!isfinite(values[i])) continue;
-        finite++;
-        *low = values[i] < *low ? values[i] : *low;
-        *high = values[i] > *high ? values[i] : *high;
-    }
-    if (finite == 0) *low = *high = 0;
-    return finite == count;
-}
-
 static int pack(const float *values, live_header *header, live_shot *shot) {
     const int64_t count = (int64_t)header->columns * header->rows;
     float low, high;
-    if (!find_range(values, count, &low, &high)) header->notes |= LIVE_NOTE_INFINITE;
+    if (!live_range_find(values, count, &low, &high)) header->notes |= LIVE_NOTE_INFINITE;
     header->low = (double)low;
     header->step = ((double)high - (double)low) / UINT16_MAX;
     shot->size = sizeof *header + (size_t)count * sizeof(uint16_t);
     shot->bytes = malloc(shot->size);
     if (!shot->bytes) return 0;
     uint16_t *numbers = (uint16_t *)(void *)(shot->bytes + sizeof *header);
-    const float scale = header->step > 0 ? (float)(1 / header->step) : 0;
-    for (int64_t i = 0; i < count; i++) {
-        float number = (values[i] - low) * scale + 0.5F;
-        number =
-            number <= UINT16_MAX ? number : UINT16_MAX; /* what is no number is shown as the largest, too */
-        number = number > 0 ? number : 0;
-        numbers[i] = (uint16_t)(int32_t)number;
-    }
+    live_numbers_write(values, count, low, header->step, numbers);
     memcpy(shot->bytes, header, sizeof *header);
     return 1;
 }
@@ -164,7 +156,9 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
     output.data = scene->values;
     if (!live_scene_view(base, scene, wish, &view, sentence) || !live_frame_pose(scene, wish, sentence))
         return 0;
+    shot->view = view;
     if (is_draft) live_view_coarsen(&view, scene->factor);
+    scene->is_shown = 0;
     if (!live_frame_render(scene, wish, is_draft ? scene->draft : scene->plan, &view, hub, &output, 1,
                            &shot->is_dropped, &is_outside, sentence))
         return 0;
@@ -187,6 +181,9 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
         skg_channel_init(&channel);
         if (skg_plan_channel_get(scene->draft, 0, &channel) == SKG_OK) header.flat_field = channel.flat_field;
     }
+    scene->is_shown = 1;
+    scene->shown = view;
+    scene->shown_flat = header.flat_field;
     if (pack(scene->values, &header, shot)) return 1;
     snprintf(sentence, LIVE_SENTENCE, "out of host memory for the frame");
     return 0;

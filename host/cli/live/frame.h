@@ -27,6 +27,7 @@ typedef struct {
     unsigned char *bytes; /* for live_hub_show; NULL: there is no image */
     size_t size;
     double ms;
+    skg_view view;  /* of the whole detector */
     int is_dropped; /* a newer wish came before the image was begun */
 } live_shot;
 
@@ -39,6 +40,9 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
 int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *plan, const skg_view *view,
                       live_hub *hub, const skg_output *outputs, int64_t output_count, int *dropped,
                       int *is_outside, char *sentence);
+
+/* The poses of all parts, [parts][16]. Returns 0 with a sentence. */
+int live_frame_poses(const live_scene *scene, const live_wish *wish, double *poses, char *sentence);
 
 /* Poses the breath of a wish. */
 int live_frame_pose(live_scene *scene, const live_wish *wish, char *sentence);

@@ -17,10 +17,13 @@ struct live_client {
     void *connection;
     pthread_t sender;
     int sends, leaves; /* leaves: the sender ends */
+    int is_busy;       /* the sender sends */
     int64_t order;     /* the page that was greeted first may change the scene */
     int64_t sent[UNTAKEN_MAX];
     int untaken;
-    live_packet *frame;
+    live_packet *frame, *picture;
+    int64_t look_order; /* of its look among those of all pages; 0: none waits */
+    live_look look;
     live_mail mail;
 };
 
@@ -29,7 +32,7 @@ struct live_hub {
     pthread_cond_t asked, sent; /* a page asked for something; something is to be sent */
     live_send send;
     live_client *clients[LIVE_PAGES_MAX];
-    int64_t greeted;
+    int64_t greeted, looks;
     live_asked waiting;
     double active_ms;
     char *page;
@@ -111,12 +114,18 @@ static void *run_sender(void *user) {
             pthread_cond_signal(&hub->asked);
         }
         if (!packet) {
+            packet = client->picture;
+            client->picture = NULL;
+        }
+        if (!packet) {
             pthread_cond_wait(&hub->sent, &hub->lock);
             continue;
         }
+        client->is_busy = 1;
         pthread_mutex_unlock(&hub->lock);
         const int is_there = hub->send(client->connection, is_binary, packet->bytes, packet->size);
         pthread_mutex_lock(&hub->lock);
+        client->is_busy = 0;
         live_packet_release(&packet);
         if (!is_there) client->leaves = 1;
     }
@@ -176,6 +185,8 @@ void live_hub_leave(live_client *client) {
     if (was_sending) pthread_join(client->sender, NULL);
     pthread_mutex_lock(&hub->lock);
     live_packet_release(&client->frame);
+    live_packet_release(&client->picture);
+    if (client->look_order) live_look_free(&client->look);
     live_mail_clear(&client->mail);
     pthread_mutex_unlock(&hub->lock);
     free(client);
@@ -209,6 +220,18 @@ static void keep(live_hub *hub, live_message *message) {
     pthread_cond_signal(&hub->asked);
 }
 
+/* A page has one look; a newer one takes its turn. */
+static void keep_look(live_client *client, const live_look *look) {
+    live_hub *hub = client->hub;
+    if (client->look_order)
+        live_look_free(&client->look);
+    else
+        client->look_order = ++hub->looks;
+    client->look = *look;
+    hub->active_ms = cli_now_ms();
+    pthread_cond_signal(&hub->asked);
+}
+
 void live_hub_hear(live_client *client, const char *text, size_t length) {
     live_hub *hub = client->hub;
     live_message message;
@@ -220,6 +243,8 @@ void live_hub_hear(live_client *client, const char *text, size_t length) {
     } else if (message.kind == LIVE_ACK) {
         take_ack(client, message.ack);
         pthread_cond_signal(&hub->asked);
+    } else if (message.kind == LIVE_LOOK) {
+        keep_look(client, &message.look);
     } else if (find_owner(hub) != client && message.kind != LIVE_PROBE) {
         refuse(client, "another page changes this scene; this one only shows it");
         if (message.kind == LIVE_WISH) live_wish_free(&message.wish);
@@ -242,14 +267,53 @@ static int has_asked(const live_hub *hub) {
     return waiting->has_wish || waiting->has_probe || waiting->has_measure || waiting->take_count > 0;
 }
 
-int live_hub_wait(live_hub *hub, double ms, live_asked *asked) {
+/* The page whose look has waited longest; NULL: there is none. */
+static live_client *find_look(const live_hub *hub) {
+    live_client *first = NULL;
+    for (int i = 0; i < LIVE_PAGES_MAX; i++) {
+        live_client *client = hub->clients[i];
+        if (client && client->look_order && (!first || client->look_order < first->look_order))
+            first = client;
+    }
+    return first;
+}
+
+int live_hub_look_take(live_hub *hub, live_look *look, int64_t *page) {
+    pthread_mutex_lock(&hub->lock);
+    live_client *client = find_look(hub);
+    if (client) {
+        *look = client->look;
+        *page = client->order;
+        client->look_order = 0;
+    }
+    pthread_mutex_unlock(&hub->lock);
+    return client != NULL;
+}
+
+void live_hub_picture(live_hub *hub, int64_t page, unsigned char *bytes, size_t size) {
+    live_packet *packet = live_packet_create(0, bytes, size);
+    if (!packet) return;
+    pthread_mutex_lock(&hub->lock);
+    for (int i = 0; i < LIVE_PAGES_MAX; i++) {
+        live_client *client = hub->clients[i];
+        if (!client || !client->sends || client->order != page) continue;
+        live_packet_release(&client->picture);
+        client->picture = live_packet_retain(packet);
+    }
+    live_packet_release(&packet);
+    pthread_cond_broadcast(&hub->sent);
+    pthread_mutex_unlock(&hub->lock);
+}
+
+int live_hub_wait(live_hub *hub, double ms, int sees_looks, live_asked *asked) {
     struct timespec end;
     clock_gettime(CLOCK_MONOTONIC, &end);
     const double ns = (double)end.tv_nsec + 1e6 * fmax(ms, 0);
     end.tv_sec += (time_t)(ns / 1e9);
     end.tv_nsec = (long)fmod(ns, 1e9);
     pthread_mutex_lock(&hub->lock);
-    if (!has_asked(hub) && ms > 0) pthread_cond_timedwait(&hub->asked, &hub->lock, &end);
+    if (!has_asked(hub) && !(sees_looks && find_look(hub)) && ms > 0)
+        pthread_cond_timedwait(&hub->asked, &hub->lock, &end);
     const int has = has_asked(hub);
     *asked = hub->waiting;
     hub->waiting = (live_asked){0};
@@ -269,7 +333,9 @@ int live_hub_is_thirsty(live_hub *hub) {
     pthread_mutex_lock(&hub->lock);
     for (int i = 0; i < LIVE_PAGES_MAX; i++) {
         const live_client *client = hub->clients[i];
-        if (client && client->sends && !client->frame) is_thirsty = 1;
+        /* a frame that a free sender is about to take is as good as taken */
+        if (client && client->sends && (!client->frame || (can_take(client) && !client->is_busy)))
+            is_thirsty = 1;
     }
     pthread_mutex_unlock(&hub->lock);
     return is_thirsty;

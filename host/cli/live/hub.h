@@ -45,8 +45,14 @@ typedef struct {
     int take_count;
 } live_asked;
 
-/* Waits for something asked, for at most `ms`. Returns whether there is something. */
-int live_hub_wait(live_hub *hub, double ms, live_asked *asked);
+/* Waits for something asked, for at most `ms`; sees_looks: or for a look. Returns whether there is something but looks. */
+int live_hub_wait(live_hub *hub, double ms, int sees_looks, live_asked *asked);
+
+/* Takes the look that has waited longest, which the caller frees. page: for live_hub_picture. Returns whether there was one. */
+int live_hub_look_take(live_hub *hub, live_look *look, int64_t *page);
+
+/* Sends a picture to the page that has asked for it, if it is still there. Takes over the bytes. */
+void live_hub_picture(live_hub *hub, int64_t page, unsigned char *bytes, size_t size);
 
 /* Whether a newer wish waits. */
 int live_hub_has_news(live_hub *hub);

@@ -8,14 +8,22 @@
 #include "live/describe.h"
 #include "live/frame.h"
 #include "live/page.h"
+#include "live/picture.h"
 
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
-/* ms: how long to wait for something asked, how often files are looked at, and what an image may take while something is dragged. */
 enum { WARNINGS_MAX = 20 };
+
+/* ms: how long to wait for something asked, how often files are looked at, and what an image may take while something is dragged. */
 static const double PAUSE = 100, LOOK = 500, FLUENT = 40;
+
+/* ms between two frames of which pages are told all while the scene breathes by itself. */
+static const double TELL = 200;
+
+/* While images follow each other, pictures of the 3D view leave this many times their own time to them. */
+static const double X_RAYS = 3;
 
 static void tell_error(live_loop *loop, int64_t wish, const char *sentence) {
     json_t *object = json_object();
@@ -69,18 +77,30 @@ static int change_scene(live_loop *loop, const live_wish *wish, char *sentence) 
     return 1;
 }
 
+/* Tells pages of a frame: all of it, or while the scene breathes by itself often only the phase. */
+static void tell_frame(live_loop *loop, const live_shot *shot) {
+    const double now = cli_now_ms();
+    if (loop->wish.plays && loop->told == loop->wish.number && now - loop->told_ms < TELL) {
+        live_hub_tell_json(loop->hub, live_describe_phase(&loop->wish, loop->number, shot->ms));
+        return;
+    }
+    loop->told = loop->wish.number;
+    loop->told_ms = now;
+    live_hub_shot_tell(loop->hub,
+                       live_describe_shot(&loop->scene, &loop->wish, &shot->view, loop->number, shot->ms));
+}
+
 static int make_frame(live_loop *loop, char *sentence) {
     live_shot shot;
-    skg_view view;
     const int64_t number = loop->number + 1;
     loop->is_wanted = 0;
     if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, loop->hub, number, &shot, sentence))
         return 0;
     if (shot.is_dropped || !shot.bytes) return 1;
     loop->number = number;
+    loop->framed_ms = cli_now_ms();
     live_hub_show(loop->hub, number, shot.bytes, shot.size);
-    if (live_scene_view(&loop->base, &loop->scene, &loop->wish, &view, sentence))
-        live_hub_shot_tell(loop->hub, live_describe_shot(&loop->scene, &loop->wish, &view, number, shot.ms));
+    tell_frame(loop, &shot);
     return 1;
 }
 
@@ -179,6 +199,26 @@ static void rest(live_loop *loop) {
         tell_error(loop, loop->wish.number, sentence);
 }
 
+/* Draws a picture of the 3D view that a page waits for. Images come first. */
+static void draw(live_loop *loop) {
+    char sentence[LIVE_SENTENCE];
+    unsigned char *bytes;
+    size_t size;
+    int64_t page;
+    live_look look;
+    const double start = cli_now_ms();
+    if (start < loop->picture_ms || !live_hub_look_take(loop->hub, &look, &page)) return;
+    if (!live_picture_make(&loop->scene, &loop->wish, &look, &bytes, &size, sentence)) {
+        json_t *object = json_object();
+        json_object_set_new(object, "refused", cli_json_text(sentence));
+        live_hub_tell_json(loop->hub, object);
+    }
+    live_look_free(&look);
+    if (bytes) live_hub_picture(loop->hub, page, bytes, size);
+    const double now = cli_now_ms();
+    loop->picture_ms = start - loop->framed_ms < PAUSE ? now + X_RAYS * (now - start) : now;
+}
+
 void live_loop_run(live_loop *loop, double idle) {
     char sentence[LIVE_SENTENCE];
     while (!cli_stop_asked()) {
@@ -186,10 +226,16 @@ void live_loop_run(live_loop *loop, double idle) {
         if (cli_now_ms() - loop->looked_ms > LOOK) read_again(loop);
         play(loop);
         const int is_ready = loop->is_wanted && live_hub_is_thirsty(loop->hub);
-        const int has = live_hub_wait(loop->hub, is_ready ? 0 : PAUSE, &asked);
+        const double until = loop->picture_ms - cli_now_ms(); /* the next picture */
+        const int has = live_hub_wait(loop->hub,
+                                      is_ready    ? 0
+                                      : until > 0 ? fmin(until, PAUSE)
+                                                  : PAUSE,
+                                      until <= 0, &asked);
         if (asked.has_wish) take_wish(loop, &asked.wish);
         if (loop->is_wanted && live_hub_is_thirsty(loop->hub) && !make_frame(loop, sentence))
             tell_error(loop, loop->wish.number, sentence);
+        draw(loop);
         if (has)
             answer(loop, &asked);
         else if (!is_ready)

@@ -11,12 +11,16 @@ typedef struct {
     live_wish wish;   /* which it shows */
     live_hub *hub;
     const char *nonce;
-    int64_t number;   /* of the last frame */
-    int64_t geometry; /* of the page */
-    int is_wanted;    /* 1: a frame of the wish is still to be made */
-    int is_told;      /* 1: pages that begin are told of this wish */
-    double looked_ms; /* when the files were last looked at */
-    double played_ms; /* when the last frame that plays was posed; 0: it does not play */
+    int64_t number;    /* of the last frame */
+    int64_t geometry;  /* of the page */
+    int is_wanted;     /* 1: a frame of the wish is still to be made */
+    int is_told;       /* 1: pages that begin are told of this wish */
+    double looked_ms;  /* when the files were last looked at */
+    double played_ms;  /* when the last frame that plays was posed; 0: it does not play */
+    double told_ms;    /* when pages were last told all of a frame */
+    int64_t told;      /* its wish */
+    double framed_ms;  /* when the last frame was made */
+    double picture_ms; /* when the next picture of the 3D view may be drawn */
 } live_loop;
 
 /* Reads the scene, makes its page and its first frame. Returns an exit status and prints the error. */

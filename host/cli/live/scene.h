@@ -42,8 +42,13 @@ typedef struct {
     double load_ms, plan_ms;
     double
         frame_ms; /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
-    int64_t frames;     /* whole images so far */
-    float *values;      /* [rows][columns] of an image */
+    int64_t frames; /* whole images so far */
+    float *values;  /* [rows][columns] of an image */
+    int is_shown;   /* 1: `values` is a whole image: that of the view `shown` */
+    skg_view shown;
+    double shown_flat; /* its flat field; 0: the values are -ln(I/I0) */
+    double box[6];     /* least and greatest corner of the parts, mm, where has_box */
+    int has_box;
     skg_view beam_view; /* view of `beam`; all 0: not computed yet */
     skg_quality beam;   /* the open beam, cached because it takes 0.1 ms */
     int has_beam;

@@ -173,11 +173,11 @@ static int read_probe(json_t *value, live_message *message, char *sentence) {
 }
 
 static int read_object(json_t *object, live_message *message, char *sentence) {
-    static const char *const names[] = {"wish", "ack", "probe", "take", "measure"};
+    static const char *const names[] = {"wish", "ack", "probe", "take", "measure", "look"};
     json_t *value = NULL;
-    for (message->kind = 0; message->kind <= LIVE_MEASURE; message->kind++)
+    for (message->kind = 0; message->kind < LIVE_KINDS; message->kind++)
         if ((value = json_object_get(object, names[message->kind]))) break;
-    if (!value) return refuse(sentence, "a message has the key wish, ack, probe, take or measure");
+    if (!value) return refuse(sentence, "a message has the key wish, ack, probe, take, measure or look");
     if (message->kind == LIVE_WISH) return read_wish(object, &message->wish, sentence);
     if (message->kind == LIVE_PROBE) return read_probe(value, message, sentence);
     if (message->kind == LIVE_ACK) {
@@ -185,6 +185,7 @@ static int read_object(json_t *object, live_message *message, char *sentence) {
         return json_is_integer(value) ? 1 : refuse(sentence, "\"ack\" is no number of a frame");
     }
     if (message->kind == LIVE_MEASURE) return 1;
+    if (message->kind == LIVE_LOOK) return live_look_read(value, &message->look, sentence);
     const char *take = json_string_value(value);
     if (!take || (strcmp(take, "png") != 0 && strcmp(take, "tif") != 0 && strcmp(take, "mha") != 0))
         return refuse(sentence, "\"take\" is not png, tif or mha");

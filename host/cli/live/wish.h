@@ -2,11 +2,9 @@
 #ifndef CLI_LIVE_WISH_H
 #define CLI_LIVE_WISH_H
 
-#include <jansson.h>
-#include <stddef.h>
-#include <stdint.h>
+#include "live/look.h"
 
-enum { LIVE_SENTENCE = 1024 };
+#include <stddef.h>
 
 /* How the scene shall be. */
 typedef struct {
@@ -19,18 +17,20 @@ typedef struct {
     int dragging, plays; /* plays: the phase goes on by itself */
 } live_wish;
 
-enum { LIVE_WISH, LIVE_ACK, LIVE_PROBE, LIVE_TAKE, LIVE_MEASURE };
+enum { LIVE_WISH, LIVE_ACK, LIVE_PROBE, LIVE_TAKE, LIVE_MEASURE, LIVE_LOOK, LIVE_KINDS };
 
 /* A message. */
 typedef struct {
     int kind;
     live_wish wish;  /* LIVE_WISH */
+    live_look look;  /* LIVE_LOOK */
     int64_t ack;     /* LIVE_ACK: number of a frame */
     double probe[2]; /* LIVE_PROBE: column and row */
     char take[8];    /* LIVE_TAKE: "png", "tif" or "mha" */
 } live_message;
 
-/* Reads a message. Returns 1; or 0 with a sentence that says what is wrong. The caller frees the wish of a LIVE_WISH. */
+/* Reads a message. Returns 1; or 0 with a sentence that says what is wrong. The caller frees the wish of a LIVE_WISH
+ * and the look of a LIVE_LOOK. */
 int live_message_read(const char *text, size_t length, live_message *message, char sentence[LIVE_SENTENCE]);
 
 /* A scene as its file has it. */

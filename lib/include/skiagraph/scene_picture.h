@@ -44,11 +44,25 @@ typedef struct {
     /** Number of points of the path. */
     int64_t path_count;
     /** [2][3] least and greatest corner of a box, mm, that the picture shows and where the axes stand, instead of the
-     * box of the parts: with the same box, frames of parts that move have the same eye. NULL: the box of the parts. */
+     * box of the parts: with the same box, frames of parts that move have the same eye. With it every part may be left
+     * out. NULL: the box of the parts. */
     const double *bounds;
     /** Jaws: the beam is drawn as they leave it, and around their opening. NULL: the beam meets the corners of the
      * detector. */
     const skg_collimation *collimation;
+    /** [3] point in the middle of the picture, mm. The eye then stands at `distance` from it, wherever the scene is, and
+     * nothing behind the eye or directly in front of it is drawn. NULL: everything is in the picture. */
+    const double *target;
+    /** With a target: mm from the eye to it, above 0. The picture is 2 distance tan(14 degrees) high at the target, with
+     * and without perspective. */
+    double distance;
+    /** [4] a, b, c, d: parts are drawn only where a x + b y + c z is at most d, mm. What is seen of their inside is drawn
+     * without shading. NULL: parts are whole. */
+    const double *cut;
+    /** [3] red, green and blue of the background, 0 to 255; NULL: a light grey. */
+    const uint8_t *background;
+    /** [parts][16] poses instead of those of the scene, row by row, mm; NULL: those of the scene. */
+    const double *poses;
 } skg_look;
 
 SKG_INIT(skg_look)
@@ -66,8 +80,8 @@ SKG_API skg_status skg_look_colours_get(const skg_scene *scene, uint8_t *colours
  *     look      NULL: as skg_look_init prepares it
  *     rgba      result: [rows][columns][4] red, green, blue and 255, 0 to 255 (sRGB), row 0 on top
  *     errors    SKG_ERR_SCENE (no parts, every part left out, a vertex that is not finite, a view that
- *               skg_view_check refuses, jaws that the view cannot have), SKG_ERR_ARGUMENT (sizes, a direction that is
- *               not finite),
+ *               skg_view_check refuses, jaws that the view cannot have), SKG_ERR_ARGUMENT (sizes; a direction, target,
+ *               cut or pose that is not finite; a distance that is not above 0),
  *               SKG_ERR_DEVICE_MEMORY, SKG_ERR_MEMORY
  *     method    Triangles are sorted into tiles of the picture; in each tile the device keeps the nearest opaque
  *               surface, then adds the translucent ones in front of it, nearest first (depth peeling, Everitt

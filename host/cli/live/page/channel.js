@@ -1,5 +1,5 @@
 // The way to the server: a WebSocket. In a notebook it is the window around this frame, which speaks to the kernel. A channel has
-// send(message) and renew(), by which a page with other surfaces is asked for. What arrives goes to receive().
+// send(message), which returns whether it was sent, and renew(), by which a page with other surfaces is asked for. What arrives goes to receive().
 'use strict';
 const isNotebook = location.protocol === 'about:', AS_FIRST = isNotebook ? 'as it was' : 'as in the file';
 
@@ -18,7 +18,11 @@ function socketChannel() {
   };
   open();
   return {
-    send: message => { if (socket.readyState === WebSocket.OPEN) socket.send(JSON.stringify(message)); },
+    send: message => {
+      const isOpen = socket.readyState === WebSocket.OPEN;
+      if (isOpen) socket.send(JSON.stringify(message));
+      return isOpen;
+    },
     renew: () => { keepHistory(); location.reload(); },
   };
 }
@@ -55,6 +59,7 @@ function frameChannel() {
     send: message => {
       waiting.set(message.take || Object.keys(message)[0], message);
       if (port && !isUnderWay) post();
+      return true;
     },
     renew: () => {}, // the kernel sends another page by itself
   };

@@ -30,9 +30,16 @@ function pairShot() {
   if (net.shot && xray.frame && net.shot.shot === xray.frame.number) noteProjection(xray.frame, net.shot.state);
 }
 
+// While the scene breathes by itself, most messages about frames have the phase alone.
+function showPhase(phase) {
+  state.phase = phase;
+  change();
+}
+
 let lastShot = 0, lastView = '';
 function showShot(message) {
   if (!live) return;
+  if (!message.view) return showPhase(message.phase); // all else is as before
   const now = performance.now(), isCalm = now - lastShot > 200 || !state.play; // while it breathes, texts follow five times a second
   if (isCalm) lastShot = now, bars(byId('stages'), Object.entries(message.stages), ms => number(ms, 3) + ' ms');
   byId('scattered').textContent = message.scatter ? `scatter: ${message.scatter.histories} photons in ${number(message.scatter.seconds, 3)} s, mean ${number(message.scatter.mean, 3)} +- ${number(message.scatter.sigma, 2)}` : '';
@@ -43,7 +50,7 @@ function showShot(message) {
   const view = JSON.stringify(message.view);
   if (view !== lastView) {
     lastView = view;
-    if (gl) takeView(message.view); else scene.view = message.view;
+    takeView(message.view);
   }
   if (state.play && message.phase !== null) {
     state.phase = message.phase;

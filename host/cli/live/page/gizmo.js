@@ -12,7 +12,7 @@ function mmPerPixel(middle) {
 const canTurn = () => chosen.kind === 'part' || chosen.kind === 'detector';
 
 function drawGizmo() {
-  const overlay = byId('gizmo'), middle = gl && isOwner() ? middleOf() : null, at = middle && onScreen(middle);
+  const overlay = byId('gizmo'), middle = isOwner() ? middleOf() : null, at = middle && onScreen(middle);
   overlay.toggleAttribute('hidden', !at);
   if (!at) return;
   const length = REACH * mmPerPixel(middle);

@@ -97,10 +97,18 @@ function pressed(event) {
   change();
 }
 
-function begin3D() {
+// What this browser needs to draw by itself.
+function prepareGL() {
+  if (detector) return;
   Object.keys(shaders).forEach(compile);
   prepareMarks();
+  uploadParts();
+}
+
+function begin3D() {
+  measureWhole();
   prepareParts();
+  listenToServed();
   listenToStage();
   listenToGizmo();
   listenToCut();
@@ -114,16 +122,15 @@ function begin() {
   const dark = window.matchMedia('(prefers-color-scheme: dark)');
   document.title = scene.name + ' - Skiagraph live';
   byId('name').textContent = scene.name;
-  if (gl) begin3D();
-  else byId('no-gl').hidden = false;
+  begin3D();
   fillParts();
   listenToFilm();
   listenToProfile();
   listenToCost();
   listenToTakes();
   findHistory();
-  Object.assign(net, {show: showFrame});
-  net.hear.role = message => { net.role = message.role; tellRole(); change(); };
+  Object.assign(net, {show: showFrame, picture: showPicture});
+  net.hear.role = message => { net.role = message.role; restartPictures(); tellRole(); change(); };
   net.hear.scene = takeScene;
   net.hear.adopted = adopt;
   net.hear.error = message => { giveUp(message.wish); showSentence(message.error, true); };

@@ -1,7 +1,7 @@
 // What the server says goes to `hear`, frames to `show`, and wishes go the other way.
 'use strict';
 // shot: the newest message about a frame.
-const net = {channel: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, file: null, waits: false};
+const net = {channel: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, picture: null, file: null, waits: false};
 const HEADER = 48; // bytes before the pixels of a frame, live_header of host/cli/live/frame.h
 
 function readFrame(buffer) {
@@ -28,15 +28,18 @@ function receive(data) {
     for (const [key, act] of Object.entries(net.hear)) if (key in message) act(message);
     return;
   }
-  if (new DataView(data).getUint32(0) !== 0x534b4c46) return net.file(readFile(data));
+  const mark = new DataView(data).getUint32(0);
+  if (mark === 0x534b4c50) return net.picture(data); // "SKLP"
+  if (mark !== 0x534b4c46) return net.file(readFile(data));
   const frame = readFrame(data);
   net.shown = frame.wish;
   net.show(frame);
   say({ack: frame.number});
 }
 
+// Returns whether the message was sent.
 function say(message) {
-  if (net.channel) net.channel.send(message);
+  return !!net.channel && net.channel.send(message);
 }
 
 // At most one wish for each picture of the browser: the newest. make: called when it is sent.

@@ -29,9 +29,12 @@ function resize() {
 }
 
 function draw() {
-  if (gl) {
+  shot.time = state.phase === null ? 0 : state.phase;
+  if (isServed()) {
+    aim();
+    askPicture();
+  } else {
     meshes.forEach((mesh, i) => { mesh.pose = new Float32Array([0, 1, 2, 3].flatMap(c => [0, 1, 2, 3].map(r => moveOf(i)[4 * r + c]))); });
-    shot.time = state.phase === null ? 0 : state.phase;
     paintDetector();
     drawScene();
   }
@@ -43,7 +46,10 @@ function draw() {
 // Where the view takes long, as WebGL in software does, it is drawn less often, so that the X-ray image stays fluent.
 let nextDraw = 0;
 function step3D() {
-  if (dirty && performance.now() >= nextDraw) {
+  if (isServed()) {
+    calmPicture();
+    if (dirty) draw();
+  } else if (dirty && performance.now() >= nextDraw) {
     const began = performance.now();
     draw();
     gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, new Uint8Array(4)); // waits until it is drawn
@@ -70,9 +76,12 @@ function lookAs(name) {
 function takeView(view) {
   const old = [...lines, ...points, detector];
   scene.view = view;
-  for (const item of old) if (item) gl.deleteBuffer(item.buffer);
-  if (detector) gl.deleteTexture(detector.texture);
-  prepareMarks();
+  measureWhole();
+  if (detector) {
+    for (const item of old) gl.deleteBuffer(item.buffer);
+    gl.deleteTexture(detector.texture);
+    prepareMarks();
+  }
   if (greyImage) greyImage.isNew = true;
   change();
 }
@@ -128,9 +137,9 @@ function dragged(event) {
 
 let lastPoint = 0;
 function point(event) {
-  if (!gl || event.timeStamp - lastPoint < 60) return;
+  if (event.timeStamp - lastPoint < 60) return;
   lastPoint = event.timeStamp;
-  const i = partAt(event.offsetX, event.offsetY);
+  const i = partUnder(event.offsetX, event.offsetY);
   if (i === shot.under) return;
   shot.under = i;
   canvas.title = i >= 0 ? scene.parts[i].label : '';
@@ -147,7 +156,7 @@ function markAt(x, y) {
 function pick(x, y) {
   if (tape.on) return addEnd(x, y);
   draw(); // as addEnd
-  const mark = markAt(x, y), part = mark ? -1 : partAt(x, y);
+  const mark = markAt(x, y), part = mark ? -1 : partUnder(x, y);
   choose(mark || (part >= 0 ? 'part' : ''), part);
 }
 
@@ -160,7 +169,7 @@ function listenToStage() {
   canvas.onpointermove = dragged;
   canvas.onpointerup = canvas.onpointercancel = event => {
     fingers.delete(event.pointerId);
-    if (event.type === 'pointerup' && moved < 4 && event.button === 0 && gl) pick(event.offsetX, event.offsetY);
+    if (event.type === 'pointerup' && moved < 4 && event.button === 0) pick(event.offsetX, event.offsetY);
   };
   canvas.oncontextmenu = event => event.preventDefault();
   canvas.ondblclick = () => lookAs('parts');

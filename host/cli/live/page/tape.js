@@ -2,34 +2,15 @@
 'use strict';
 const tape = {on: false, ends: []}; // each end: {kind}, 'source' or 'detector', or {part, point} with the point before the part was moved
 
-// The ray through the centre of the canvas pixel at a CSS pixel: its start, and its direction, of length 1 along the view.
-function rayAt(x, y) {
-  const ratio = canvas.width / canvas.clientWidth, [right, up, toward] = axes(), t = Math.tan(FIELD / 2);
-  const across = (2 * (Math.floor(x * ratio) + 0.5) - canvas.width) / canvas.height * t, above = (1 - 2 * (Math.floor(y * ratio) + 0.5) / canvas.height) * t;
-  const aside = (from, scale) => add(add(from, scale * across, right), scale * above, up), away = toward.map(v => -v);
-  return camera.parallel ? {from: aside(eyePoint(), camera.distance), along: away} : {from: eyePoint(), along: aside(away, 1)};
-}
-
 // The part and the point in the world at a CSS pixel; null if there is no part. If the clip plane shows the inside of a part, the
 // point is the intersection of the ray with the plane.
 function surfaceAt(x, y) {
-  const part = partAt(x, y);
-  if (part < 0) return null;
-  const toward = axes()[2], reach = 8 * whole.reach; // enough for parts that were moved
-  const [deep, side] = sense(x, y, program => {
-    gl.uniform4f(program.at.deep, ...toward.map(v => v / reach), 0.5 - dot(toward, whole.middle) / reach);
-    drawMesh(part, program);
-  });
-  const {from, along} = rayAt(x, y), [a, b, c, w] = shot.cut, normal = [a, b, c], isInside = cut.across && side < 200 && dot(normal, along) !== 0;
-  const behind = dot(toward, add(from, -1, whole.middle)) - ((deep + 0.5) / 16777215 - 0.5) * reach; // mm from the start of the ray to the point, along the view
-  return {part, point: add(from, isInside ? (w - dot(normal, from)) / dot(normal, along) : behind, along)};
+  const hit = hitAt(x, y), [a, b, c, w] = shot.cut, normal = [a, b, c];
+  if (!hit) return null;
+  const {from, along} = hit.ray, slope = dot(normal, along), isInside = cut.across && hit.isBack && slope !== 0;
+  return {part: hit.part, point: add(from, isInside ? (w - dot(normal, from)) / slope : hit.t, along)};
 }
 
-// The inverse of `carry` for a rotation and a translation.
-function carryBack(m, p) {
-  const from = [0, 1, 2].map(r => p[r] - m[4 * r + 3]);
-  return [0, 1, 2].map(c => m[c] * from[0] + m[4 + c] * from[1] + m[8 + c] * from[2]);
-}
 const placeOfEnd = end => end.kind === 'source' ? scene.view.source : end.kind === 'detector' ? scene.view.centre : carry(moveOf(end.part), end.point);
 const nameOfEnd = end => end.kind || scene.parts[end.part].label;
 

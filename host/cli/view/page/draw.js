@@ -30,7 +30,7 @@ void main() {
   if (cut.xyz != vec3(0.0) && !gl_FrontFacing) c = 0.7 * colour.rgb; // an unlit inside looks like a solid part's section
   shown = vec4(mix(c, glow, 0.35 * float(glow != vec3(0.0))), alpha);
 }`],
-  // A number of 24 bits: that of the part, or the depth of the surface if `deep` is not 0. The fourth byte is then 255 for a front face.
+  // The number of the part, 24 bits.
   pick: [`#version 300 es
 uniform mat4 m, pose; uniform vec3 low, extent; uniform float between;
 layout(location=0) in vec3 a; layout(location=1) in vec3 b; out vec3 world;
@@ -40,11 +40,10 @@ void main() {
 }`,
   `#version 300 es
 precision highp float;
-uniform vec4 colour, cut, deep; in vec3 world; out vec4 shown;
+uniform vec4 colour, cut; in vec3 world; out vec4 shown;
 void main() {
   if (dot(cut.xyz, world) > cut.w) discard;
-  float at = floor(clamp(dot(deep.xyz, world) + deep.w, 0.0, 1.0) * 16777215.0);
-  shown = deep.xyz == vec3(0.0) ? colour : vec4(mod(at, 256.0), mod(floor(at / 256.0), 256.0), floor(at / 65536.0), gl_FrontFacing ? 255.0 : 128.0) / 255.0;
+  shown = colour;
 }`],
   line: [`#version 300 es
 uniform mat4 m; uniform vec2 picture; uniform float width;
@@ -126,12 +125,27 @@ let meshes = [], lines = [], points = [], detector = null, whole = {middle: [0, 
 function prepareParts() {
   meshes = scene.parts.map(part => {
     const mesh = makeMesh(part);
-    mesh.frames = mesh.frames.map(f => ({points: buffer(f.points), normals: buffer(f.normals)}));
-    mesh.corners = buffer(mesh.numbers, gl.ELEMENT_ARRAY_BUFFER);
-    mesh.colour = part.colour.map(x => x / 255), mesh.visible = true, mesh.pose = IDENTITY, mesh.array = gl.createVertexArray();
+    mesh.moments = mesh.frames.map(f => f.points);
+    mesh.colour = part.colour.map(x => x / 255), mesh.visible = true, mesh.pose = IDENTITY;
     mesh.volume = part.step.reduce((product, s) => product * (s || 1e-9), 1);
     return mesh;
   });
+}
+
+function uploadParts() {
+  for (const mesh of meshes) {
+    mesh.frames = mesh.frames.map(f => ({points: buffer(f.points), normals: buffer(f.normals)}));
+    mesh.corners = buffer(mesh.numbers, gl.ELEMENT_ARRAY_BUFFER);
+    mesh.array = gl.createVertexArray();
+  }
+}
+
+// What the view holds when all is seen.
+function measureWhole() {
+  const v = scene.view, [low, high] = scene.box, path = scene.path.length / 3;
+  const everything = [...boxPoints(low, high), ...v.corners, ...v.field, ...v.starts, ...Array.from({length: path}, (_, i) => scene.path.slice(3 * i, 3 * i + 3))];
+  const middle = [0, 1, 2].map(k => (Math.min(...everything.map(p => p[k])) + Math.max(...everything.map(p => p[k]))) / 2);
+  whole = {points: everything, middle, reach: 1.02 * Math.max(...everything.map(p => size(add(p, -1, middle))))};
 }
 
 function prepareMarks() {
@@ -153,9 +167,6 @@ function prepareMarks() {
   if (path > 0) points.push({buffer: buffer(new Float32Array(scene.path)), count: path, colour: [0.55, 0.35, 0.82, 1], width: POINT});
   const corner = [[0, 0], [1, 0], [1, 1], [0, 1]], quad = [0, 1, 2, 0, 2, 3].flatMap(i => [...v.corners[i], ...corner[i]]);
   detector = {buffer: buffer(new Float32Array(quad)), texture: gl.createTexture(), frame: -1};
-  const everything = [...boxPoints(low, high), ...v.corners, ...v.field, ...starts, ...Array.from({length: path}, (_, i) => step(i))];
-  const middle = [0, 1, 2].map(k => (Math.min(...everything.map(p => p[k])) + Math.max(...everything.map(p => p[k]))) / 2);
-  whole = {points: everything, middle, reach: 1.02 * Math.max(...everything.map(p => size(add(p, -1, middle))))};
 }
 
 function showImage(frame) {
@@ -263,7 +274,7 @@ function drawScene() {
   drawParts();
 }
 
-// Draws the one pixel at a CSS pixel, by `act`. Returns its number of 24 bits and its fourth byte.
+// Draws the one pixel at a CSS pixel, by `act`. Returns its number of 24 bits.
 let sensor = null;
 function sense(x, y, act) {
   if (!sensor) {
@@ -283,20 +294,19 @@ function sense(x, y, act) {
   gl.enable(gl.DEPTH_TEST);
   gl.useProgram(program.program);
   gl.uniform4fv(program.at.cut, shot.cut);
-  gl.uniform4f(program.at.deep, 0, 0, 0, 0);
   gl.clearColor(0, 0, 0, 0);
   gl.clear(gl.COLOR_BUFFER_BIT | gl.DEPTH_BUFFER_BIT);
   act(program);
   gl.readPixels(0, 0, 1, 1, gl.RGBA, gl.UNSIGNED_BYTE, found);
   gl.bindFramebuffer(gl.FRAMEBUFFER, null);
-  return [found[0] | found[1] << 8 | found[2] << 16, found[3]];
+  return found[0] | found[1] << 8 | found[2] << 16;
 }
 
 // The part at a CSS pixel: the nearest opaque one, or else the nearest translucent one; -1: none. Each part has its number as its
 // colour.
 function partAt(x, y) {
   for (const opaque of [true, false]) {
-    const [found] = sense(x, y, program => meshes.forEach((mesh, i) => {
+    const found = sense(x, y, program => meshes.forEach((mesh, i) => {
       if (!mesh.visible || mesh.colour[3] === 0 || mesh.colour[3] >= 1 !== opaque) return;
       gl.uniform4f(program.at.colour, (i + 1 & 255) / 255, (i + 1 >> 8 & 255) / 255, (i + 1 >> 16) / 255, 1);
       drawMesh(i, program);

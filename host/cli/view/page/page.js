@@ -282,7 +282,9 @@ function begin() {
   const dark = window.matchMedia('(prefers-color-scheme: dark)');
   Object.keys(shaders).forEach(compile);
   prepareMarks();
+  measureWhole();
   prepareParts();
+  uploadParts();
   fillPanel();
   fillLabels();
   listenToCanvas();
