@@ -14,6 +14,7 @@ from skiagraph import gvxr, gvxr2json, json2gvxr
 from skiagraph.gvxr import dragon, packing, utils
 from skiagraph.gvxr.gVXRDataReader import gVXRDataReader
 from skiagraph.gvxr.JSON2gVXRDataReader import JSON2gVXRDataReader
+from skiagraph.gvxr.wheel import DRAGON
 
 HERE = pathlib.Path(__file__).parent
 #: Roundings of sums and products of doubles.
@@ -210,41 +211,22 @@ def test_readers_for_cil(tmp_path):
     assert gVXRDataReader(tmp_path, [0], (0, 0, 1)).geometry()["ray_direction"].tolist() == [0, 1, 0]
 
 
-def test_the_dragon_is_fetched_by_the_user(tmp_path):
+def test_the_dragon_and_the_twins_are_fetched_by_the_user(tmp_path):
     with pytest.raises(sk.FileError, match="skiagraph.gvxr.dragon"):
-        gvxr.loadMeshFile("dragon", str(tmp_path / dragon.NAME), "mm")
-    with zipfile.ZipFile(tmp_path / "gvxr.whl", "w") as wheel:
-        wheel.writestr("gvxrPython3/_gvxrPython3/" + dragon.NAME, b"solid")
-        wheel.writestr("gvxrPython3/utils.py", b"")
+        gvxr.loadMeshFile("dragon", str(tmp_path / DRAGON), "mm")
+    with zipfile.ZipFile(tmp_path / "gvxr.whl", "w") as archive:
+        archive.writestr("gvxrPython3/_gvxrPython3/" + DRAGON, b"solid")
+        archive.writestr("gvxrPython3/twins/models/one.json5", b"{}")
+        archive.writestr("gvxrPython3/utils.py", b"")
     assert dragon.take(tmp_path / "gvxr.whl", tmp_path).read_bytes() == b"solid"
-    with zipfile.ZipFile(tmp_path / "other.whl", "w") as wheel:
-        wheel.writestr("a.py", b"")
+    assert (tmp_path / "twins" / "models" / "one.json5").read_bytes() == b"{}"
+    with zipfile.ZipFile(tmp_path / "other.whl", "w") as archive:
+        archive.writestr("a.py", b"")
     with pytest.raises(FileNotFoundError, match="other.whl"):
         dragon.take(tmp_path / "other.whl", tmp_path)
-
-
-def test_scripts_run_with_the_import_alone_changed(tmp_path):
-    (tmp_path / "old.py").write_text("""from gvxrPython3 import gvxr, json2gvxr
-from gvxrPython3.utils import has_k3d
-import os, gvxrPython3.tests
-json2gvxr.initDetector("scene.json")
-assert os.path.basename(os.path.dirname(gvxr.__file__)) == "gvxr" and has_k3d
-print(gvxr.getVersionOfSimpleGVXR(), gvxr.getDetectorNumberOfPixels())
-""")
-    (tmp_path / "older.py").write_text("import gvxrPython3 as gvxr\ngvxr.createWindow()\nprint(gvxr.getVersionOfCoreGVXR())\n")
-    (tmp_path / "bad.py").write_text("from gvxrPython3 import gvxr\ngvxr.computeSinogram()\n")
-    cells = [{"cell_type": "markdown", "source": ["# gvxrPython3"]},
-             {"cell_type": "code", "source": ["%matplotlib inline\n", "from gvxrPython3 import gvxr\n"]},
-             {"cell_type": "code", "source": ["!pip install gvxr\n", "gvxr.createOpenGLContext()"]}]
-    (tmp_path / "book.ipynb").write_text(json.dumps({"cells": cells}))
-    (tmp_path / "other.py").write_text("raise SystemExit('not gVXR')\n")
-    written(tmp_path)
-    done = subprocess.run([sys.executable, str(HERE / "gvxr_scripts.py"), str(tmp_path), "100"], capture_output=True,
-                          text=True, check=False)
-    lines = done.stdout.splitlines()
-    assert done.returncode == 1 and lines[-1].startswith("3 of 4 scripts"), done.stdout + done.stderr
-    assert "FAIL bad.py" in lines[0] and "refused" in lines[0] and lines[1:4] == [
-        "ok   book.ipynb", "ok   old.py", "ok   older.py"]
+    command = [sys.executable, "-W", "error", "-m", "skiagraph.gvxr.dragon", str(tmp_path / "other.whl")]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert "FileNotFoundError" in done.stderr and "RuntimeWarning" not in done.stderr
 
 
 def test_shapes_of_gvxr():
