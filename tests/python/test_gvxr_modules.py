@@ -239,9 +239,15 @@ def test_shapes_of_gvxr():
         gvxr.makeSpheresInCylinder("c", 20, 3, 3, "s", 8, 8, 1, 70, "mm")
     volume = np.zeros((5, 6, 7))
     volume[1:4, 1:5, 1:6] = 1
-    for values in ((0.5, volume), (0.5, volume.ravel().tolist()), (volume, 0.5), (volume.ravel().tolist(), 0.5)):
+    for values in ((0.5, volume), (0.5, volume.ravel().tolist()), (volume.ravel().tolist(), 0.5)):
         gvxr.makeIsoSurface("surface", *values, 7, 6, 5, 1, 1, 2, "mm")
         assert gvxr.getNodeOnlyBoundingBox("surface", "mm") == pytest.approx((1.5, 1.5, 3, 6.5, 5.5, 9))
+    gvxr.emptyMesh("sample")  # as the tutorials have it: the volume first, and where its middle is; gVXR 2.1 to 0.002
+    for values in ((volume.astype(np.uint8), 1), (volume, 0.5), ((7 * volume).astype(int), 3, 9)):
+        gvxr.makeIsoSurface("surface", *values, 3, 4, 5, 1, 1, 2, "mm", "sample")
+        assert gvxr.getNodeOnlyBoundingBox("surface", "mm") == pytest.approx((0.5, 2, 2, 5.5, 6, 8))
+    gvxr.makeIsoSurface("surface", volume.astype(np.uint8), 0, 0, 0, 0, 1, 1, 2, "mm", "sample", True)
+    assert gvxr.getNodeOnlyBoundingBox("surface", "mm") == pytest.approx((-3.5, -3, -5, 3.5, 3, 5))
     with pytest.raises(sk.ArgumentError, match="has 210 values instead of 7 x 6 x 4"):
         gvxr.makeIsoSurface("surface", 0.5, volume, 7, 6, 4, 1, 1, 2, "mm")
     gvxr.makeStepWedge("wedge", 3, 9, 4, 1, 2, "mm")
@@ -354,17 +360,20 @@ def test_images_in_the_formats_of_gvxr(tmp_path):
 
 def test_images_with_gain():
     image = imaged()
-    assert (gvxr.computeXRayImageWithGain() == image).all()
+    assert (gvxr.computeXRayImageWithGain() == np.rint(image)).all()  # whole numbers, as gVXR 2.1 gives them
     gvxr.setDetectorGain(3)
     gvxr.setDetectorBias(50)
     read = gvxr.computeXRayImageWithGain()
-    assert np.abs(read - (3 * image + 50)).max() < 1e-4  # floats of 290
-    assert np.abs(gvxr.getWhiteImageWithGain() - (3 * gvxr.getWhiteImage() + 50)).max() < 1e-4
+    assert read.dtype == np.uint16 and np.abs(read - (3 * image + 50)).max() <= 0.5001
+    assert np.abs(gvxr.getWhiteImageWithGain() - (3 * gvxr.getWhiteImage() + 50)).max() <= 0.5001
     assert (gvxr.getLastXRayImage() == image).all()
-    assert gvxr.getTotalEnergyWithDetectorResponseWithGain() == pytest.approx(3 * 80 + 50)
+    assert gvxr.getTotalEnergyWithDetectorResponseWithGain() == 3 * 80 + 50
+    into = np.zeros(image.shape, np.uint16)
+    gvxr.computeXRayImageWithGain(into)
+    assert (into == read).all()
     gvxr.setDetectorStdDevBias(2)
-    noise = np.array([gvxr.computeXRayImageWithGain() - read for _ in range(50)])
-    assert abs(noise.std() - 2) < 0.1 and abs(noise.mean()) < 0.1  # 9600 numbers: 5 standard deviations each
+    noise = np.array([gvxr.computeXRayImageWithGain().astype(float) - read for _ in range(50)])
+    assert abs(noise.std() - np.sqrt(4 + 1 / 12)) < 0.1 and abs(noise.mean()) < 0.1  # 9600 numbers: 5 standard deviations each
     assert (gvxr.getDetectorGain(), gvxr.getDetectorBias(), gvxr.getDetectorStdDevBias()) == (3, 50, 2)
     gvxr.setDetectorStdDevBias(0)
     arguments = ("", "", 3, 0, False, 180, 1, 0, 0, 0, "mm", 0, 0, 1)
@@ -372,6 +381,10 @@ def test_images_with_gain():
     assert (gvxr.getLastProjectionSetWithGain() == scan).all()
     assert np.abs(scan[0] - read / gvxr.getWhiteImageWithGain()).max() < 1e-6
     assert np.abs(gvxr.computeCTAcquisition(*arguments)[0] - image / gvxr.getWhiteImage()).max() < 1e-6
+    gvxr.setDetectorGain(1e6)  # overexposed
+    assert gvxr.computeXRayImageWithGain().max() == gvxr.getTotalEnergyWithDetectorResponseWithGain() == 65535
+    gvxr.setDetectorBias(-1e9)
+    assert gvxr.computeXRayImageWithGain().max() == 0
 
 
 def test_readers_bring_what_gvxrs_bring():
