@@ -36,6 +36,7 @@ image = gvxr.computeXRayImage()                  # NumPy, [row, column], MeV
 | a mixture whose weights do not sum to 1 | scaled to 1, with a warning | scaled to 1 |
 | a label that is made again | the mesh is replaced; surface and material stay | two children with one label |
 | inner and outer surfaces | the inner ones displace the one outer surface; two outer ones are refused where there are inner ones | several outer ones |
+| `voxelise`, `getLastVoxelisation` of gVXR 2.0 | `voxeliseImplicitSurface`, `getImplicitSurfaceLastVoxelisation` | no longer there |
 | photons of a tube without an exposure | those of 1 mAs | a spectrum with a total energy of 80 eV |
 
 ## The modules beside it

@@ -260,6 +260,10 @@ def test_implicit_surfaces():
     gvxr.voxeliseImplicitSurface("s", 41, 41, 41, 0.1, 0, 0, 0.01, 0.01, 0.01, "cm")
     volume = gvxr.getImplicitSurfaceLastVoxelisation("s")
     assert volume.shape == (41, 41, 41) and volume.max() == volume[20, 20, 20] == 1  # about (1, 0, 0) mm
+    gvxr.voxelise("s", 41, 41, 41, 0.1, 0, 0, 0.01, 0.01, 0.01, "cm")  # as gVXR 2.0 calls them
+    assert (gvxr.getLastVoxelisation("s") == volume).all()
+    gvxr.createMeshFromImplicitSurface("s", 0.5)
+    assert made("s")["closed"]
     gvxr.createMeshFromImplicitSurface("s", "ball", 0.5, "root", 1)
     radius = np.sqrt(2 * np.log(2))  # where exp(-r^2 / 2) is a half
     assert gvxr.getNodeOnlyBoundingBox("ball", "mm") == pytest.approx((1 - radius, -radius, -radius, 1 + radius, radius, radius),
