@@ -6,17 +6,33 @@
 #include "plan/decisions.h"
 
 #include <inttypes.h>
+#include <stdio.h>
+#include <string.h>
 
-/* Warns of the pairs that nothing settles. */
+enum { WORST = 3, LONGEST_WORST = 1024 };
+
+/* Appends "; then A with B, 3 ml". */
+static void add_next(char text[LONGEST_WORST], const skg_scene *scene, const skg_overlap_pair *pair) {
+    const size_t used = strlen(text);
+    snprintf(text + used, LONGEST_WORST - used, "; then %s %s %s, %.3g ml", scene->parts[pair->part].label,
+             pair->kind == SKG_OVERLAP_SIBLINGS ? "with" : "leaves", scene->parts[pair->other].label,
+             pair->volume / 1000);
+}
+
+/* Warns of the pairs that nothing settles: of all of them at once, with the worst three. */
 static void warn(const skg_recipe *recipe, const skg_context *context, const skg_outcome *outcome) {
     const skg_overlap_pair *worst = NULL;
     const skg_scene *scene = recipe->scene;
+    char others[LONGEST_WORST] = "";
     double volume = 0;
     int64_t count = 0;
     for (int64_t i = 0; i < outcome->overlap_count; i++) {
         const skg_overlap_pair *pair = &outcome->overlaps[i];
         if (skg_priority_settles(scene, recipe->options.clip, pair)) continue;
-        if (!worst) worst = pair;
+        if (!worst)
+            worst = pair;
+        else if (count < WORST)
+            add_next(others, scene, pair);
         volume += pair->volume;
         count++;
     }
@@ -24,13 +40,13 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
     skg_log(
         context, SKG_LOG_WARNING,
         "%" PRId64 " %s, %.3g ml in all; worst: %s %s %s, %.3g ml, up to "
-        "%.3g mm along z at (%.1f, %.1f, %.1f) mm; their lengths add (or subtract the parent), nothing is clamped",
+        "%.3g mm along z at (%.1f, %.1f, %.1f) mm%s; their lengths add (or subtract the parent), nothing is clamped",
         count,
         skg_plural(count, "pair of parts overlaps, or a part leaves its parent",
                    "pairs of parts overlap or leave their parent"),
         volume / 1000, scene->parts[worst->part].label,
         worst->kind == SKG_OVERLAP_SIBLINGS ? "with" : "leaves", scene->parts[worst->other].label,
-        worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2]);
+        worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2], others);
 }
 
 /* What threads share. */

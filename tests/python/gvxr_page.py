@@ -36,6 +36,7 @@ image = gvxr.computeXRayImage()                  # NumPy, [row, column], MeV
 | a mixture whose weights do not sum to 1 | scaled to 1, with a warning | scaled to 1 |
 | a label that is made again | the mesh is replaced; surface and material stay | two children with one label |
 | inner and outer surfaces | the inner ones displace the one outer surface; two outer ones are refused where there are inner ones | several outer ones |
+| `voxelise`, `getLastVoxelisation` of gVXR 2.0 | `voxeliseImplicitSurface`, `getImplicitSurfaceLastVoxelisation` | no longer there |
 | photons of a tube without an exposure | those of 1 mAs | a spectrum with a total energy of 80 eV |
 
 ## The modules beside it
@@ -46,17 +47,20 @@ image = gvxr.computeXRayImage()                  # NumPy, [row, column], MeV
 | `skiagraph.gvxr2json` | `saveJSON`. Meshes that were made are written as PLY beside the file |
 | `skiagraph.gvxr.JSON2gVXRDataReader`, `skiagraph.gvxr.gVXRDataReader` | the readers for CIL, which has to be installed. Lengths are in mm |
 | `skiagraph.gvxr.tests` | `test_gvxr` and `test_offscreen` |
-| `twins`, `benchmark` | are not there |
+| `skiagraph.gvxr.twins` | `DigitalTwin` and its parts, `createDigitalTwin`, `getDigitalTwinList` and the filters of `utils`. The descriptions of scanners are gVXR's (JSON5) and not part of Skiagraph: they are those of an installed gVXR, or fetched as below; `DigitalTwin.from_file` takes one of your own. `apply()` sets all layers anew; setting `sod` or `odd` gives that distance. A table of target currents is a list, not a table of pandas; a flux that is given by points needs SciPy |
+| `benchmark`, `gvxr2radiograph`, `computeLBuffer` | are not there |
 
-The tutorials load a dragon from the folder of the module. It is not part of Skiagraph:
-<!-- not run: it fetches 23 MB -->
+The tutorials load a dragon from the folder of the module. It is not part of Skiagraph, nor are the descriptions of the twins:
+<!-- not run: it fetches 29 MB -->
 ```sh
 python3 -m skiagraph.gvxr.dragon
 ```
-asks pip for the wheel of gVXR 2.1.0 and copies the mesh beside the module; with the path of a wheel it takes that one.
+asks pip for the wheel of gVXR 2.1.0 and copies the mesh beside the module, the descriptions into its folder `twins/models`;
+with the path of a wheel it takes that one.
 
-`python3 tests/python/gvxr_scripts.py FOLDER` runs the scripts and notebooks of a folder with the import alone changed, and counts
-those that end without an error.
+`python3 tests/python/gvxr_scripts.py FOLDER` runs the scripts and notebooks of a folder with the import alone changed, each in a
+copy of its whole project, and counts those that end without an error. A comment `# arguments: ...` at the top of a script gives
+it the words of a command line.
 
 ## Compared with gVXR
 The test `tests/python/test_gvxr.py` runs one script with both modules, where the wheel `gvxr` is installed with an OpenGL

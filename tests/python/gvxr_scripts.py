@@ -2,14 +2,18 @@
 
     python3 gvxr_scripts.py FOLDER [SECONDS]
 
-FOLDER holds what a user has beside the checkout: .py and .ipynb at any depth, with the files that they read. Each runs in a
-copy of its folder, for at most SECONDS (600). The exit status is 0 if all of them end well.
+FOLDER holds what a user has beside the checkout: a folder per project with its .py and .ipynb at any depth and the files
+that they read. Each script runs in its own folder in a copy of its whole project, for at most SECONDS (600), and with the
+words of a comment "# arguments: ..." among its first five lines. Files that other scripts of the project import are modules:
+they are not run. No window opens: whatever backend a script asks Matplotlib for, it gets none. The exit status is 0 if all
+end well.
 """
 import ast
 import json
 import os
 import pathlib
 import re
+import shlex
 import shutil
 import subprocess
 import sys
@@ -17,6 +21,7 @@ import tempfile
 
 #: Lines of notebooks that are none of Python's.
 MAGIC = re.compile(r"^(\s*)[%!].*$", re.M)
+ARGUMENTS = re.compile(r"\A(?:.*\n){0,4}?# arguments:(.*)")
 #: From the most special to the least.
 ALIASES = (
     (re.compile(r"\bfrom\s+gvxrPython3\s+import\b"), "from skiagraph import"),
@@ -26,6 +31,13 @@ ALIASES = (
     (re.compile(r"\bgvxrPython3\.gvxr\b"), "skiagraph.gvxr"),
     (re.compile(r"\bgvxrPython3\.(\w+)"), r"skiagraph.gvxr.\1"),
 )
+#: Read by Python before a script: a script's matplotlib.use("TkAgg") would fail without a screen.
+BEFORE = """try:
+    import matplotlib
+    matplotlib.use = lambda *backend, **keys: None
+except ImportError:
+    pass
+"""
 
 
 def source_of(path):
@@ -44,24 +56,62 @@ def aliased(text):
     return text
 
 
-def uses_gvxr(text):
+def parsed(text):
     try:
-        ast.parse(text)
+        return ast.parse(text)
     except SyntaxError:
-        return False
-    return "gvxrPython3" in text
+        return None
 
 
-def run(path, seconds):
+def imported(tree):
+    """The last names of the modules that a script imports."""
+    for node in ast.walk(tree):
+        if isinstance(node, ast.Import):
+            yield from (alias.name.split(".")[-1] for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            yield (node.module or "").split(".")[-1]
+            yield from (alias.name for alias in node.names)
+
+
+def project_of(path, folder):
+    """The folder that is copied for a script: what lies right in FOLDER, or FOLDER itself."""
+    parts = path.relative_to(folder).parts
+    return folder / parts[0] if len(parts) > 1 else folder
+
+
+def scripts_of(folder):
+    """Those that use gVXR and are no modules of others."""
+    texts = {path: source_of(path) for path in sorted(folder.rglob("*")) if path.suffix in (".py", ".ipynb") and path.is_file()}
+    trees = {path: parsed(text) for path, text in texts.items()}
+    modules = {(project_of(path, folder), name) for path, tree in trees.items() if tree for name in imported(tree)}
+    return [path for path, text in texts.items() if trees[path] and "gvxrPython3" in text
+            and (project_of(path, folder), path.stem) not in modules]
+
+
+def copied(project, place):
+    """A copy of a project, its Python files with the import changed."""
+    shutil.copytree(project, place)
+    for path in place.rglob("*.py"):
+        path.write_text(aliased(path.read_text(encoding="utf-8")), encoding="utf-8")
+
+
+def run(path, folder, seconds):
     """The last line of what went wrong; "" if nothing did."""
-    with tempfile.TemporaryDirectory() as folder:
-        here = pathlib.Path(folder, "copy")
-        shutil.copytree(path.parent, here)
+    text = source_of(path)
+    words = ARGUMENTS.match(text)
+    with tempfile.TemporaryDirectory() as place:
+        project = project_of(path, folder)
+        copied(project, pathlib.Path(place, "copy"))
+        here = pathlib.Path(place, "copy") / path.parent.relative_to(project)
         script = here / (path.stem + "-skiagraph.py")
-        script.write_text(aliased(source_of(path)), encoding="utf-8")
+        script.write_text(aliased(text), encoding="utf-8")
+        pathlib.Path(place, "before").mkdir()
+        pathlib.Path(place, "before", "sitecustomize.py").write_text(BEFORE, encoding="utf-8")
+        search = os.pathsep.join([str(pathlib.Path(place, "before")), os.environ.get("PYTHONPATH", "")])
         try:
-            done = subprocess.run([sys.executable, script.name], cwd=here, capture_output=True, text=True, timeout=seconds,
-                                  env={**os.environ, "MPLBACKEND": "Agg"}, stdin=subprocess.DEVNULL, check=False)
+            done = subprocess.run([sys.executable, script.name, *shlex.split(words[1] if words else "")], cwd=here,
+                                  capture_output=True, text=True, timeout=seconds, stdin=subprocess.DEVNULL, check=False,
+                                  env={**os.environ, "MPLBACKEND": "Agg", "PYTHONPATH": search})
         except subprocess.TimeoutExpired:
             return f"not finished after {seconds:g} s"
     lines = done.stderr.strip().splitlines() or ["no word of why"]
@@ -69,11 +119,11 @@ def run(path, seconds):
 
 
 def main(folder, seconds=600.0):
-    found = sorted(path for path in pathlib.Path(folder).rglob("*") if path.suffix in (".py", ".ipynb")
-                   and uses_gvxr(source_of(path)))
+    folder = pathlib.Path(folder)
+    found = scripts_of(folder)
     good = 0
     for path in found:
-        fault = run(path, float(seconds))
+        fault = run(path, folder, float(seconds))
         good += not fault
         print(f"{'ok  ' if not fault else 'FAIL'} {path.relative_to(folder)}{': ' + fault if fault else ''}", flush=True)
     print(f"{good} of {len(found)} scripts run with the import alone changed")

@@ -295,3 +295,37 @@ def test_arguments_that_gvxr_takes(tmp_path):
     assert gvxr.getMaterialLabel("cube") == "Element: Iron"
     gvxr.setMixture("cube", ["Ti", "Al", "V"], [0.9, 0.06, 0.04])
     assert gvxr.getMaterialLabel("cube") == "Mixture: Al6Ti90V4"
+
+
+def test_the_right_vector_follows_the_beam_until_it_is_set():
+    def directions(*expected):
+        assert np.hstack([gvxr.getDetectorUpVector(), gvxr.getDetectorRightVector()]) == pytest.approx(expected, abs=6e-5)
+
+    def start():
+        gvxr.setSourcePosition(0, -400, 0, "mm")
+        gvxr.setDetectorPosition(0, 100, 0, "mm")
+        gvxr.setDetectorUpVector(0, 0, -1)
+        gvxr.setDetectorNumberOfPixels(64, 48)
+        gvxr.setDetectorPixelSize(1, 1, "mm")
+
+    start()  # the directions of gVXR 2.1 itself, made of length 1
+    directions(0, 0, -1, -1, 0, 0)
+    gvxr.setDetectorRightVector(1, 0, 0)
+    gvxr.setSourcePosition(200, -400, 100, "mm")
+    directions(0, 0, -1, 1, 0, 0)
+    gvxr.autoAlignDetector(True)
+    directions(0, 0, -1, -0.9285, -0.3714, 0)
+    start()
+    gvxr.rotateDetector(10, 0, 0, 1)
+    directions(0, 0, -1, -1, 0, 0)
+    gvxr.setSourcePosition(100, -400, 0, "mm")
+    directions(0, 0, -1, -0.9806, -0.1961, 0)
+    gvxr.autoAlignDetector(False)
+    start()
+    gvxr.setSourcePosition(200, -400, 100, "mm")
+    directions(0, 0, -1, -0.9806, -0.1961, 0)
+    gvxr.rotateDetector(10, 0, 0, 1)
+    directions(0, 0, -1, -0.9316, -0.3634, 0)
+    gvxr.autoAlignDetector(True)
+    gvxr.setDetectorUpVector(0, 0, 1)
+    directions(0, 0, 1, 0.9285, 0.3714, 0)

@@ -2,6 +2,7 @@
 import json
 import pathlib
 import shutil
+import warnings
 
 import numpy as np
 import pytest
@@ -154,6 +155,24 @@ def test_overlaps_have_labels(scene):
         scene.add("other", sk.Mesh.cube(10), material="water", pose=sk.translate(20, 0, 0))
         report = scene.plan()
     assert {report["overlaps"][0]["part"], report["overlaps"][0]["other"]} == {"block", "other"}
+
+
+def test_a_warning_names_the_worst_three_overlaps(scene):
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        for i in range(3):
+            scene.add(f"cube {i}", sk.Mesh.cube(10), material="water", pose=sk.translate(20, 0, i))
+        scene.plan()
+    said = str(found[-1].message)
+    assert said.count("; then ") == 2 and ", up to " in said and " pairs of parts overlap" in said, said
+
+
+def test_a_warning_about_a_file_of_one_line_names_the_column(tmp_path):
+    path = tmp_path / "one.json"
+    path.write_text('{"Source": {"Position": [0, -9, 0, "mm"], "Beam": {"kVp": 80}}, "Detector": {"Position": [0, 9, 0, "mm"], '
+                    '"UpVector": [0, 0, 1], "NumberOfPixels": [2, 2], "Spacing": [1, 1, "mm"]}, "Foo": 1, "Samples": [{"Label": "a", "Cube": [2, "mm"], "Material": ["mu", 1]}]}')
+    with pytest.warns(sk.SkiagraphWarning, match=r"Foo \(line 1, column 18[0-9]\): unknown key"):
+        sk.Scene(path, lenient=True)
 
 
 def test_of_many_overlaps_the_worst_are_printed(scene):

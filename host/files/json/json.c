@@ -23,8 +23,11 @@ static size_t write_path(const skg_json_node *node, char *text, size_t size) {
 void skg_json_place(const skg_json_node *node, char *place, size_t size) {
     place[0] = '\0';
     size_t used = write_path(node, place, size);
-    int64_t line = skg_json_line(node);
-    if (line > 0) snprintf(place + used, size - used, " (line %" PRId64 ")", line);
+    int64_t line = skg_json_line(node), column = skg_json_column(node);
+    if (column > 0)
+        snprintf(place + used, size - used, " (line 1, column %" PRId64 ")", column);
+    else if (line > 0)
+        snprintf(place + used, size - used, " (line %" PRId64 ")", line);
 }
 
 enum { LONGEST_SENTENCE = 4096, LONGEST_PATH = 1024 };

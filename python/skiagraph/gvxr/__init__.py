@@ -71,8 +71,14 @@ def _describe() -> None:
 _describe()
 
 
+#: Calls that gVXR 2.1 has by another name than gVXR 2.0.
+_OLDER = {"getLastVoxelisation": "getImplicitSurfaceLastVoxelisation", "voxelise": "voxeliseImplicitSurface"}
+
+
 def __getattr__(name: str) -> Any:
     """Refuses the calls that are not there, with the reason; those about windows do nothing."""
+    if name in _OLDER:
+        return globals()[_OLDER[name]]
     kind, remark = _CALLS.get(name, ("", ""))
     if kind == "nothing":
         return _idle(name)

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 _SAME = """
 addEnergyBinToSpectrum addEnergyBinToSpectrumPerCm2At1m addEnergyBinToSpectrumPerPixelAtSDD addFilter
-addInherentFilter addMesh addPolygonMeshAsInnerSurface applyCurrentLocalTransformation autoAlignDetector
+addInherentFilter addMesh addPolygonMeshAsInnerSurface applyCurrentLocalTransformation
 clearDetectorEnergyResponse clearFiltration clearInherentFiltration clearLSF computeZNCC destroy destroyAllWindows
 disablePoissonNoise emptyMesh getAmbientColour getAngleSetCT getDetectorBias getDetectorGain getDetectorStdDevBias
 setDetectorBias setDetectorGain setDetectorStdDevBias getBestSOD getCentreOfRotationPositionCT getChildLabel
@@ -43,6 +43,8 @@ translateScene useConeBeam useParallelBeam useParallelSource usePointSource useP
 """
 
 _DIFFERS = {
+    "directions have length 1; in gVXR 2.1 the right vector that follows the beam is shorter where up is not perpendicular to it":
+        """autoAlignDetector""",
     "marching tetrahedra; the mesh is closed where it meets the border of the volume":
         """createMeshFromImplicitSurface""",
     "lengths of the parameters are in mm":
@@ -53,8 +55,8 @@ _DIFFERS = {
         voxeliseImplicitSurface voxelizeImplicitSurface""",
     "exact spheres that do not overlap, up to some 50 % of the box; voxels and the name of the volume have no effect":
         """makeFoamInCuboid""",
-    "what is at or above the value is inside; the surface is closed where it meets the border of the volume; the arguments"
-    " that gVXR documents; the volume may stand before the value, too":
+    "what is at or above the value is inside; the surface is closed where it meets the border of the volume; the arguments that"
+    " gVXR documents, and those that its tutorials give: the volume, one value or two, its centre, its spacings":
         """makeIsoSurface""",
     "10 steps unless their number is given, as gVXR documents; gVXR 2.1 makes 2":
         """makeStepWedge""",
@@ -64,12 +66,12 @@ _DIFFERS = {
         """makeSpheresInCylinder""",
     "the mesh stands at this distance along the beam; gVXR 2.1 moves it as if it stood at the origin":
         """applySOD""",
-    "gain x image + bias, with normal deviations of the bias by other random numbers; gVXR's documentation does not say how it"
-    " applies them":
-        """computeXRayImageWithGain getLastProjectionSetWithGain getWhiteImageWithGain getWhiteSpectralImageWithGain""",
-    "as computeCTAcquisition; projections and white images have gain and bias":
-        """computeCTAcquisitionWithGain""",
-    "gain x energy + bias":
+    "gain x image + bias, rounded to whole numbers from 0 to 65535, with normal deviations of the bias; gVXR 2.1 adds the bias to"
+    " white images alone, no deviations, and refuses a gain below 1":
+        """computeXRayImageWithGain getWhiteImageWithGain getWhiteSpectralImageWithGain""",
+    "as computeCTAcquisition; projections and white images have gain and bias. gVXR 2.1 stops: it is not implemented there":
+        """computeCTAcquisitionWithGain getLastProjectionSetWithGain""",
+    "gain x energy + bias, rounded, from 0 to 65535; gVXR 2.1 leaves out the bias":
         """getTotalEnergyWithDetectorResponseWithGain getTotalEnergyWithoutDetectorResponseWithGain""",
     "says that it is Skiagraph's own":
         """getNoiseGenerator""",
@@ -223,7 +225,8 @@ _REFUSED = {
         """loadImage2D loadImage3D""",
     "gVXR 2.1 refuses it too: use computeCTAcquisition":
         """computeProjectionSet computeSinogram""",
-    "gVXR's documentation does not say how the index is computed":
+    "gVXR's documentation does not say how the index is computed (it is 0 for one energy); compare computeXRayImage of the"
+    " beam with that of its mean energy":
         """getBHPI""",
     "OpenGL is not used":
         """getBuildEnvironment getLargestPossibleDetectorNumberOfPixels getLargestPossibleNumberOfEnergyBins

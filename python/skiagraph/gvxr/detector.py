@@ -48,16 +48,25 @@ def _direction(step: NDArray[np.float64]) -> tuple[float, ...]:
     return tuple((step / np.linalg.norm(step)).tolist())
 
 
+def _three(step: NDArray[np.float64]) -> tuple[float, float, float]:
+    return three(*_direction(step))
+
+
 def rotateDetector(anAngle: float, x: float, y: float, z: float) -> None:
-    """Turns its directions about its centre, degrees."""
+    """Turns its directions about its centre, degrees. A right vector that follows the beam goes on following it."""
     turn = rotate((x, y, z), anAngle)[:3, :3]
-    world.right = three(*(turn @ getDetectorRightVector()))
+    if world.right is not None:
+        world.right = three(*(turn @ world.right))
     world.up = three(*(turn @ world.up))
 
 
 def autoAlignDetector(aFlag: bool = True) -> None:
-    """From now on its directions are made perpendicular to the line from the source to its centre."""
-    world.align = bool(aFlag)
+    """Whether the right vector follows the beam, as it does until it is set; false keeps it where it is. Up stays."""
+    right = np.cross(np.subtract(world.detector, world.source), world.up)
+    if aFlag:
+        world.right = None
+    elif world.right is None and right.any():
+        world.right = _three(right)
 
 
 def setDetectorNumberOfPixels(aWidth: int, aHeight: int) -> None:

@@ -1,9 +1,11 @@
-"""The dragon that gVXR's tutorials load from the folder of their module. It is not part of Skiagraph:
+"""The dragon that gVXR's tutorials load from the folder of their module, and the descriptions of its twins of scanners.
+They are not part of Skiagraph:
 
     python -m skiagraph.gvxr.dragon            # pip fetches the wheel of gVXR 2.1.0
     python -m skiagraph.gvxr.dragon gvxr.whl   # a wheel that is there already
 
-puts it beside this file, where `os.path.dirname(gvxr.__file__) + "/welsh-dragon-small.stl"` finds it.
+puts the dragon beside this file, where `os.path.dirname(gvxr.__file__) + "/welsh-dragon-small.stl"` finds it, and the
+descriptions into twins/models.
 """
 from __future__ import annotations
 
@@ -13,18 +15,23 @@ import sys
 import tempfile
 import zipfile
 
-NAME = "welsh-dragon-small.stl"
-ADVICE = "`python -m skiagraph.gvxr.dragon` fetches it from the wheel of gVXR (23 MB)"
+from .wheel import DRAGON
 
 
 def take(wheel: str | pathlib.Path, folder: str | pathlib.Path | None = None) -> pathlib.Path:
-    """Copies the dragon out of a wheel of gVXR, into the folder of this package by default."""
-    target = pathlib.Path(folder or pathlib.Path(__file__).parent) / NAME
+    """Copies the dragon and the twins out of a wheel of gVXR, into the folder of this package by default."""
+    home = pathlib.Path(folder or pathlib.Path(__file__).parent)
+    target = home / DRAGON
     with zipfile.ZipFile(wheel) as archive:
-        inside = [name for name in archive.namelist() if name.rsplit("/", 1)[-1] == NAME]
+        inside = [name for name in archive.namelist() if name.rsplit("/", 1)[-1] == DRAGON]
         if not inside:
-            raise FileNotFoundError(f"{wheel}: has no {NAME}; give the wheel of gVXR 2.1.0")
+            raise FileNotFoundError(f"{wheel}: has no {DRAGON}; give the wheel of gVXR 2.1.0")
         target.write_bytes(archive.read(inside[0]))
+        for name in archive.namelist():
+            if name.endswith(".json5"):
+                twin = home / "twins" / "models" / name.rsplit("/", 1)[-1]
+                twin.parent.mkdir(parents=True, exist_ok=True)
+                twin.write_bytes(archive.read(name))
     return target
 
 

@@ -165,10 +165,12 @@ def getImplicitSurfaceLastVoxelisation(aLabel: str) -> NDArray[np.float32]:
 getImplicitSurfaceLastVoxelization = getImplicitSurfaceLastVoxelisation
 
 
-def createMeshFromImplicitSurface(aImplicitSurfaceLabel: str, aMeshLabel: str, aLowerIsoValue: float,
+def createMeshFromImplicitSurface(aImplicitSurfaceLabel: str, aMeshLabel: Any, aLowerIsoValue: Any = None,
                                   anUpperIsoValue: Any = None, aParent: Any = "root", aVerboseLevel: int = 0) -> None:
     """(surface, mesh, iso value), or (surface, mesh, lower, upper value): where the volume lies between them. A parent and a
-    level of words may follow."""
+    level of words may follow. (surface, iso value), as gVXR 2.0 has it, names the mesh as the surface."""
+    if aLowerIsoValue is None:
+        aMeshLabel, aLowerIsoValue = aImplicitSurfaceLabel, aMeshLabel
     if isinstance(anUpperIsoValue, str):
         anUpperIsoValue, aParent = None, anUpperIsoValue
     surface, volume = _surface(aImplicitSurfaceLabel), getImplicitSurfaceLastVoxelisation(aImplicitSurfaceLabel)

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from .._interface import ArgumentError, FileError
 from ..matrices import rotate
 from ..mesh import Mesh
-from . import dragon
+from . import wheel
 from .state import Node, millimetres, world
 from .subtract import subtracted
 
@@ -32,8 +32,8 @@ def _loaded(label: str, mesh: Mesh, parent: str) -> None:
 def loadMeshFile(aLabel: str, aFileName: str, aUnitOfLength: str, addToRendererAsInnerSurface: bool = True,
                  aParent: str = "root") -> None:
     """In the folder of this package, welsh-dragon-small.stl is the mesh of gVXR's wheel (skiagraph.gvxr.dragon)."""
-    if not os.path.exists(aFileName) and os.path.basename(aFileName) == dragon.NAME:
-        raise FileError(f"{aFileName}: is not there; {dragon.ADVICE}")
+    if not os.path.exists(aFileName) and os.path.basename(aFileName) == wheel.DRAGON:
+        raise FileError(f"{aFileName}: is not there; {wheel.ADVICE}")
     _loaded(aLabel, Mesh.load(aFileName, unit_mm=millimetres(aUnitOfLength)), aParent)
     world.node(aLabel).file, world.node(aLabel).unit = os.path.abspath(aFileName), aUnitOfLength
     if addToRendererAsInnerSurface:

@@ -1,4 +1,4 @@
-"""The readout of the detector: an image times a gain, plus a bias that varies from pixel to pixel."""
+"""The readout of the detector: an image times a gain, plus a bias that varies from pixel to pixel, as 16-bit whole numbers."""
 from __future__ import annotations
 
 from typing import Any
@@ -54,17 +54,21 @@ def getNoiseGenerator() -> str:
     return "Skiagraph, by seed, frame and pixel"
 
 
-def _with_gain(image: Any) -> NDArray[np.float32]:
-    """Gain x image + bias; the next call has another bias noise."""
+#: The greatest number of the readout.
+FULL = 65535
+
+
+def _with_gain(image: Any) -> NDArray[np.uint16]:
+    """Gain x image + bias, rounded, from 0 to 65535; the next call has another bias noise."""
     made = np.asarray(image, np.float32) * np.float32(world.gain) + np.float32(world.bias)
     if world.bias_deviation > 0:
         random = np.random.default_rng((world.seed, world.readouts))
         made += world.bias_deviation * random.standard_normal(made.shape, np.float32)
         world.readouts += 1
-    return made.astype(np.float32)
+    return np.rint(made).clip(0, FULL).astype(np.uint16)
 
 
-def computeXRayImageWithGain(anIntegrateEnergyFlag: Any = True, anotherFlag: bool = True) -> NDArray[np.float32]:
+def computeXRayImageWithGain(anIntegrateEnergyFlag: Any = True, anotherFlag: bool = True) -> NDArray[np.uint16]:
     """computeXRayImage with gain and bias. An array before the flag is filled with the image besides."""
     into = anIntegrateEnergyFlag if isinstance(anIntegrateEnergyFlag, np.ndarray) else None
     image = _with_gain(computeXRayImage(anIntegrateEnergyFlag if into is None else anotherFlag))
@@ -79,12 +83,12 @@ def saveLastXRayImageWithGain(aFileName: str = "image.tif", useCompression: bool
     save(aFileName, world.images.get("gain", blank()), "energy", "MeV per pixel")
 
 
-def getWhiteImageWithGain(anIntegrateEnergyFlag: bool = True) -> NDArray[np.float32]:
+def getWhiteImageWithGain(anIntegrateEnergyFlag: bool = True) -> NDArray[np.uint16]:
     """getWhiteImage with gain and bias."""
     return _with_gain(getWhiteImage(anIntegrateEnergyFlag))
 
 
-def getWhiteSpectralImageWithGain() -> NDArray[np.float32]:
+def getWhiteSpectralImageWithGain() -> NDArray[np.uint16]:
     """getWhiteSpectralImage with gain and bias."""
     return _with_gain(getWhiteSpectralImage())
 
@@ -103,10 +107,15 @@ def getLastProjectionSetWithGain() -> NDArray[np.float32]:
 
 
 def getTotalEnergyWithDetectorResponseWithGain(anApplyFiltrationFlag: bool = True) -> float:
-    """The gain times getTotalEnergyWithDetectorResponse, plus the bias: the mean of getWhiteImageWithGain without falloff."""
-    return world.gain * getTotalEnergyWithDetectorResponse(anApplyFiltrationFlag) + world.bias
+    """getTotalEnergyWithDetectorResponse as a pixel is read: the mean of getWhiteImageWithGain without falloff."""
+    return _total(getTotalEnergyWithDetectorResponse(anApplyFiltrationFlag))
 
 
 def getTotalEnergyWithoutDetectorResponseWithGain(anApplyFiltrationFlag: bool = True) -> float:
-    """The gain times getTotalEnergyWithoutDetectorResponse, plus the bias."""
-    return world.gain * getTotalEnergyWithoutDetectorResponse(anApplyFiltrationFlag) + world.bias
+    """getTotalEnergyWithoutDetectorResponse as a pixel is read."""
+    return _total(getTotalEnergyWithoutDetectorResponse(anApplyFiltrationFlag))
+
+
+def _total(energy: float) -> float:
+    """As a pixel is read."""
+    return float(min(max(round(world.gain * energy + world.bias), 0), FULL))

@@ -30,13 +30,13 @@ def _as_is(image: Any) -> NDArray[np.float32]:
     return made
 
 
-def _project(views: Sequence[View], integrate: bool, whites: int, read: Callable[[Any], NDArray[np.float32]]) -> NDArray[np.float32]:
+def _project(views: Sequence[View], integrate: bool, whites: int, read: Callable[[Any], NDArray[Any]]) -> NDArray[np.float32]:
     if not world.has_beam():
         warn("there is no beam, so that the projections are 0; call setMonoChromatic, addEnergyBinToSpectrum or setVoltage")
-        return read(np.stack([blank()] * len(views)))
+        return read(np.stack([blank()] * len(views))).astype(np.float32)
     options = {**world.options(), "index": world.frame}
-    images = read(world.scene().images("energy" if integrate else "photons", unit="MeV" if integrate else None, views=views,
-                                       **options))
+    seen = world.scene().images("energy" if integrate else "photons", unit="MeV" if integrate else None, views=views, **options)
+    images = read(seen).astype(np.float32, copy=False)
     world.frame += len(views) * world.noise
     if whites > 0:
         varies = world.noise or world.bias_deviation > 0
@@ -56,7 +56,7 @@ def computeCTAcquisition(aProjectionOutputPath: str, aScreenshotOutputPath: str,
                          aPositionOfCentreOfRotationY: float, aPositionOfCentreOfRotationZ: float, aUnitOfLength: str,
                          aAxisOfRotationX: float, aAxisOfRotationY: float, aAxisOfRotationZ: float,
                          anIntegrateEnergyFlag: bool = True, aVerboseLevel: int = 0, *,
-                         _read: Callable[[Any], NDArray[np.float32]] = _as_is) -> NDArray[np.float32]:
+                         _read: Callable[[Any], NDArray[Any]] = _as_is) -> NDArray[np.float32]:
     """A circular scan, [n, row, column]. With white images: divided by their mean. The meshes turn about the axis.
 
     aProjectionOutputPath: a folder, which gets a TIFF for each projection, or a file, .tif or .mha; "": none.

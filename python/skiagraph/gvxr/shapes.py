@@ -26,22 +26,32 @@ def makeStepWedge(aLabel: str, aNumberOfSteps: int = 10, aTotalLength: float = 1
     world.add(aLabel, Mesh(made.vertices + (0, 0, heights[-1] / 2), made.faces, name=aLabel), aParent)
 
 
-def makeIsoSurface(aLabel: str, anIsoValue: Any, aVoxelDataSet: Any, aWidth: int, aHeight: int, aDepth: int,
-                   aSpacingX: float, aSpacingY: float, aSpacingZ: float, aUnitOfLength: str = "cm",
-                   aParent: str = "root") -> None:
-    """The surface of a volume, [z, y, x] or a flat list of as many. The middle of its first voxel is at the spacings.
+def makeIsoSurface(aLabel: str, *arguments: Any) -> None:
+    """The surface of a volume [z, y, x]: (volume, value, cx, cy, cz, sx, sy, sz, unit, parent), centred at cx, cy, cz.
 
-    The value may follow the volume, too.
+    A volume of whole numbers may have two values: what lies from the one to the other is inside. A flat volume comes with its
+    width, height and depth instead of a centre, after or before the value; the middle of its first voxel is at the spacings.
     """
-    if np.ndim(anIsoValue) > 0:  # (label, volume, value, ...)
-        anIsoValue, aVoxelDataSet = aVoxelDataSet, anIsoValue
-    values = np.asarray(aVoxelDataSet, dtype=float)
-    if values.size != aWidth * aHeight * aDepth:
-        raise ArgumentError(f"{aLabel}: the volume has {values.size} values instead of {aWidth} x {aHeight} x {aDepth}")
-    steps = np.array([aSpacingX, aSpacingY, aSpacingZ], dtype=float) * millimetres(aUnitOfLength)
-    centred = Mesh.isosurface(values.reshape(aDepth, aHeight, aWidth), anIsoValue, steps)
-    middle = steps * (np.array([aWidth, aHeight, aDepth]) + 1) / 2
-    world.add(aLabel, Mesh(centred.vertices + middle, centred.faces, name=aLabel), aParent)
+    words = [word for word in arguments if isinstance(word, str)]
+    numbers = list(arguments[:len(arguments) - len(words)])
+    if words and isinstance(arguments[-1], (bool, int)):  # a flag after the parent, which has no effect
+        numbers = list(arguments[:-1 - len(words)])
+    unit, parent = [*words, *("cm", "root")[len(words):]]
+    value_first = np.ndim(numbers[0]) == 0
+    volume = np.asarray(numbers.pop(1 if value_first else 0))
+    *values, x, y, z, sx, sy, sz = numbers
+    steps = np.array([sx, sy, sz], dtype=float) * millimetres(unit)
+    if volume.ndim == 3 and not value_first:
+        middle = np.array([x, y, z], dtype=float) * millimetres(unit)
+    else:
+        if volume.size != x * y * z:
+            raise ArgumentError(f"{aLabel}: the volume has {volume.size} values instead of {x} x {y} x {z}")
+        volume, middle = volume.reshape(z, y, x), steps * (np.array([x, y, z]) + 1) / 2
+    if volume.dtype.kind in "biu" and not value_first or len(values) == 2:  # whole numbers: the surface lies between the voxels
+        low, high = [*values, np.inf][:2]
+        volume, values = ((volume >= low) & (volume <= high)).astype(np.float32), [0.5]
+    centred = Mesh.isosurface(np.asarray(volume, dtype=float), values[0], steps)
+    world.add(aLabel, Mesh(centred.vertices + middle, centred.faces, name=aLabel), parent)
 
 
 def makeFoamInCuboid(aPorosityName: str, aBoundingVolumeName: str, aCuboidWidth: float, aCuboidHeight: float,

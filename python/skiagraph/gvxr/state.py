@@ -81,8 +81,6 @@ class World:
     inherent: list[tuple[int | str, float]] = field(default_factory=list)
     #: Keys of the detector in a scene file: blur, oversampling.
     detector_keys: dict[str, Any] = field(default_factory=dict)
-    #: Whether up and right are made perpendicular to the line from the source to the detector.
-    align: bool = False
     response: Response | None = None
     #: The scintillator of the response, ("CsI", 0.6 mm), or rows of keV and keV.
     scintillator: tuple[str, float] | None = None
@@ -174,8 +172,6 @@ class World:
         if self.grid:
             source["Grid"] = self.grid
         up, right = self.up, self.right
-        if self.align:
-            up, right = self._across(up), None if right is None else self._across(right)
         detector = {"Position": [*self.detector, "mm"], "UpVector": list(up), "NumberOfPixels": list(self.pixels),
                     **self.detector_keys}
         if right:
@@ -187,12 +183,6 @@ class World:
         else:
             raise SceneError("the detector has no size; call setDetectorPixelSize")
         return {"Source": source, "Detector": detector}
-
-    def _across(self, vector: tuple[float, float, float]) -> tuple[float, float, float]:
-        """The part of a vector that is perpendicular to the line from the source to the detector."""
-        line = np.subtract(self.detector, self.source)
-        line = line / np.linalg.norm(line)
-        return three(*(np.asarray(vector) - np.dot(vector, line) * line))
 
     def has_beam(self) -> bool:
         return bool(self.spectrum or "kVp" in self.tube)

@@ -7,9 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import (
-    addPolygonMeshAsInnerSurface, computeXRayImage, createWindow, destroy, dragon, getOpenGlRenderer, loadMeshFile, makeSphere,
+    addPolygonMeshAsInnerSurface, computeXRayImage, createWindow, destroy, getOpenGlRenderer, loadMeshFile, makeSphere,
     moveToCentre, setDensity, setDetectorNumberOfPixels, setDetectorPixelSize, setDetectorPosition, setDetectorUpVector,
-    setMixture, setMonoChromatic, setSourcePosition, usePointSource)
+    setMixture, setMonoChromatic, setSourcePosition, usePointSource, wheel)
 
 __all__ = ["test_gvxr", "test_offscreen"]
 
@@ -24,11 +24,11 @@ def _radiograph() -> NDArray[np.float32]:
     setDetectorUpVector(0, 0, -1)
     setDetectorNumberOfPixels(640, 320)
     setDetectorPixelSize(0.5, 0.5, "mm")
-    path = os.path.join(os.path.dirname(os.path.dirname(__file__)), dragon.NAME)
+    path = os.path.join(os.path.dirname(os.path.dirname(__file__)), wheel.DRAGON)
     if os.path.exists(path):
         loadMeshFile("Dragon", path, "mm")
     else:
-        print(f"a sphere stands for the dragon: {dragon.ADVICE}")
+        print(f"a sphere stands for the dragon: {wheel.ADVICE}")
         makeSphere("Dragon", 32, 64, 4, "cm")
         addPolygonMeshAsInnerSurface("Dragon")
     moveToCentre("Dragon")

@@ -1,0 +1,6 @@
+"""What lies in gVXR's wheel and is not part of Skiagraph. Private."""
+from __future__ import annotations
+
+#: The mesh of gVXR's tutorials.
+DRAGON = "welsh-dragon-small.stl"
+ADVICE = "`python -m skiagraph.gvxr.dragon` fetches it from the wheel of gVXR (29 MB)"
