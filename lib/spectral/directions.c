@@ -77,7 +77,7 @@ double skg_fit_point(int state) {
 }
 
 /* Sums over Chebyshev's polynomials, as powers of z. */
-double skg_fit(const double values[SKG_FIT_POINTS], double terms[SKG_FIT_TERMS]) {
+double skg_polynomial_fit(const double values[SKG_FIT_POINTS], double terms[SKG_FIT_TERMS]) {
     double power[SKG_FIT_TERMS][SKG_FIT_TERMS] = {{1}, {0, 1}}; /* [degree][term] */
     double error = 0;
     for (int d = 2; d < SKG_FIT_TERMS; d++)

@@ -35,7 +35,7 @@ double skg_fit_point(int state);
 
 /* Sets terms to the coefficients of 1, z, z^2, ... of a polynomial through values at the points, by least squares. Returns the
  * largest error there. */
-double skg_fit(const double values[SKG_FIT_POINTS], double terms[SKG_FIT_TERMS]);
+double skg_polynomial_fit(const double values[SKG_FIT_POINTS], double terms[SKG_FIT_TERMS]);
 
 /* --- The list of a plan's shades, and what the effects that have shades share. */
 
