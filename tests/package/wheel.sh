@@ -52,6 +52,9 @@ LIST
 say "not for ${excluded#, }"
 # A library that is missing inside would be found on this machine, and not there.
 unzip -l "$given" | grep -q 'skiagraph.libs/libOpenCL' || { echo "$name has no libOpenCL"; exit 1; }
+for file in live.html _live/widget.js; do # scene.live()
+    unzip -l "$given" | grep -q "skiagraph/$file" || { echo "$name has no $file"; exit 1; }
+done
 
 # What pip installs beside it, for Debian 12's Python.
 mkdir -p "$stage/wheels"

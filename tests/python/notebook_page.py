@@ -66,7 +66,7 @@ class Jupyter:
         self.log = (self.folder / "jupyter.log").open("w", encoding="utf-8")
         self.process = subprocess.Popen([sys.executable, *words], env={**os.environ, **home, "IPYTHONDIR": str(self.folder / "ipython"),
             "JUPYTERLAB_SETTINGS_DIR": str(self.folder / "settings"), "JUPYTERLAB_WORKSPACES_DIR": str(self.folder / "workspaces")},
-            stdout=self.log, stderr=self.log, start_new_session=True)
+            stdout=self.log, stderr=self.log)
         self.wait()
 
     def wait(self):

@@ -1,10 +1,12 @@
 """scene.live() without a browser: messages in, texts and frames out, and the scene in between."""
+import asyncio
 import importlib.util
 import json
 import pathlib
 import pickle
 import struct
 import sys
+import threading
 
 import numpy as np
 import pytest
@@ -228,6 +230,7 @@ def test_other_parts_are_another_page(solid, hub):
     solid["block"].mesh.vertices = 1.2 * solid["block"].mesh.vertices
     hub.refresh()
     assert one.pages == 2
+    one.say()
     solid.close()
     hub.refresh()
     assert "closed" in one.last("error")["error"]
@@ -363,6 +366,45 @@ def test_the_widget(solid):
     made.refresh()
     assert any("adopted" in content.get("text", {}) for content, _ in told)
     made.close()
+
+
+def test_messages_wait_for_the_thread_of_cells(solid):
+    """Kernels with subshells deliver them in another thread, also while a cell runs."""
+    pytest.importorskip("anywidget")
+
+    async def cell():
+        made = solid.live()
+        message = {"view": "a", "messages": [{"wish": 2 ** 17, "poses": {"1": shift(5)}}]}
+        thread = threading.Thread(target=made._handle_custom_msg, args=(message, []))
+        thread.start()
+        thread.join()
+        assert solid["ball"].pose[0, 3] == 0
+        await asyncio.sleep(0.01)
+        assert solid["ball"].pose[0, 3] == 5
+        made.close()
+
+    asyncio.run(cell())
+
+
+def test_a_scene_that_was_pickled(solid, tmp_path):
+    solid.save(tmp_path / "scene.json")
+    scene = pickle.loads(pickle.dumps(sk.Scene(tmp_path / "scene.json")))
+    one = Page(hubs.Hub(scene._state))
+    one.wish(settings={"Noise": True}, poses={"0": shift(1)})
+    one.check(scene)
+
+
+def test_nobody_is_shown_nothing(solid, hub):
+    """A widget whose cell was run again makes no images."""
+    one = Page(hub)
+    hub.hear({"view": "a", "gone": True})
+    solid["ball"].pose = sk.translate(1, 0, 0)
+    frames = len(one.frames)
+    hub.refresh()
+    assert len(one.frames) == frames
+    one.say()
+    assert one.last("shot")["state"]["poses"] == {"1": shift(1)}
+    one.check(solid)
 
 
 def test_a_scene_that_cannot_be_shown_fails_at_once():

@@ -65,7 +65,8 @@ class Hub:
         if not isinstance(name, str):
             return
         if content.get("page"):
-            self.refresh()
+            with self._noting():
+                self._show_changes()
             self.send({"to": name, "page": True}, [self._page])
         elif content.get("gone"):
             self._leave(name)
@@ -129,8 +130,9 @@ class Hub:
 
     def refresh(self) -> None:
         """Shows what was changed elsewhere, if anything was. Failures and warnings become sentences of the page."""
-        with self._noting():
-            self._show_changes()
+        if self._views:
+            with self._noting():
+                self._show_changes()
 
     def _show_changes(self) -> None:
         if self._state.setup == ffi.NULL:

@@ -6,6 +6,7 @@ import functools
 import importlib.resources
 import threading
 import weakref
+from collections.abc import Callable
 from typing import Any
 
 from .._interface import UnsupportedError
@@ -56,7 +57,7 @@ def _kind() -> Any:
 
         def _follow(self) -> None:
             """After each cell, what it has changed is shown."""
-            self._unfollow = lambda: None
+            self._unfollow: Callable[[], None] = lambda: None
             try:
                 from IPython import get_ipython  # type: ignore[import-not-found, unused-ignore]
             except ImportError:
