@@ -157,6 +157,7 @@ def test_beams_and_detectors():
     gvxr.clearDetectorEnergyResponse()
     gvxr.setPhotonCountingBands(20, 100, "keV", 4)
     assert gvxr.computeSpectralImage().shape == (4, 24, 32)
+    assert gvxr.getPhotonCountingBands("keV") == pytest.approx((20, 40, 60, 80))
     gvxr.enablePoissonNoise()
     assert not (gvxr.computeXRayImage() == gvxr.computeXRayImage()).all()
 
@@ -329,3 +330,31 @@ def test_the_right_vector_follows_the_beam_until_it_is_set():
     gvxr.autoAlignDetector(True)
     gvxr.setDetectorUpVector(0, 0, 1)
     directions(0, 0, 1, 0.9285, 0.3714, 0)
+
+
+def test_what_is_inherent_to_a_tube_is_no_filter():
+    gvxr.setSourcePosition(0, -400, 0, "mm")
+    gvxr.setDetectorPosition(0, 100, 0, "mm")
+    gvxr.setDetectorUpVector(0, 0, -1)
+    gvxr.setDetectorNumberOfPixels(4, 4)
+    gvxr.setDetectorPixelSize(0.01, 0.01, "mm")
+    gvxr.setVoltage(100, "kV")
+    gvxr.addInherentFilter("Al", 1, "mm")
+    bare = gvxr.getNumberOfPhotonsPerCm2At1m(False)
+    assert bare == gvxr.getNumberOfPhotonsPerCm2At1m(True)
+    gvxr.addFilter("Al", 1, "mm")  # adds to the inherent aluminium
+    assert bare == gvxr.getNumberOfPhotonsPerCm2At1m(False) > gvxr.getNumberOfPhotonsPerCm2At1m(True)
+    gvxr.setNumberOfPhotonsPerPixelAtSDD(1000)
+    assert gvxr.getNumberOfPhotonsPerPixelAtSDD(False) == pytest.approx(1000)
+    gvxr.clearFiltration()
+    assert gvxr.getNumberOfPhotonsPerPixelAtSDD(True) == pytest.approx(1000)
+
+
+def test_elements_have_the_densities_of_gvxr():
+    for name, density in (("C", 2.267), (26, 7.874), ("Al", 2.698), ("U", 18.95), (7, 0.0012506)):
+        assert gvxr.getDensityFromElement(name) == pytest.approx(density)
+    gvxr.makeCube("cube", 1, "cm")
+    gvxr.setElement("cube", "C")
+    assert gvxr.getDensity("cube") == pytest.approx(2.267)
+    gvxr.setDensity("cube", 1.8, "g/cm3")
+    assert gvxr.getDensity("cube") == pytest.approx(1.8)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from .._device import warn
 from .._interface import ArgumentError, SceneError
 from ..material import Material, element_name, element_number, element_symbol
+from .densities import element
 from .state import DENSITIES, ENERGIES, unit, world
 
 __all__ = [
@@ -42,8 +43,13 @@ def setHU(aLabel: str, HU: float) -> None:
 setHounsfieldUnit = setHounsfieldValue = setHU
 
 
+def _element(name: str | int) -> Material:
+    return element(element_symbol(name), element_number(name))
+
+
 def setElement(aLabel: str, aName: str | int) -> None:
-    _fill(aLabel, Material(element_symbol(aName)), f"Element: {aName if isinstance(aName, str) else element_name(aName)}")
+    """At the density that gVXR takes, until setDensity."""
+    _fill(aLabel, _element(aName), f"Element: {aName if isinstance(aName, str) else element_name(aName)}")
 
 
 def setMixture(aLabel: str, aSymbolSet: Any, aWeightSet: Any = None) -> None:
@@ -128,7 +134,8 @@ def getDensityFromHU(HU: float) -> float:
 
 
 def getDensityFromElement(anElement: str | int) -> float:
-    return Material(element_symbol(anElement)).density
+    """g/cm3, of gVXR's table."""
+    return _element(anElement).density
 
 
 def getElementSymbol(Z: str | int) -> str:

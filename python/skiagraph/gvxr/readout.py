@@ -65,7 +65,8 @@ def _with_gain(image: Any) -> NDArray[np.uint16]:
         random = np.random.default_rng((world.seed, world.readouts))
         made += world.bias_deviation * random.standard_normal(made.shape, np.float32)
         world.readouts += 1
-    return np.rint(made).clip(0, FULL).astype(np.uint16)
+    read: NDArray[np.uint16] = np.rint(made).clip(0, FULL).astype(np.uint16)
+    return read
 
 
 def computeXRayImageWithGain(anIntegrateEnergyFlag: Any = True, anotherFlag: bool = True) -> NDArray[np.uint16]:

@@ -135,8 +135,8 @@ def setPhotonCountingBands(aMinEnergy: float, aMaxEnergy: float, aUnitOfEnergy: 
 
 
 def getPhotonCountingBands(aUnitOfEnergy: str) -> tuple[float, ...]:
-    """The edges of the bands, one more than bands."""
-    return tuple(kev / unit(aUnitOfEnergy, ENERGIES) for kev in world.bands or ())
+    """The least energy of each band."""
+    return tuple(kev / unit(aUnitOfEnergy, ENERGIES) for kev in (world.bands or ())[:-1])
 
 
 def getNumberOfPhotonCountingBands() -> int:

@@ -188,10 +188,11 @@ class World:
         return bool(self.spectrum or "kVp" in self.tube)
 
     def beam(self, filtered: bool = True) -> Beam:
-        """The beam, in photons per pixel or absolute."""
+        """The beam, in photons per pixel or absolute. What is inherent to the tube is there without the filters, too."""
         layers: dict[Material, float] = {}
-        if filtered:
-            layers = {material_of(name): mm for name, mm in [*self.inherent, *self.filters]}
+        for name, mm in [*self.inherent, *(self.filters if filtered else [])]:
+            material = material_of(name)
+            layers[material] = layers.get(material, 0.0) + mm
         if not self.spectrum and "kVp" in self.tube:
             beam = Beam.tube(self.tube["kVp"], layers, target_angle=self.tube.get("TubeAngle"),
                              mas=self.tube["mAs"] if self.tube.get("mAs", 0) > 0 else None,
