@@ -26,9 +26,10 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
                                skg_geometry *geometry);
 void skg_geometry_release(skg_geometry *geometry);
 
-/* Enqueues the upload of a mesh's vertices: offsets from its origin in the order of its layout, float or double by the
- * precision; of a fine one then what rounding them has lost. The offsets must stay until the device has read them. */
-skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
+/* Enqueues the upload of `count` vertices from number `first` on, of one mesh or of several: offsets from the origin of their
+ * mesh in the order of its layout, float or double by the precision; of a fine one then what rounding them has lost. The
+ * offsets must stay until the device has read them. */
+skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t first, int64_t count,
                                const void *offsets, skg_stage_log *log);
 
 /* Uploads the corners of a mesh whose merged vertices may have parted, if there are any: from now on, each is a vertex of

@@ -11,14 +11,13 @@ static size_t real_size(const skg_geometry *geometry) {
     return geometry->precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
 }
 
-skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t mesh,
+skg_status skg_geometry_upload(skg_context *context, skg_geometry *geometry, int64_t first, int64_t count,
                                const void *offsets, skg_stage_log *log) {
-    const skg_mesh_layout *layout = &geometry->layouts[mesh];
-    const int64_t row = 3 * (int64_t)real_size(geometry), count = (1 + layout->fine) * layout->vertices;
+    const int64_t row = 3 * (int64_t)real_size(geometry);
     if (count == 0) return SKG_OK;
     geometry->state++;
-    return skg_stage_write(context, "upload", geometry->offsets.memory, geometry->mesh_vertex[mesh] * row,
-                           count * row, offsets, log);
+    return skg_stage_write(context, "upload", geometry->offsets.memory, first * row, count * row, offsets,
+                           log);
 }
 
 static void read_floats(const skg_mesh_layout *layout, const skg_mesh *mesh, float *to) {
@@ -78,21 +77,46 @@ static skg_status keep_apart(skg_context *context, skg_geometry *geometry, const
     return skg_geometry_part_vertices(context, geometry, mesh, index);
 }
 
-skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging) {
-    for (int64_t m = 0; m < geometry->meshes; m++) {
-        void *offsets = NULL;
+/* The end of the meshes from number `first` on that have changed and lie on the device without a gap. */
+static int64_t end_of_run(const skg_geometry *geometry, skg_mesh *const *meshes, int64_t first) {
+    int64_t m = first;
+    while (m < geometry->meshes && geometry->versions[m] != meshes[m]->version &&
+           (m == first || geometry->layouts[m - 1].copies == 0))
+        m++;
+    return m;
+}
+
+/* Uploads the vertices of a run of meshes by one command: each costs the device as much as thousands of vertices. */
+static skg_status update_run(skg_geometry *geometry, skg_mesh *const *meshes, int64_t first, int64_t end,
+                             skg_staging *staging) {
+    const size_t row = 3 * real_size(geometry);
+    const int64_t start = geometry->mesh_vertex[first], last = end - 1;
+    const int64_t count = geometry->mesh_vertex[end] - geometry->layouts[last].copies - start;
+    char *offsets = NULL;
+    SKG_TRY(skg_staging_take(staging, count, row, "vertices", &offsets));
+    for (int64_t m = first; m < end; m++) {
         const skg_mesh_layout *layout = &geometry->layouts[m];
-        if (geometry->versions[m] == meshes[m]->version) continue;
-        SKG_TRY(keep_apart(staging->context, geometry, meshes[m], m));
-        SKG_TRY(skg_staging_take(staging, (1 + layout->fine) * 3 * layout->vertices, real_size(geometry),
-                                 "vertices", &offsets));
+        void *own = offsets + (size_t)(geometry->mesh_vertex[m] - start) * row;
         if (geometry->precision == SKG_PRECISION_DOUBLE)
-            read_doubles(layout, meshes[m], offsets);
+            read_doubles(layout, meshes[m], own);
         else
-            read_floats(layout, meshes[m], offsets);
-        if (layout->fine) read_lost(layout, meshes[m], (float *)offsets + 3 * layout->vertices);
-        SKG_TRY(skg_geometry_upload(staging->context, geometry, m, offsets, &staging->log));
-        geometry->versions[m] = meshes[m]->version;
+            read_floats(layout, meshes[m], own);
+        if (layout->fine) read_lost(layout, meshes[m], (float *)own + 3 * layout->vertices);
+    }
+    SKG_TRY(skg_geometry_upload(staging->context, geometry, start, count, offsets, &staging->log));
+    for (int64_t m = first; m < end; m++) geometry->versions[m] = meshes[m]->version;
+    return SKG_OK;
+}
+
+skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging) {
+    int64_t m = 0;
+    for (int64_t k = 0; k < geometry->meshes; k++)
+        if (geometry->versions[k] != meshes[k]->version)
+            SKG_TRY(keep_apart(staging->context, geometry, meshes[k], k));
+    while (m < geometry->meshes) {
+        const int64_t end = end_of_run(geometry, meshes, m);
+        if (end > m) SKG_TRY(update_run(geometry, meshes, m, end, staging));
+        m = end > m ? end : m + 1;
     }
     return SKG_OK;
 }

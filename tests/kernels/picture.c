@@ -169,7 +169,7 @@ static skg_status make_geometry(skg_context *context, int32_t precision, int bod
         float *offsets = calloc((size_t)s->vertices * 3, sizeof *offsets);
         for (int64_t k = 0; k < s->vertices * 3; k++) offsets[k] = (float)s->positions[k];
         status = skg_geometry_upload(
-            context, geometry, mesh_of[b],
+            context, geometry, geometry->mesh_vertex[mesh_of[b]], s->vertices,
             precision == SKG_PRECISION_DOUBLE ? (const void *)s->positions : (const void *)offsets, NULL);
         clFinish(context->device->queue);
         free(offsets);
