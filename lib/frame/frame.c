@@ -157,10 +157,13 @@ static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const s
     /* The gradient of a frame that was rendered last needs its vertices, but no sums besides those that stand there. */
     if (job->gradient && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
+    if (pass->priority.count)
+        SKG_TRY(skg_hits_count(pass, &machine->geometry, &machine->hits, &job->staging));
     SKG_TRY(skg_staging_take(&job->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
     skg_pass_extents(pass, extents);
     SKG_TRY(skg_raster_run(pass->main.raster, &machine->geometry, extents, log));
-    if (pass->priority.count) SKG_TRY(skg_hits_run(pass, &machine->geometry, &machine->hits, &job->staging));
+    if (pass->priority.count)
+        SKG_TRY(skg_hits_settle(pass, &machine->geometry, &machine->hits, &job->staging));
     if (leaky.count == 0) {
         if (is_image) skg_raster_keep(pass->main.raster, &machine->geometry);
         return SKG_OK;

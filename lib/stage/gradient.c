@@ -217,7 +217,7 @@ static skg_status upload_reals(const gather_run *run, int64_t count, const doubl
     return skg_buffer_write(run->context, buffer, count * (int64_t)sizeof *rounded, rounded, "gradient");
 }
 
-/* The hits of competing parts are listed still, by skg_hits_run of this pass. */
+/* The hits of competing parts are listed still, by skg_hits_settle of this pass. */
 static skg_status run_slopes(const gather_run *run) {
     const skg_hits_memory *h = run->hits;
     const skg_gradient_args *args = &run->args;

@@ -9,7 +9,13 @@
 
 enum { GROUP = 64, ROWS_AT_ONCE = 32 };
 
+static void release_count(skg_hits_memory *memory) {
+    if (memory->counted) clReleaseEvent(memory->counted);
+    memory->counted = NULL;
+}
+
 void skg_hits_memory_release(skg_hits_memory *memory) {
+    release_count(memory);
     skg_buffer *const buffers[] = {&memory->slots,  &memory->runs,  &memory->table,
                                    &memory->shifts, &memory->spans, &memory->counts,
                                    &memory->starts, &memory->total, &memory->hits};
@@ -45,7 +51,6 @@ typedef struct {
     skg_staging *staging;
     skg_context *context;
     cl_program program;
-    int64_t triangles[2]; /* of parts that win over others, of the others */
     int32_t is_double;
     int32_t reserved;
 } hits_run;
@@ -86,7 +91,7 @@ static skg_status upload_shifts(const hits_run *run) {
     return upload(run, &run->memory->shifts, priority->count * size, shifts);
 }
 
-static skg_status upload_tables(hits_run *run) {
+static skg_status upload_tables(const hits_run *run) {
     const skg_pass *pass = run->pass;
     const int64_t entries = pass->priority.count * skg_priority_entry(&pass->priority);
     int32_t *slots = NULL, *runs = NULL, *table = NULL;
@@ -94,7 +99,7 @@ static skg_status upload_tables(hits_run *run) {
     SKG_TRY(skg_staging_take(run->staging, 3 * pass->priority.count, sizeof *runs, "priorities", &runs));
     SKG_TRY(skg_staging_take(run->staging, entries, sizeof *table, "priorities", &table));
     skg_priority_tables(pass->scene, pass->clip, &pass->priority, slots, table);
-    skg_priority_runs(pass->scene, pass->clip, &pass->priority, runs, run->triangles);
+    skg_priority_runs(pass->scene, pass->clip, &pass->priority, runs, run->memory->triangles);
     SKG_TRY(upload(run, &run->memory->runs, 3 * pass->priority.count * (int64_t)sizeof *runs, runs));
     SKG_TRY(upload(run, &run->memory->slots, pass->scene->count * (int64_t)sizeof *slots, slots));
     SKG_TRY(upload(run, &run->memory->table, entries * (int64_t)sizeof *table, table));
@@ -129,7 +134,7 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
     const SKG_INT winners = (SKG_INT)(priority->count - priority->others), all = (SKG_INT)priority->count;
     const int others = (task & SKG_HITS_OF_OTHERS) != 0;
     const skg_work_size work = {
-        2, {run->triangles[others], run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
+        2, {run->memory->triangles[others], run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
     skg_hits_args args = scalars_of(run, task);
     args.chosen[0] = others ? winners : 0;
     args.chosen[1] = others ? all : winners;
@@ -142,7 +147,7 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
         SKG_ARGUMENT(HITS_LIST, spans, run->memory->spans.memory),
         LIST_ARGUMENTS(HITS_LIST, run->memory),
     };
-    if (run->triangles[others] == 0) return SKG_OK;
+    if (run->memory->triangles[others] == 0) return SKG_OK;
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_list", "priority", &work, arguments,
                            &run->staging->log);
 }
@@ -187,13 +192,20 @@ static skg_status place_hits(const hits_run *run) {
                            &run->staging->log);
 }
 
+/* Enqueues the read of the count of hits. */
+static skg_status read_count(const hits_run *run) {
+    skg_hits_memory *m = run->memory;
+    SKG_CL_TRY(clEnqueueReadBuffer(run->context->device->queue, m->total.memory, CL_FALSE, 0, sizeof m->count,
+                                   &m->count, 0, NULL, &m->counted));
+    return skg_queue_flush(run->context);
+}
+
 /* Waits for the count of hits and reserves their list. */
 static skg_status reserve_hits(const hits_run *run) {
-    skg_hit_count count = {0, 0};
     int64_t bytes = 0;
-    SKG_CL_TRY(clEnqueueReadBuffer(run->context->device->queue, run->memory->total.memory, CL_TRUE, 0,
-                                   sizeof count, &count, 0, NULL, NULL));
-    SKG_TRY(skg_hits_bytes(&count, run->is_double, &bytes));
+    SKG_CL_TRY(skg_event_wait(run->memory->counted));
+    release_count(run->memory);
+    SKG_TRY(skg_hits_bytes(&run->memory->count, run->is_double, &bytes));
     return reserve(run, &run->memory->hits, bytes, "hits of parts with priorities");
 }
 
@@ -258,24 +270,40 @@ skg_status skg_hits_expect(skg_context *context, const skg_pass *pass) {
     return compile(&run, NULL);
 }
 
-skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
-                        skg_staging *staging) {
+static skg_status prepare(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
+                          skg_staging *staging, hits_run *run) {
     const skg_raster *raster = pass->main.raster;
-    hits_run run = {.pass = pass,
-                    .geometry = geometry,
-                    .raster = raster,
-                    .memory = memory,
-                    .staging = staging,
-                    .context = raster->context,
-                    .is_double = geometry->precision == SKG_PRECISION_DOUBLE};
-    const cl_int4 window = window_of(&run);
-    if (window.s[0] >= window.s[2] || window.s[1] >= window.s[3]) return SKG_OK;
-    SKG_TRY(compile(&run, &run.program));
+    *run = (hits_run){.pass = pass,
+                      .geometry = geometry,
+                      .raster = raster,
+                      .memory = memory,
+                      .staging = staging,
+                      .context = raster->context,
+                      .is_double = geometry->precision == SKG_PRECISION_DOUBLE};
+    return compile(run, &run->program);
+}
+
+skg_status skg_hits_count(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
+                          skg_staging *staging) {
+    const int32_t *window = pass->priority.window;
+    hits_run run;
+    release_count(memory); /* of a pass that failed */
+    if (window[0] >= window[1] || window[2] >= window[3]) return SKG_OK;
+    SKG_TRY(prepare(pass, geometry, memory, staging, &run));
+    SKG_TRY(skg_raster_set_scene(pass->main.raster, geometry));
     SKG_TRY(upload_tables(&run));
     SKG_TRY(clear(&run));
     SKG_TRY(list_all(&run, SKG_HITS_COUNT));
     SKG_TRY(count_others(&run));
     SKG_TRY(place_hits(&run));
+    return read_count(&run);
+}
+
+skg_status skg_hits_settle(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
+                           skg_staging *staging) {
+    hits_run run;
+    if (!memory->counted) return SKG_OK;
+    SKG_TRY(prepare(pass, geometry, memory, staging, &run));
     SKG_TRY(reserve_hits(&run));
     SKG_TRY(list_all(&run, SKG_HITS_LIST));
     if (pass->priority.others > 0) SKG_TRY(list_all(&run, SKG_HITS_LIST + SKG_HITS_OF_OTHERS));

@@ -6,9 +6,13 @@
 
 #include "stage/pass.h"
 
-/* Buffers of the lists, kept from frame to frame. */
+/* Kept from frame to frame. */
 typedef struct {
     skg_buffer slots, runs, table, shifts, spans, counts, starts, total, hits;
+    /* Of the pass whose hits were counted last. */
+    int64_t triangles[2]; /* of parts that win over others, of the others */
+    cl_event counted;     /* `count` is read; NULL: no hits */
+    skg_hit_count count;
 } skg_hits_memory;
 
 void skg_hits_memory_release(skg_hits_memory *memory);
@@ -23,8 +27,13 @@ skg_status skg_hits_bytes(const skg_hit_count *count, int32_t is_double, int64_t
 /* Expects the program of the stage (skg_expected_begin). */
 skg_status skg_hits_expect(skg_context *context, const skg_pass *pass);
 
-/* Enqueues the stage behind the raster of the closed parts, whose tables the device has. Waits for the count of hits. */
-skg_status skg_hits_run(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
-                        skg_staging *staging);
+/* Enqueues the count of hits behind the projection, before the raster of the closed parts is enqueued: the device draws while the
+ * host waits for the count, and enqueues what takes hits off. */
+skg_status skg_hits_count(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
+                          skg_staging *staging);
+
+/* Waits for the count, and enqueues the rest of the stage behind the raster. */
+skg_status skg_hits_settle(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,
+                           skg_staging *staging);
 
 #endif

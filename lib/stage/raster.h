@@ -42,6 +42,9 @@ cl_kernel skg_raster_projection(const skg_raster *raster);
 /* Gives the rays of the frames to come. Only sums in half precision need them. */
 void skg_raster_set_rays(skg_raster *raster, const skg_camera *camera);
 
+/* Notes the numbers of parts, vertices and triangles that launches need; for kernels that run before skg_raster_run. */
+skg_status skg_raster_set_scene(skg_raster *raster, const skg_geometry *geometry);
+
 /* Enqueues a frame: adds up what skg_geometry_project has projected. extents: [planes][4] rows from and to, columns
  * from and to, outside which nothing is added to a plane (skg_shared.h); they must stay until the device has read them.
  * NULL: the whole detector. */

@@ -25,8 +25,7 @@ int64_t skg_raster_claim(int64_t triangles, int64_t workers) {
     return claim < 32 ? 32 : claim > 1024 ? 1024 : claim;
 }
 
-/* What the launches need to know of the scene. */
-static skg_status set_counts(skg_raster *raster, const skg_geometry *geometry) {
+skg_status skg_raster_set_scene(skg_raster *raster, const skg_geometry *geometry) {
     skg_raster_layout *layout = &raster->layout;
     layout->parts = (SKG_INT)geometry->parts;
     layout->vertices = (SKG_INT)geometry->vertices;
@@ -65,7 +64,7 @@ static skg_status run_source(skg_raster *raster, const skg_geometry *g, skg_stag
 skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, const cl_int *extents,
                           skg_stage_log *log) {
     raster->state = 0;
-    SKG_TRY(set_counts(raster, geometry));
+    SKG_TRY(skg_raster_set_scene(raster, geometry));
     SKG_TRY(skg_raster_place_pass(raster, 0, extents, log));
     SKG_TRY(raster->strategy->run(raster, geometry, log));
     return raster->source ? run_source(raster, geometry, log) : SKG_OK;
@@ -82,7 +81,7 @@ int skg_raster_keeps(const skg_raster *raster, const skg_geometry *geometry) {
 skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *geometry, int32_t passes,
                                  skg_stage_log *log) {
     raster->state = 0;
-    SKG_TRY(set_counts(raster, geometry));
+    SKG_TRY(skg_raster_set_scene(raster, geometry));
     raster->layout.passes = passes;
     return raster->strategy->run(raster, geometry, log);
 }
