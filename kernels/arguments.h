@@ -81,7 +81,8 @@
 
 #define SKG_ARGUMENTS_HITS_SETTLE(X) \
     X(HITS_SETTLE, args) X(HITS_SETTLE, parts) X(HITS_SETTLE, contributions) X(HITS_SETTLE, counts) \
-    X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, sums)
+    X(HITS_SETTLE, starts) X(HITS_SETTLE, hits) X(HITS_SETTLE, table) X(HITS_SETTLE, used) \
+    X(HITS_SETTLE, sums)
 
 #define SKG_ARGUMENTS_HITS_SLOPES(X) \
     X(HITS_SLOPES, args) X(HITS_SLOPES, parts) X(HITS_SLOPES, contributions) X(HITS_SLOPES, counts) \

@@ -150,14 +150,25 @@ static int skg_loses(__global const int *entry, const uint *active, const uint *
     return loses;
 }
 
-/* Subtracts what a part has added to the sums of a pixel over an interval. */
-static void skg_take_off(__global const skg_part_entry *part, __global const skg_contribution *contributions, int plane,
-                         skg_real length, __global skg_sum *sums) {
+/* The first copy that counts for a plane: of one to which parts have added there is one. */
+static int skg_copy_of(const skg_raster_layout *layout, __global const int *used, int plane) {
+    int copy = 0;
+    while (copy + 1 < layout->copies && !SKG_COUNTS(used[copy], plane)) copy++;
+    return copy;
+}
+
+/* Subtracts what a part has added to the sums of a pixel over an interval. place: of the pixel in a plane. */
+static void skg_take_off(const skg_raster_layout *layout, __global const skg_part_entry *part,
+                         __global const skg_contribution *contributions, skg_real length, size_t place,
+                         __global const int *used, __global skg_sum *sums) {
 #if !SKG_PARALLEL
     length /= part->reference; /* the unit of the contributions */
 #endif
-    for (int w = part->first_contribution; w < part->first_contribution + part->contributions; w++)
-        sums[contributions[w].plane * plane] -= (skg_sum)skg_round(length * contributions[w].weight);
+    for (int w = part->first_contribution; w < part->first_contribution + part->contributions; w++) {
+        const int plane = contributions[w].plane;
+        const size_t first = (size_t)skg_copy_of(layout, used, plane) * (size_t)layout->planes + (size_t)plane;
+        sums[first * (size_t)layout->plane + place] -= (skg_sum)skg_round(length * contributions[w].weight);
+    }
 }
 
 /* The slots that lose an interval, of those that are active. */
@@ -180,17 +191,17 @@ static void skg_pass_hit(int code, int *winding, uint *active) {
 }
 
 /* Decides every interval of a pixel; one work-item per pixel of the window. table: [slots][SKG_ENTRY], parents before their
- * children. sums: the first copy. */
+ * children. */
 __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry *parts,
                               __global const skg_contribution *contributions, __global const int *counts,
                               __global const uint *starts, __global skg_listed *hits, __global const int *table,
-                              __global skg_sum *sums) {
+                              __global const int *used, __global skg_sum *sums) {
     const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
     if (column >= args.window[2] || row >= args.window[3]) return;
     const int count = counts[row * args.layout.columns + column];
     if (count == 0) return;
     hits += starts[row * args.layout.columns + column];
-    __global skg_sum *place = sums + (row * args.layout.stride + column);
+    const size_t place = (size_t)row * (size_t)args.layout.stride + (size_t)column;
     int winding[SKG_SLOTS];
     uint active[SKG_WORDS];
     skg_sort_hits(hits, count);
@@ -205,8 +216,8 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
         for (int w = 0; w < SKG_WORDS; w++)
             for (uint rest = dropped[w]; rest; rest &= rest - 1) {
                 const int slot = 32 * w + 31 - (int)clz(rest & (~rest + 1));
-                skg_take_off(&parts[table[slot * SKG_ENTRY]], contributions, args.layout.plane,
-                             length * (skg_real)winding[slot], place);
+                skg_take_off(&args.layout, &parts[table[slot * SKG_ENTRY]], contributions,
+                             length * (skg_real)winding[slot], place, used, sums);
             }
     }
 }

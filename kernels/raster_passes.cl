@@ -1,6 +1,6 @@
 /* Several passes of a frame, strategy `copies`: passes differ in their tables of parts and contributions alone. Each work-group
  * (one work-item, wide vectors) claims whole passes until none are left: it projects the vertices into memory of its own, and
- * adds all triangles up in the only copy of the pass's sums. used[0]: 1; used[1]: the pass that is claimed next; then the extents
+ * adds all triangles up in the only copy of the pass's sums. used[0]: all planes; used[1]: the pass that is claimed next; then the extents
  * of the planes of all passes (skg_shared.h). */
 
 /* Projects the vertices of SKG_SIDE passes. Of several, x of a vertex in all passes stand side by side, then y, z and t; behind

@@ -36,14 +36,15 @@
 /* Rows that the kernel of the source plane draws or skips together. */
 #define SKG_SOURCE_ROWS 32
 
-/* The table `used` of a raster: for each copy whether it counts; the counter of claims; then for each plane the extent
- * that has sums: first row, end row, first column, end column, the columns multiples of SKG_EXTENT_COLUMNS or the row's
+/* The table `used` of a raster: for each copy a set of bits, the planes of which it counts (SKG_COUNTS); `copies` counters of
+ * claims; then for each plane the extent that has sums: first row, end row, first column, end column, the columns multiples of SKG_EXTENT_COLUMNS or the row's
  * end. Outside its extent the sums of a plane are 0, and memory is neither zeroed nor read. */
-#define SKG_EXTENT(copies, plane) ((copies) + 1 + 4 * (plane))
+#define SKG_EXTENT(copies, plane) (2 * (copies) + 4 * (plane))
 #define SKG_EXTENT_COLUMNS 32
 
-/* In `used`, of a copy that counts and has not been zeroed. */
-#define SKG_TO_ZERO 2
+/* The bit of a plane in the set of a copy, which planes 32 apart share, and whether a copy counts for a plane. */
+#define SKG_PLANE_BIT(plane) (1u << ((plane) & 31))
+#define SKG_COUNTS(set, plane) (((SKG_UINT)(set) & SKG_PLANE_BIT(plane)) != 0)
 
 /* How many bad pixels of a leaky mesh are listed. */
 #define SKG_FIRST_BAD 8
@@ -91,7 +92,7 @@ typedef struct {
     SKG_INT queue;       /* entries of the queue of large triangles */
     SKG_INT first_plane; /* that a pass has, of those of several passes */
     SKG_INT passes;      /* that are drawn together */
-    SKG_INT reserved;
+    SKG_INT whole_first; /* of copies: 1: other kernels add to the first one, which counts for all planes */
 } skg_raster_layout;
 
 /* Positions of a mesh from the caller's memory, and their bounds, mm from the mesh's origin. */

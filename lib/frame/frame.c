@@ -40,7 +40,7 @@ static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine 
         .kernels = pass->kernels,
         .strategy = recipe->strategy,
         .tile = tile_of(recipe, pass),
-        .more_sums = recipe->leaky_count > 0 || recipe->priority_possible,
+        .more_sums = recipe->leaky_count > 0,
         .columns = pass->camera.columns,
         .rows = pass->camera.rows,
         .planes = pass->planes,

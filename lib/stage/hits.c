@@ -222,6 +222,7 @@ static skg_status settle(const hits_run *run) {
         SKG_ARGUMENT(HITS_SETTLE, starts, m->starts.memory),
         SKG_ARGUMENT(HITS_SETTLE, hits, m->hits.memory),
         SKG_ARGUMENT(HITS_SETTLE, table, m->table.memory),
+        SKG_ARGUMENT(HITS_SETTLE, used, run->raster->used.memory),
         SKG_ARGUMENT(HITS_SETTLE, sums, run->raster->sums.memory),
     };
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_settle", "priority", &work, arguments,

@@ -9,7 +9,9 @@ static int takes(const skg_context *context, const skg_raster_options *options) 
 }
 
 static skg_status lay_out(skg_raster *raster) {
+    const skg_raster_options *o = &raster->options;
     raster->layout.copies = raster->workers;
+    raster->layout.whole_first = o->more_sums || (o->kernels.source_plane && !o->kernels.parallel);
     return SKG_OK;
 }
 
@@ -29,9 +31,7 @@ static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *
         SKG_ARGUMENT(RASTER_COPIES, copies, raster->sums.memory),
         SKG_ARGUMENT(RASTER_COPIES, used, raster->used.memory),
     };
-    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, (layout->copies + 1) * of_int));
-    if (raster->source || raster->options.more_sums) /* the first copy is added to */
-        SKG_TRY(skg_raster_fill(raster, &raster->used, SKG_TO_ZERO, 0, of_int));
+    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, 0, 2 * layout->copies * of_int));
     return SKG_RASTER_LAUNCH(raster, 0, "raster", skg_raster_by_worker(raster), arguments, log);
 }
 

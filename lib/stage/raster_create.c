@@ -67,7 +67,7 @@ static skg_status make_extents(skg_raster *raster) {
     raster->sent = raster->whole + 4 * layout->planes;
     for (int32_t p = 0; p < layout->planes; p++)
         raster->whole[4 * p + 1] = layout->rows, raster->whole[4 * p + 3] = layout->stride;
-    return skg_raster_fill(raster, &raster->used, 1, 0, raster->used.bytes);
+    return skg_raster_fill(raster, &raster->used, -1, 0, raster->used.bytes);
 }
 
 static skg_status compile_strategy(skg_raster *raster) {

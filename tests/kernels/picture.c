@@ -234,7 +234,7 @@ static skg_status read_sums(skg_context *context, const skg_raster *raster, int3
         const int64_t place = plane * f->plane + row * f->stride + n % result->columns;
         uint64_t sum = 0;
         for (int64_t c = 0; c < f->copies; c++)
-            if (used[c]) {
+            if (SKG_COUNTS(used[c], plane)) {
                 const int64_t at = c * f->planes * f->plane + place;
                 sum += bits == 64 ? ((uint64_t *)all)[at] : (uint64_t)(int64_t)((int32_t *)all)[at];
             }
