@@ -65,6 +65,9 @@
     X(SOURCE_PLANE, layout) X(SOURCE_PLANE, corners) X(SOURCE_PLANE, projected) X(SOURCE_PLANE, parts) \
     X(SOURCE_PLANE, blocks) X(SOURCE_PLANE, vertices) X(SOURCE_PLANE, contributions) X(SOURCE_PLANE, sums)
 
+#define SKG_ARGUMENTS_HITS_CLEAR(X) \
+    X(HITS_CLEAR, args) X(HITS_CLEAR, spans) X(HITS_CLEAR, counts) X(HITS_CLEAR, starts) X(HITS_CLEAR, total)
+
 #define SKG_ARGUMENTS_HITS_LIST(X) \
     X(HITS_LIST, args) X(HITS_LIST, corners) X(HITS_LIST, projected) X(HITS_LIST, parts) X(HITS_LIST, runs) \
     X(HITS_LIST, spans) X(HITS_LIST, slots) X(HITS_LIST, shifts) X(HITS_LIST, counts) X(HITS_LIST, starts) \
@@ -171,7 +174,7 @@
     X(RASTER_QUEUE, skg_raster_queue) X(TILES_COUNT, skg_tiles_count) X(TILES_SCAN, skg_tiles_scan) \
     X(TILES_FILL, skg_tiles_fill) X(RASTER_SQUARES, skg_raster_squares) X(BANDS_SORT, skg_bands_sort) \
     X(RASTER_BANDS, skg_raster_bands) X(RASTER_HALF, skg_raster_half) X(SOURCE_PLANE, skg_source_plane) \
-    X(HITS_LIST, skg_hits_list) X(HITS_SOURCE_PLANE, skg_hits_source_plane) X(HITS_PLACE, skg_hits_place) \
+    X(HITS_CLEAR, skg_hits_clear) X(HITS_LIST, skg_hits_list) X(HITS_SOURCE_PLANE, skg_hits_source_plane) X(HITS_PLACE, skg_hits_place) \
     X(HITS_SETTLE, skg_hits_settle) X(HITS_SLOPES, skg_hits_slopes) \
     X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_BATCHES, skg_gradient_batches) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \

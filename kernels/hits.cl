@@ -17,32 +17,36 @@ typedef struct {
 typedef struct {
     __global const int *slots;       /* [parts] -1: the part does not compete; see SKG_HITS_OTHER */
     __global const skg_real *shifts; /* [slots] the part's reference minus the common one */
-    __global int *counts;            /* [rows][columns] */
-    __global const uint *starts;
+    __global int *counts;            /* [rows][columns] of others; then cursors */
+    __global uint *starts;           /* [rows][columns] while hits are counted, those of winners; then places */
     __global skg_listed *hits;
     int task; /* SKG_HITS_... */
 } skg_lists;
 
-/* The slot of a part whose hits this launch takes; -1: it does not take them. */
-static int skg_slot_of(const skg_lists *lists, int part) {
+/* The slot of a part whose hits this launch takes; -1: it does not take them. other: whether it wins over none. */
+static int skg_slot_of(const skg_lists *lists, int part, int *other) {
     const int slot = lists->slots[part];
-    const int other = slot >= SKG_HITS_OTHER;
-    return slot < 0 || other != (lists->task / SKG_HITS_OF_OTHERS) ? -1 : other ? slot - SKG_HITS_OTHER : slot;
+    *other = slot >= SKG_HITS_OTHER;
+    const int takes = lists->task == SKG_HITS_LIST || *other == (lists->task == SKG_HITS_COUNT_OTHERS);
+    return slot < 0 || !takes ? -1 : *other ? slot - SKG_HITS_OTHER : slot;
 }
 
 /* Whether a hit at a pixel is listed. Winners are the parts that displace another one; their hits always are. Hits of the other
  * competitors are listed only in pixels where a winner was hit, too: elsewhere nothing displaces them. `starts` says where that
  * is. While hits are counted it holds the number of winners' hits of each pixel, which is 0 if there are none. Afterwards it
  * holds the place of each pixel's list, which is SKG_HITS_MAX if there are none. */
-static int skg_is_listed(const skg_lists *lists, int pixel) {
-    const uint none = (lists->task & SKG_HITS_LIST) == 0 ? 0 : SKG_HITS_MAX;
-    return !(lists->task & SKG_HITS_OF_OTHERS) || lists->starts[pixel] != none;
+static int skg_is_listed(const skg_lists *lists, int pixel, int other) {
+    return !other || lists->starts[pixel] != (lists->task == SKG_HITS_LIST ? SKG_HITS_MAX : 0);
 }
 
 /* Counts or lists one hit. q: its depth as skg_depth returns it. */
 static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, skg_real reference, int enters) {
+    if (lists->task == SKG_HITS_COUNT) {
+        atomic_inc(&lists->starts[pixel]);
+        return;
+    }
     const int place = atomic_inc(&lists->counts[pixel]);
-    if (!(lists->task & SKG_HITS_LIST)) return;
+    if (lists->task == SKG_HITS_COUNT_OTHERS) return;
 #if SKG_PARALLEL
     const skg_real depth = q + lists->shifts[slot];
 #else
@@ -52,31 +56,45 @@ static void skg_list(const skg_lists *lists, int slot, int pixel, skg_real q, sk
 }
 
 #define SKG_LIST_ARGUMENTS                                                                                            \
-    __global const int *slots, __global const skg_real *shifts, __global int *counts, __global const uint *starts,    \
+    __global const int *slots, __global const skg_real *shifts, __global int *counts, __global uint *starts,          \
         __global skg_listed *hits
 
 /* The columns of a row in which hits of a triangle may be listed: of a winner all columns of the triangle's box, of another
  * competitor only those from the first column in which a winner was hit (span[0]) to the last (span[1] - 1). */
-static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int task) {
+static skg_box skg_between_winners(const skg_box *box, __global const int *span, int pixel_i, int other) {
     skg_box seen = *box;
-    if (task & SKG_HITS_OF_OTHERS) {
+    if (other) {
         seen.i0 = max(seen.i0, span[0] - pixel_i);
         seen.i1 = min(seen.i1, span[1] - pixel_i);
     }
     return seen;
 }
 
+/* Clears what a frame counts; a work-item takes a row of the window. */
+__kernel void skg_hits_clear(skg_hits_args args, __global int2 *spans, __global int *counts, __global uint *starts,
+                             __global skg_hit_count *total) {
+    const int row = args.window[1] + (int)get_global_id(0);
+    if (row == args.window[1]) total->low = total->high = 0;
+    if (row >= args.window[3]) return;
+    /* Winners that reach the source's plane are listed by a kernel that leaves the spans alone. */
+    spans[row] = SKG_SOURCE_PLANE ? (int2)(0, args.layout.columns) : (int2)(args.layout.columns, 0);
+    for (int column = args.window[0]; column < args.window[2]; column++) {
+        counts[row * args.layout.columns + column] = 0;
+        starts[row * args.layout.columns + column] = 0;
+    }
+}
+
 /* Each work-item takes every get_global_size(1)-th row of one triangle. runs: of the competitors' triangles, each the number of
- * its first work-item, its part and its slot; those from chosen[0] to chosen[1] - 1 are listed. spans: of each row the columns,
+ * the first triangle, its part and its slot, of winners first; those from chosen[0] to chosen[1] - 1 are listed. spans: of each row the columns,
  * from and to, where winners may be; they grow while winners are counted. */
 __kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __global const skg_real4 *projected,
                             __global const skg_part_entry *parts, __global const int *runs,
                             __global int *spans, SKG_LIST_ARGUMENTS) {
     const skg_lists lists = {slots, shifts, counts, starts, hits, args.task};
-    const int item = (int)get_global_id(0);
     int run = args.chosen[0];
+    const int item = (int)get_global_id(0) + runs[3 * run];
     while (run + 1 < args.chosen[1] && item >= runs[3 * (run + 1)]) run++;
-    const int number = runs[3 * run + 1], slot = runs[3 * run + 2];
+    const int number = runs[3 * run + 1], slot = runs[3 * run + 2], other = run >= args.winners;
     if (item - runs[3 * run] >= parts[number].triangles) return;
     skg_range range;
     skg_range_of(parts, number, &range);
@@ -89,7 +107,7 @@ __kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __g
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {
         __global int *span = spans + 2 * (range.pixel_j + row);
-        const skg_box seen = skg_between_winners(&box, span, range.pixel_i, args.task);
+        const skg_box seen = skg_between_winners(&box, span, range.pixel_i, other);
         if (seen.i0 >= seen.i1) continue;
         skg_line line;
         skg_row(&f, (skg_real)row, &line);
@@ -101,29 +119,41 @@ __kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __g
             atomic_max(span + 1, range.pixel_i + columns.y);
         }
         for (int column = columns.x; column < columns.y; column++)
-            if (skg_is_listed(&lists, first + column) && skg_hit(&line, (skg_real)column))
+            if (skg_is_listed(&lists, first + column, other) && skg_hit(&line, (skg_real)column))
                 skg_list(&lists, slot, first + column, skg_depth(&f, &line, (skg_real)column), reference, enters);
     }
 }
 
 /* Adds to a count of hits. The low word carries into the high one, so that the count is exact however many hits there
  * are, without 64-bit atomics. Returns the low word as it was before. */
-static uint skg_add_hits(__global skg_hit_count *total, uint count) {
-    const uint low = atomic_add(&total->low, count);
-    if (low + count < low) atomic_inc(&total->high);
+static uint skg_add_hits(__global skg_hit_count *total, ulong count) {
+    const uint low = atomic_add(&total->low, (uint)count);
+    const uint high = (uint)(count >> 32) + (low + (uint)count < low ? 1 : 0);
+    if (high) atomic_add(&total->high, high);
     return low;
 }
+
+/* Columns of a row that a work-item takes: many on a CPU, where work-items that find nothing cost more than it does. */
+#define SKG_HITS_RUN (SKG_CPU ? SKG_CPU_RUN : 1)
 
 /* Gives each pixel of the window a stretch of the list for its hits, in any order, and counts all hits in *total. Counts become
  * 0 and then serve as cursors. Starts are valid only where the host finds that *total is not above SKG_HITS_MAX. */
 __kernel void skg_hits_place(skg_hits_args args, __global int *counts, __global uint *starts,
                              __global skg_hit_count *total) {
-    const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
-    if (column >= args.window[2] || row >= args.window[3]) return;
-    const int pixel = row * args.layout.columns + column;
-    const int count = counts[pixel];
-    starts[pixel] = count ? skg_add_hits(total, (uint)count) : SKG_HITS_MAX;
-    counts[pixel] = 0;
+    const int column = args.window[0] + SKG_HITS_RUN * (int)get_global_id(0);
+    const int row = args.window[1] + (int)get_global_id(1), end = min(column + SKG_HITS_RUN, args.window[2]);
+    ulong all = 0;
+    if (column >= end || row >= args.window[3]) return;
+    counts += row * args.layout.columns;
+    starts += row * args.layout.columns;
+    for (int k = column; k < end; k++) all += (ulong)starts[k] + (ulong)counts[k];
+    uint next = all ? skg_add_hits(total, all) : 0;
+    for (int k = column; k < end; k++) {
+        const uint count = starts[k] + (uint)counts[k];
+        starts[k] = count ? next : SKG_HITS_MAX;
+        counts[k] = 0;
+        next += count;
+    }
 }
 
 static void skg_sort_hits(__global skg_listed *hits, int count) {
@@ -190,18 +220,11 @@ static void skg_pass_hit(int code, int *winding, uint *active) {
     active[slot / 32] = winding[slot] > 0 ? active[slot / 32] | bit : active[slot / 32] & ~bit;
 }
 
-/* Decides every interval of a pixel; one work-item per pixel of the window. table: [slots][SKG_ENTRY], parents before their
- * children. */
-__kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry *parts,
-                              __global const skg_contribution *contributions, __global const int *counts,
-                              __global const uint *starts, __global skg_listed *hits, __global const int *table,
-                              __global const int *used, __global skg_sum *sums) {
-    const int column = args.window[0] + (int)get_global_id(0), row = args.window[1] + (int)get_global_id(1);
-    if (column >= args.window[2] || row >= args.window[3]) return;
-    const int count = counts[row * args.layout.columns + column];
-    if (count == 0) return;
-    hits += starts[row * args.layout.columns + column];
-    const size_t place = (size_t)row * (size_t)args.layout.stride + (size_t)column;
+/* Decides every interval of a pixel that has hits. */
+SKG_APART void skg_settle_pixel(const skg_raster_layout *layout, __global const skg_part_entry *parts,
+                                __global const skg_contribution *contributions, __global skg_listed *hits, int count,
+                                __global const int *table, size_t place, __global const int *used,
+                                __global skg_sum *sums) {
     int winding[SKG_SLOTS];
     uint active[SKG_WORDS];
     skg_sort_hits(hits, count);
@@ -216,9 +239,25 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
         for (int w = 0; w < SKG_WORDS; w++)
             for (uint rest = dropped[w]; rest; rest &= rest - 1) {
                 const int slot = 32 * w + 31 - (int)clz(rest & (~rest + 1));
-                skg_take_off(&args.layout, &parts[table[slot * SKG_ENTRY]], contributions,
+                skg_take_off(layout, &parts[table[slot * SKG_ENTRY]], contributions,
                              length * (skg_real)winding[slot], place, used, sums);
             }
+    }
+}
+
+/* Decides every interval of the pixels of the window. table: [slots][SKG_ENTRY], parents before their children. */
+__kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry *parts,
+                              __global const skg_contribution *contributions, __global const int *counts,
+                              __global const uint *starts, __global skg_listed *hits, __global const int *table,
+                              __global const int *used, __global skg_sum *sums) {
+    const int first = args.window[0] + SKG_HITS_RUN * (int)get_global_id(0);
+    const int row = args.window[1] + (int)get_global_id(1), end = min(first + SKG_HITS_RUN, args.window[2]);
+    if (row >= args.window[3]) return;
+    for (int column = first; column < end; column++) {
+        const int pixel = row * args.layout.columns + column, count = counts[pixel];
+        if (count == 0) continue;
+        const size_t place = (size_t)row * (size_t)args.layout.stride + (size_t)column;
+        skg_settle_pixel(&args.layout, parts, contributions, hits + starts[pixel], count, table, place, used, sums);
     }
 }
 
@@ -229,9 +268,10 @@ __kernel void skg_hits_settle(skg_hits_args args, __global const skg_part_entry 
 #define SKG_SOURCE_BUFFERS SKG_LIST_ARGUMENTS
 #define SKG_SOURCE_BEGIN(range)                                                                                       \
     const skg_lists lists = {slots, shifts, counts, starts, hits, args.task};                                         \
-    const int slot = skg_slot_of(&lists, range.number);                                                               \
+    int other;                                                                                                        \
+    const int slot = skg_slot_of(&lists, range.number, &other);                                                       \
     if (slot < 0) return
 #define SKG_SOURCE_HIT(row, column, q, factor)                                                                        \
     if ((row) >= args.window[1] && (row) < args.window[3] && (column) >= args.window[0] &&                            \
-        (column) < args.window[2] && skg_is_listed(&lists, (row) * args.layout.columns + (column)))                    \
+        (column) < args.window[2] && skg_is_listed(&lists, (row) * args.layout.columns + (column), other))             \
     skg_list(&lists, slot, (row) * args.layout.columns + (column), q, p->reference, (factor) < 0)

@@ -118,11 +118,12 @@ typedef struct {
 #define SKG_HITS_MAX 0xffffffffu
 
 /* Of the kernels of hits.cl. window: columns from, rows from, columns to, rows to; nothing is listed outside. chosen: of
- * skg_hits_list, the first of the runs of triangles that are listed, and the end of these. task: SKG_HITS_... below. */
+ * skg_hits_list, the first of the runs of triangles that are listed, and the end of these; winners: how many runs are of parts that
+ * win over others. task: SKG_HITS_... below. */
 typedef struct {
     skg_raster_layout layout;
     SKG_INT window[4], chosen[2];
-    SKG_INT task, reserved;
+    SKG_INT task, winners;
 } skg_hits_args;
 
 /* Of the kernels of leaky.cl. parts: of the batch; part and count: of skg_leaky_put, one of these and how many of its pixels
@@ -146,10 +147,10 @@ typedef struct {
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_OTHER 0x10000
 
-/* What a launch that lists hits does, summed: counts those of winners; lists instead of counting; takes the others. */
+/* What a launch does with hits: counts those of winners, or those of others; lists all. */
 #define SKG_HITS_COUNT 0
-#define SKG_HITS_LIST 1
-#define SKG_HITS_OF_OTHERS 2
+#define SKG_HITS_COUNT_OTHERS 1
+#define SKG_HITS_LIST 2
 
 /* The length of the ray to pixel (i, j) is |centre + i column + j row| mm; with a parallel beam |centre|. i and j count from
  * the pixel of `centre`. */

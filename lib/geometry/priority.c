@@ -184,7 +184,7 @@ void skg_priority_runs(const skg_scene *scene, int32_t clip, const skg_priority 
         for (int64_t s = 0; s < priority->count; s++) {
             const int64_t part = priority->parts[s];
             if (is_other(scene, clip, part) != others) continue;
-            *runs++ = (int32_t)triangles[others];
+            *runs++ = (int32_t)(others ? triangles[0] + triangles[1] : triangles[0]);
             *runs++ = (int32_t)part;
             *runs++ = (int32_t)s;
             triangles[others] += scene->parts[part].mesh->triangles;

@@ -43,7 +43,7 @@ void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priorit
                          int32_t *table);
 
 /* Fills `runs` [competitors][3]: the triangles of the competitors, first of those that win over others or are clipped, then of
- * the others: number of the first triangle (each of the two begins with 0), part, slot. triangles: of both. */
+ * the others: number of the first triangle, part, slot. triangles: of both. */
 void skg_priority_runs(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *runs,
                        int64_t triangles[2]);
 

@@ -6,6 +6,7 @@
 #include <skiagraph/plan.h>
 
 #include <inttypes.h>
+#include <string.h>
 
 enum { GROUP = 64, ROWS_AT_ONCE = 32 };
 
@@ -16,6 +17,7 @@ static void release_count(skg_hits_memory *memory) {
 
 void skg_hits_memory_release(skg_hits_memory *memory) {
     release_count(memory);
+    skg_free(&memory->sent);
     skg_buffer *const buffers[] = {&memory->slots,  &memory->runs,  &memory->table,
                                    &memory->shifts, &memory->spans, &memory->counts,
                                    &memory->starts, &memory->total, &memory->hits};
@@ -91,18 +93,36 @@ static skg_status upload_shifts(const hits_run *run) {
     return upload(run, &run->memory->shifts, priority->count * size, shifts);
 }
 
+/* Whether the device has these tables, of which the host keeps a copy; if not, the copy is made. */
+static skg_status note_tables(skg_hits_memory *memory, int64_t count, const int32_t *tables, int *known) {
+    const size_t bytes = (size_t)count * sizeof *tables;
+    *known = memory->sent && memory->sent_count == count && memcmp(memory->sent, tables, bytes) == 0;
+    if (*known) return SKG_OK;
+    memory->sent_count = 0; /* until the device has the new ones */
+    SKG_TRY(skg_realloc(count, sizeof *memory->sent, "priorities", &memory->sent));
+    memcpy(memory->sent, tables, bytes);
+    return SKG_OK;
+}
+
 static skg_status upload_tables(const hits_run *run) {
     const skg_pass *pass = run->pass;
-    const int64_t entries = pass->priority.count * skg_priority_entry(&pass->priority);
-    int32_t *slots = NULL, *runs = NULL, *table = NULL;
-    SKG_TRY(skg_staging_take(run->staging, pass->scene->count, sizeof *slots, "priorities", &slots));
-    SKG_TRY(skg_staging_take(run->staging, 3 * pass->priority.count, sizeof *runs, "priorities", &runs));
-    SKG_TRY(skg_staging_take(run->staging, entries, sizeof *table, "priorities", &table));
+    skg_hits_memory *m = run->memory;
+    const int64_t of_slots = pass->scene->count, of_runs = 3 * pass->priority.count;
+    const int64_t of_table = pass->priority.count * skg_priority_entry(&pass->priority);
+    const int64_t count = of_slots + of_runs + of_table, size = sizeof(int32_t);
+    int32_t *slots = NULL;
+    int known = 0;
+    SKG_TRY(skg_staging_take(run->staging, count, sizeof *slots, "priorities", &slots));
+    int32_t *const runs = slots + of_slots, *const table = runs + of_runs;
     skg_priority_tables(pass->scene, pass->clip, &pass->priority, slots, table);
-    skg_priority_runs(pass->scene, pass->clip, &pass->priority, runs, run->memory->triangles);
-    SKG_TRY(upload(run, &run->memory->runs, 3 * pass->priority.count * (int64_t)sizeof *runs, runs));
-    SKG_TRY(upload(run, &run->memory->slots, pass->scene->count * (int64_t)sizeof *slots, slots));
-    SKG_TRY(upload(run, &run->memory->table, entries * (int64_t)sizeof *table, table));
+    skg_priority_runs(pass->scene, pass->clip, &pass->priority, runs, m->triangles);
+    SKG_TRY(note_tables(m, count, slots, &known));
+    if (!known) {
+        SKG_TRY(upload(run, &m->runs, of_runs * size, runs));
+        SKG_TRY(upload(run, &m->slots, of_slots * size, slots));
+        SKG_TRY(upload(run, &m->table, of_table * size, table));
+        m->sent_count = count;
+    }
     return upload_shifts(run);
 }
 
@@ -117,7 +137,8 @@ static skg_hits_args scalars_of(const hits_run *run, SKG_INT task) {
     const cl_int4 window = window_of(run);
     return (skg_hits_args){.layout = run->raster->layout,
                            .window = {window.s[0], window.s[1], window.s[2], window.s[3]},
-                           .task = task};
+                           .task = task,
+                           .winners = (SKG_INT)(run->pass->priority.count - run->pass->priority.others)};
 }
 
 /* The arguments by which both kernels take the lists. */
@@ -130,14 +151,14 @@ static skg_hits_args scalars_of(const hits_run *run, SKG_INT task) {
 
 /* Lists the hits of triangles in front of the source. */
 static skg_status list_hits(const hits_run *run, SKG_INT task) {
-    const skg_priority *priority = &run->pass->priority;
-    const SKG_INT winners = (SKG_INT)(priority->count - priority->others), all = (SKG_INT)priority->count;
-    const int others = (task & SKG_HITS_OF_OTHERS) != 0;
-    const skg_work_size work = {
-        2, {run->memory->triangles[others], run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
+    const int64_t *triangles = run->memory->triangles;
+    const int64_t count = task == SKG_HITS_COUNT          ? triangles[0]
+                          : task == SKG_HITS_COUNT_OTHERS ? triangles[1]
+                                                          : triangles[0] + triangles[1];
+    const skg_work_size work = {2, {count, run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
     skg_hits_args args = scalars_of(run, task);
-    args.chosen[0] = others ? winners : 0;
-    args.chosen[1] = others ? all : winners;
+    args.chosen[0] = task == SKG_HITS_COUNT_OTHERS ? args.winners : 0;
+    args.chosen[1] = task == SKG_HITS_COUNT ? args.winners : (SKG_INT)run->pass->priority.count;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_LIST, args, args),
         SKG_ARGUMENT(HITS_LIST, corners, run->geometry->corners.memory),
@@ -147,7 +168,7 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
         SKG_ARGUMENT(HITS_LIST, spans, run->memory->spans.memory),
         LIST_ARGUMENTS(HITS_LIST, run->memory),
     };
-    if (run->memory->triangles[others] == 0) return SKG_OK;
+    if (count == 0) return SKG_OK;
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_list", "priority", &work, arguments,
                            &run->staging->log);
 }
@@ -173,12 +194,18 @@ static skg_status list_all(const hits_run *run, SKG_INT task) {
     return kernels->source_plane && !kernels->parallel ? list_hits_at_source(run, task) : SKG_OK;
 }
 
+/* The pixels of the window, in groups of a GPU's work-items; on a CPU each work-item takes SKG_CPU_RUN pixels of a row. */
+static skg_work_size work_of(const hits_run *run, int64_t across, int64_t down) {
+    const cl_int4 window = window_of(run);
+    const int64_t columns = window.s[2] - window.s[0], rows = window.s[3] - window.s[1];
+    if (run->context->device->info.gpu) return (skg_work_size){2, {columns, rows}, {across, down}};
+    return (skg_work_size){2, {(columns + SKG_CPU_RUN - 1) / SKG_CPU_RUN, rows}, {1, 1}};
+}
+
 /* Gives each pixel its stretch of the list, and counts all hits. */
 static skg_status place_hits(const hits_run *run) {
-    const cl_int none = 0;
     const skg_hits_args args = scalars_of(run, SKG_HITS_LIST);
-    const skg_work_size work = {
-        2, {args.window[2] - args.window[0], args.window[3] - args.window[1]}, {GROUP, 1}};
+    const skg_work_size work = work_of(run, GROUP, 1);
     const skg_hits_memory *m = run->memory;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_PLACE, args, args),
@@ -186,8 +213,6 @@ static skg_status place_hits(const hits_run *run) {
         SKG_ARGUMENT(HITS_PLACE, starts, m->starts.memory),
         SKG_ARGUMENT(HITS_PLACE, total, m->total.memory),
     };
-    SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, m->total.memory, &none, sizeof none, 0,
-                                   sizeof(skg_hit_count), 0, NULL, NULL));
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_place", "priority", &work, arguments,
                            &run->staging->log);
 }
@@ -211,8 +236,7 @@ static skg_status reserve_hits(const hits_run *run) {
 
 static skg_status settle(const hits_run *run) {
     const skg_hits_args args = scalars_of(run, SKG_HITS_LIST);
-    const skg_work_size work = {
-        2, {args.window[2] - args.window[0], args.window[3] - args.window[1]}, {16, 16}};
+    const skg_work_size work = work_of(run, 16, 16);
     const skg_hits_memory *m = run->memory;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_SETTLE, args, args),
@@ -232,37 +256,25 @@ static skg_status settle(const hits_run *run) {
 /* Reserves and clears what the window's rows need. No other row is read. */
 static skg_status clear(const hits_run *run) {
     const skg_raster_layout *layout = &run->raster->layout;
-    cl_command_queue queue = run->context->device->queue;
+    const skg_hits_args args = scalars_of(run, SKG_HITS_COUNT);
+    const skg_work_size work = {
+        1, {args.window[3] - args.window[1]}, {run->context->device->info.gpu ? GROUP : 1}};
     skg_hits_memory *m = run->memory;
     const int64_t pixels = (int64_t)layout->rows * layout->columns * (int64_t)sizeof(cl_int);
-    const cl_int4 window = window_of(run);
-    const size_t row = (size_t)layout->columns * sizeof(cl_int), rows = (size_t)(window.s[3] - window.s[1]);
-    /* Winners that reach the source's plane are listed by a kernel that leaves the spans alone. */
-    const cl_int2 anywhere = {.s = {0, layout->columns}}, nowhere = {.s = {layout->columns, 0}};
-    const cl_int2 *span = run->raster->options.kernels.source_plane ? &anywhere : &nowhere;
-    const cl_int none = 0;
-    SKG_TRY(reserve(run, &m->spans, (int64_t)layout->rows * (int64_t)sizeof *span, "hits of the rows"));
+    SKG_TRY(reserve(run, &m->spans, (int64_t)layout->rows * (int64_t)sizeof(cl_int2), "hits of the rows"));
     SKG_TRY(reserve(run, &m->counts, pixels, "hits of the pixels"));
     SKG_TRY(reserve(run, &m->starts, pixels, "hits of the pixels"));
     SKG_TRY(reserve(run, &m->total, sizeof(skg_hit_count), "hits of the pixels"));
     SKG_TRY(reserve(run, &m->hits, 16, "hits of parts with priorities"));
-    SKG_CL_TRY(clEnqueueFillBuffer(queue, m->spans.memory, span, sizeof *span,
-                                   (size_t)window.s[1] * sizeof *span, rows * sizeof *span, 0, NULL, NULL));
-    SKG_CL_TRY(clEnqueueFillBuffer(queue, m->counts.memory, &none, sizeof none, (size_t)window.s[1] * row,
-                                   rows * row, 0, NULL, NULL));
-    return SKG_OK;
-}
-
-/* Others are counted where the counts of winners, kept as starts, are not 0. */
-static skg_status count_others(const hits_run *run) {
-    const skg_hits_memory *m = run->memory;
-    const cl_int4 window = window_of(run);
-    const size_t row = (size_t)run->raster->layout.columns * sizeof(cl_int),
-                 first = (size_t)window.s[1] * row;
-    if (run->pass->priority.others == 0) return SKG_OK;
-    SKG_CL_TRY(clEnqueueCopyBuffer(run->context->device->queue, m->counts.memory, m->starts.memory, first,
-                                   first, (size_t)(window.s[3] - window.s[1]) * row, 0, NULL, NULL));
-    return list_all(run, SKG_HITS_COUNT + SKG_HITS_OF_OTHERS);
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(HITS_CLEAR, args, args),
+        SKG_ARGUMENT(HITS_CLEAR, spans, m->spans.memory),
+        SKG_ARGUMENT(HITS_CLEAR, counts, m->counts.memory),
+        SKG_ARGUMENT(HITS_CLEAR, starts, m->starts.memory),
+        SKG_ARGUMENT(HITS_CLEAR, total, m->total.memory),
+    };
+    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_clear", "priority", &work, arguments,
+                           &run->staging->log);
 }
 
 skg_status skg_hits_expect(skg_context *context, const skg_pass *pass) {
@@ -295,7 +307,7 @@ skg_status skg_hits_count(const skg_pass *pass, const skg_geometry *geometry, sk
     SKG_TRY(upload_tables(&run));
     SKG_TRY(clear(&run));
     SKG_TRY(list_all(&run, SKG_HITS_COUNT));
-    SKG_TRY(count_others(&run));
+    if (pass->priority.others > 0) SKG_TRY(list_all(&run, SKG_HITS_COUNT_OTHERS));
     SKG_TRY(place_hits(&run));
     return read_count(&run);
 }
@@ -307,6 +319,5 @@ skg_status skg_hits_settle(const skg_pass *pass, const skg_geometry *geometry, s
     SKG_TRY(prepare(pass, geometry, memory, staging, &run));
     SKG_TRY(reserve_hits(&run));
     SKG_TRY(list_all(&run, SKG_HITS_LIST));
-    if (pass->priority.others > 0) SKG_TRY(list_all(&run, SKG_HITS_LIST + SKG_HITS_OF_OTHERS));
     return settle(&run);
 }

@@ -9,6 +9,8 @@
 /* Kept from frame to frame. */
 typedef struct {
     skg_buffer slots, runs, table, shifts, spans, counts, starts, total, hits;
+    int32_t *sent; /* [sent_count] slots, runs and table as the device has them */
+    int64_t sent_count;
     /* Of the pass whose hits were counted last. */
     int64_t triangles[2]; /* of parts that win over others, of the others */
     cl_event counted;     /* `count` is read; NULL: no hits */

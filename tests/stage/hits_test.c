@@ -53,6 +53,7 @@ static void place(const cl_int counts[4], cl_uint starts[4], skg_hit_count *tota
     };
     ck_skg(skg_kernels_get(context, &options, 2, files, NULL, &program));
     clEnqueueWriteBuffer(queue, buffers[0].memory, CL_TRUE, 0, 16, counts, 0, NULL, NULL);
+    clEnqueueWriteBuffer(queue, buffers[1].memory, CL_TRUE, 0, 16, (const cl_uint[4]){0}, 0, NULL, NULL);
     clEnqueueWriteBuffer(queue, buffers[2].memory, CL_TRUE, 0, sizeof none, &none, 0, NULL, NULL);
     ck_skg(SKG_LAUNCH_ONCE(context, program, "skg_hits_place", "priority", &work, arguments, NULL));
     clEnqueueReadBuffer(queue, buffers[1].memory, CL_TRUE, 0, 16, starts, 0, NULL, NULL);
