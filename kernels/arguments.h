@@ -94,6 +94,7 @@
 #define SKG_ARGUMENTS_GRADIENT_FACES(X) \
     X(GRADIENT_FACES, args) X(GRADIENT_FACES, corners) X(GRADIENT_FACES, projected) X(GRADIENT_FACES, parts) \
     X(GRADIENT_FACES, blocks) X(GRADIENT_FACES, contributions) X(GRADIENT_FACES, weights) X(GRADIENT_FACES, scales) \
+    X(GRADIENT_FACES, first_around) X(GRADIENT_FACES, around) \
     X(GRADIENT_FACES, moments) X(GRADIENT_FACES, slots) X(GRADIENT_FACES, shifts) X(GRADIENT_FACES, counts) \
     X(GRADIENT_FACES, starts) X(GRADIENT_FACES, hits) X(GRADIENT_FACES, slopes) \
     X(GRADIENT_FACES, face_slopes)
@@ -101,7 +102,8 @@
 #define SKG_ARGUMENTS_GRADIENT_BATCHES(X) \
     X(GRADIENT_BATCHES, args) X(GRADIENT_BATCHES, corners) X(GRADIENT_BATCHES, projected) X(GRADIENT_BATCHES, parts) \
     X(GRADIENT_BATCHES, blocks) X(GRADIENT_BATCHES, contributions) X(GRADIENT_BATCHES, weights) \
-    X(GRADIENT_BATCHES, scales) X(GRADIENT_BATCHES, moments)
+    X(GRADIENT_BATCHES, scales) X(GRADIENT_BATCHES, first_around) X(GRADIENT_BATCHES, around) \
+    X(GRADIENT_BATCHES, moments)
 
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
     X(COUNT_BAD_ROWS, layout) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \

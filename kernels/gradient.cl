@@ -32,6 +32,11 @@ static void skg_shares_of(skg_real4 a, skg_real4 b, skg_real4 c, skg_shares *out
 typedef struct {
     __global const skg_contribution *contributions;
     __global const skg_real *weights;
+#if SKG_AROUND
+    __global const skg_contribution *around;
+    int first_around, last_around;
+    skg_real around_scale;
+#endif
     const skg_gradient_args *args;
     skg_real reference; /* of the part */
 #if SKG_FORWARD
@@ -83,6 +88,18 @@ static skg_real skg_weight_of(const skg_gathering *g, const skg_range *range, in
     return negative ? -weight : weight;
 }
 
+#if SKG_AROUND
+/* The same by what stands around the part, for a unit of depth. */
+static skg_real skg_around_of(const skg_gathering *g, const skg_range *range, int column, int row, int negative) {
+    __global const skg_real *at = g->weights + (long)row * g->args->stride + column;
+    skg_real weight = 0;
+    for (int w = g->first_around; w < g->last_around; w++)
+        weight = fma(g->around[w].weight, at[(long)g->around[w].plane * g->args->plane], weight);
+    const skg_real factor = SKG_LISTED ? 1 : g->contributions[range->first_contribution].weight;
+    return weight * (negative ? -factor : factor);
+}
+#endif
+
 /* Adds the hits of a row of a face to its moments; with SKG_FORWARD to the sums of their pixels instead. */
 static void skg_gather_row(const skg_gathering *g, const skg_range *range, const skg_face *f, const skg_shares *shares,
                            const skg_box *box, int row, skg_real scale, long *moments) {
@@ -99,6 +116,10 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
     for (int column = columns.x; column < columns.y; column++) {
         if (!skg_hit(&line, (skg_real)column)) continue;
         const skg_real q = skg_depth(f, &line, (skg_real)column);
+#if SKG_AROUND
+        moments[3] += convert_long_rte(
+            skg_around_of(g, range, range->pixel_i + column, range->pixel_j + row, negative) * q * g->around_scale);
+#endif
         if (q >= end) continue; /* the path ends at the pixel, wherever the face is */
         /* t / reference = 1 + q. A unit is far below the last bit of a hit, so that it does not matter how it is rounded. */
         const skg_real deep = SKG_PARALLEL ? 1 : (1 + q) * (1 + q);
@@ -115,9 +136,9 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
         const skg_real share2 = clamp(fma(shares->i2, past, first2), (skg_real)0, (skg_real)1);
         const skg_real slope = fma(share1, g->slopes_of_face[1], fma(share2, g->slopes_of_face[2], g->slopes_of_face[0]));
         const long pixel = (long)(range->pixel_j + row) * g->args->layout.columns + range->pixel_i + column;
-        skg_add_moment(g->pixels + pixel, (long)((weight + lost) * deep * scale * slope));
+        skg_add_moment(g->pixels + pixel, convert_long_rte((weight + lost) * deep * scale * slope));
 #else
-        const long worth = (long)(weight * deep * scale) + (long)(lost * deep * scale);
+        const long worth = convert_long_rte(weight * deep * scale) + convert_long_rte(lost * deep * scale);
         moments[0] += worth;
         moments[1] += worth * column;
         moments[2] += worth * row;
@@ -147,9 +168,12 @@ SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_rea
 /* Each work-item takes every get_global_size(1)-th row of one triangle.
  *
  * weights   [planes][plane] of skg_weights
- * scales    [parts] units of a moment for 1; 0: the part is left out
- * moments   [triangles][3] 0 before: the sum of weights of the hits, times t^2 over the square of the part's reference; and the
+ * scales    [2][parts] units of a moment for 1; 0: the part has no moments; and the units of the fourth
+ * first_around, around   what stands around part p: around[first_around[p]] to around[first_around[p + 1] - 1]; SKG_AROUND.
+ *           Weights as of contributions, without SKG_LISTED over that of the part's own contribution
+ * moments   [triangles][4] 0 before: the sum of weights of the hits, times t^2 over the square of the part's reference; and the
  *           same times column and row from the part's own pixel; SKG_EDGE_ON first of a face that is seen as a line.
+ *           Fourth the sum of q times weights by what stands around the part; SKG_AROUND.
  *           With SKG_SLOPES_ALONE they are added to
  *           With SKG_FORWARD: [rows][columns] the sums over the hits of a pixel of weight times the slope of the hit
  * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY
@@ -158,6 +182,7 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
                                  __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                  __global const int *blocks, __global const skg_contribution *contributions,
                                  __global const skg_real *weights, __global const skg_real *scales,
+                                 __global const int *first_around, __global const skg_contribution *around,
                                  __global ulong *moments, __global const int *slots,
                                  __global const skg_real *shifts, __global const int *counts,
                                  __global const uint *starts, __global const skg_listed *hits,
@@ -170,9 +195,9 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.contributions == 0 || scale == 0) return;
+    if (range.contributions == 0 || (scale == 0 && !SKG_AROUND)) return;
     if (skg_is_edge_on(a, b, c)) {
-        if (!SKG_FORWARD && !SKG_SLOPES_ALONE && get_global_id(1) == 0) moments[3 * (long)triangle] = SKG_EDGE_ON;
+        if (!SKG_FORWARD && !SKG_SLOPES_ALONE && get_global_id(1) == 0) moments[4 * (long)triangle] = SKG_EDGE_ON;
         return;
     }
 #if SKG_SLOPES_ALONE
@@ -187,12 +212,17 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     g.weights = weights;
     g.args = &args;
     g.reference = parts[range.number].reference;
+#if SKG_AROUND
+    g.around = around;
+    g.first_around = first_around[range.number], g.last_around = first_around[range.number + 1];
+    g.around_scale = scales[args.layout.parts + range.number];
+#endif
 #if SKG_PRIORITY
     g.slot = slots[range.number] % SKG_HITS_BACKGROUND;
     g.shift = g.slot < 0 ? 0 : shifts[g.slot];
     g.counts = counts, g.starts = starts, g.hits = hits, g.slopes = slopes;
 #endif
-    long own[3] = {0, 0, 0};
+    long own[4] = {0, 0, 0, 0};
 #if SKG_FORWARD
     __global const skg_real *slope = face_slopes + 3 * (long)triangle;
     g.pixels = moments;
@@ -202,6 +232,6 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
 #endif
     skg_gather_face(&g, &range, a, b, c, &box, (int)get_global_id(1), (int)get_global_size(1), scale, own);
 #if !SKG_FORWARD
-    for (int k = 0; k < 3; k++) skg_add_moment(moments + 3 * (long)triangle + k, own[k]);
+    for (int k = 0; k < 3 + SKG_AROUND; k++) skg_add_moment(moments + 4 * (long)triangle + k, own[k]);
 #endif
 }

@@ -1,19 +1,29 @@
 /* The gather of gradient.cl for processors: the same moments, from the loops of draw.clh (gather.clh). */
 
+#if SKG_LISTED
 /* What a hit of one lane is weighed by. */
 static skg_real skg_weight_of_lane(const skg_target *target, const skg_batch *batch, int k, int place) {
-#if !SKG_LISTED
-    (void)batch, (void)k;
-    return target->weights[place];
-#else
     skg_real weight = 0;
     for (int w = batch->first_contribution[k]; w < batch->last_contribution[k]; w++) {
         __global const skg_contribution *contribution = &target->contributions[w];
         weight = fma(contribution->weight, target->weights[place + contribution->plane * target->plane], weight);
     }
     return weight;
-#endif
 }
+#endif
+
+#if SKG_AROUND
+/* The same by what stands around the part. */
+static skg_real skg_around_lane(const skg_target *target, const skg_batch *batch, int k, int place) {
+    skg_real weight = 0;
+    for (int w = batch->first_around[k]; w < batch->last_around[k]; w++) {
+        __global const skg_contribution *contribution = &target->around[w];
+        weight = fma(contribution->weight,
+                     target->weights[place - batch->own_plane[k] + contribution->plane * target->plane], weight);
+    }
+    return weight;
+}
+#endif
 
 /* Boxes of at most 2 by 2 pixels, one triangle per lane. */
 static void skg_draw_tiny(const skg_target *target, const skg_batch *batch) {
@@ -25,43 +35,56 @@ static void skg_draw_tiny(const skg_target *target, const skg_batch *batch) {
         const skg_intv i0 = SKG_LOAD_V(intv, batch->i0 + k), j0 = SKG_LOAD_V(intv, batch->j0 + k);
         const skg_realv right = SKG_TO_REAL_V(SKG_LOAD_V(intv, batch->i1 + k));
         const skg_realv bottom = SKG_TO_REAL_V(tiny ? SKG_LOAD_V(intv, batch->j1 + k) : j0);
-        const skg_realv scale = SKG_LOAD_V(realv, batch->scale + k), highest = SKG_LOAD_V(realv, batch->end + k);
-        const skg_realv end = SKG_PARALLEL ? highest : highest / (1 - highest);
+        const skg_realv scale = SKG_LOAD_V(realv, batch->scale + k), limit = SKG_LOAD_V(realv, batch->limit + k);
         int place[SKG_WIDE];
         SKG_STORE_V(intv, tiny ? SKG_LOAD_V(intv, batch->origin + k) + j0 * target->stride + i0 : 0, place);
-        skg_longv sum = (skg_longv)(0), columns = (skg_longv)(0), rows = (skg_longv)(0);
+        skg_longv sum = (skg_longv)(0), columns = (skg_longv)(0), rows = (skg_longv)(0), around = (skg_longv)(0);
         for (int step = 0; step < 4; step++) {
             const skg_realv i = SKG_TO_REAL_V(i0 + (step & 1)), j = SKG_TO_REAL_V(j0 + (step >> 1));
             skg_line_v line;
             skg_row_v(&f, j, &line);
             const skg_maskv inside = skg_hit_v(&line, i) & (i < right) & (j < bottom);
             if (!skg_any(SKG_TO_INT_V(inside))) continue;
-            const skg_realv q = skg_depth_v(&f, &line, i), deep = 1 + q;
-            int hits[SKG_WIDE];
+            const skg_realv q = skg_depth_v(&f, &line, i), deep = 1 + q, one = 1;
+            const skg_realv sign = skg_negative_v(&f, &line) ? -one : one;
             skg_real weights[SKG_WIDE];
+            const int offset = (step & 1) + (step >> 1) * target->stride;
+#if SKG_LISTED || SKG_AROUND
+            int hits[SKG_WIDE];
             SKG_STORE_V(intv, SKG_TO_INT_V(inside), hits);
-            for (int lane = 0; lane < SKG_WIDE; lane++)
-                weights[lane] = hits[lane] ? skg_weight_of_lane(target, batch, k + lane,
-                                                                place[lane] + (step & 1) + (step >> 1) * target->stride)
-                                           : 0;
+#endif
+            for (int lane = 0; lane < SKG_WIDE; lane++) {
+#if SKG_LISTED
+                weights[lane] = hits[lane] ? skg_weight_of_lane(target, batch, k + lane, place[lane] + offset) : 0;
+#else
+                weights[lane] = target->weights[place[lane] + offset]; /* of lanes that are not hit whatever stands there */
+#endif
+            }
             skg_realv value = SKG_LOAD_V(realv, weights);
 #if !SKG_LISTED
-            value *= SKG_LOAD_V(realv, batch->weight + k);
+            const skg_realv factor = sign * SKG_LOAD_V(realv, batch->weight + k);
+#else
+            const skg_realv factor = sign;
 #endif
-            value = skg_negative_v(&f, &line) ? -value : value;
+            value *= factor;
             if (!SKG_PARALLEL) value *= deep * deep;
-            const skg_longv worth = SKG_TO_LONG_V(inside & (q < end) ? value * scale : (skg_realv)(0));
+            const skg_longv worth = skg_integers_v(inside & (q < limit) ? value * scale : (skg_realv)(0));
             sum += worth;
             columns += step & 1 ? worth : (skg_longv)(0);
             rows += step >> 1 ? worth : (skg_longv)(0);
+#if SKG_AROUND
+            for (int lane = 0; lane < SKG_WIDE; lane++)
+                weights[lane] = hits[lane] ? skg_around_lane(target, batch, k + lane, place[lane] + offset) : 0;
+            const skg_realv outer = SKG_LOAD_V(realv, weights) * factor * q * SKG_LOAD_V(realv, batch->around_scale + k);
+            around += skg_integers_v(inside ? outer : (skg_realv)(0));
+#endif
         }
         for (int lane = 0; lane < SKG_WIDE; lane++) {
             if (batch->class[k + lane] != SKG_TINY) continue;
-            __global long *moments = target->moments + 3 * (long)batch->face[k + lane];
             const long all = ((const long *)&sum)[lane];
-            moments[0] = all;
-            moments[1] = ((const long *)&columns)[lane] + all * batch->i0[k + lane];
-            moments[2] = ((const long *)&rows)[lane] + all * batch->j0[k + lane];
+            *(__global long4 *)(target->moments + 4 * (long)batch->face[k + lane]) =
+                (long4)(all, ((const long *)&columns)[lane] + all * batch->i0[k + lane],
+                        ((const long *)&rows)[lane] + all * batch->j0[k + lane], ((const long *)&around)[lane]);
         }
     }
 }
@@ -70,6 +93,7 @@ SKG_APART void skg_gather_triangles(const skg_gradient_args *args, __global cons
                                     __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                     __global const int *blocks, __global const skg_contribution *contributions,
                                     __global const skg_real *weights, __global const skg_real *scales,
+                                    __global const int *first_around, __global const skg_contribution *around,
                                     __global long *moments, int triangle, int end) {
     skg_target target;
     target.stride = args->stride;
@@ -83,6 +107,9 @@ SKG_APART void skg_gather_triangles(const skg_gradient_args *args, __global cons
     target.contributions = contributions;
     target.weights = weights;
     target.scales = scales;
+    target.first_around = first_around;
+    target.around = around;
+    target.parts_count = args->layout.parts;
     target.moments = moments;
     skg_batch batch;
     skg_begin(&batch);
@@ -95,8 +122,9 @@ __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_gradient_batches(skg_gradient_args args, __global const int *corners, __global const skg_real4 *projected,
                      __global const skg_part_entry *parts, __global const int *blocks,
                      __global const skg_contribution *contributions, __global const skg_real *weights,
-                     __global const skg_real *scales, __global long *moments) {
+                     __global const skg_real *scales, __global const int *first_around,
+                     __global const skg_contribution *around, __global long *moments) {
     const int triangle = (int)get_global_id(0) * args.layout.claim;
-    skg_gather_triangles(&args, corners, projected, parts, blocks, contributions, weights, scales, moments, triangle,
+    skg_gather_triangles(&args, corners, projected, parts, blocks, contributions, weights, scales, first_around, around, moments, triangle,
                          min(triangle + args.layout.claim, args.layout.triangles));
 }

@@ -3,12 +3,11 @@
  *
  * Lengths are signed sums over hits, so that a gather of all faces gives them. With A(c, p) for the sum over the faces of part c of
  * depth times what a mm of part p's material is worth, part p has A(p, p) less the sum of A(c, p) over the parts c inside it. A part
- * contributes what its material differs from that around it, so that A(c, c) - A(c, p) is what the gather of the gradient has
- * given; and A(c, c) takes a gather with the materials themselves. Where priorities, a world or a frame's own densities change
- * what a hit is worth, an image of path lengths is rendered instead. */
+ * contributes what its material differs from that around it, so that the gather of the gradient gives A(c, c) - A(c, p); and its
+ * fourth moments give A(c, p). Where priorities, a world or a frame's own densities change what a hit is worth, and for parts that
+ * are of the material around them and contribute nothing, an image of path lengths is rendered instead. */
 #include "frame/gradient_density.h"
 
-#include "frame/gradient_faces.h"
 #include "frame/gradient_nodes.h"
 
 #include <string.h>
@@ -30,20 +29,17 @@ static void find_needs(const skg_job *job, const skg_frame_work *work, const skg
         needs[part] = 1;
         if (around >= 0) needs[around] = 1;
     }
+    for (int64_t p = 0; p < pass->scene->count; p++) {
+        const int64_t around = pass->scene->parts[p].inside;
+        if (around >= 0 && pass->parts[p].contributions == 0) needs[p] = needs[around] = 1;
+    }
 }
 
-/* The parts of a pass with what their materials themselves contribute, instead of by how much they differ from those around. */
-typedef struct {
-    skg_geometry_part *parts;       /* [parts]; those that stand in no other contribute nothing */
-    skg_contribution *contribution; /* [parts that stand in another][planes] */
-    double *own;                    /* [planes] */
-} material_lists;
-
-/* Lists what a part and all parts around it contribute. Returns how many planes. */
-static int32_t list_own(const skg_pass *pass, int64_t part, double *own, skg_contribution *list) {
+/* Adds up what all parts around a part contribute. Returns the number of planes. */
+static int32_t list_around(const skg_pass *pass, int64_t part, double *own, skg_contribution *list) {
     int32_t count = 0;
     memset(own, 0, (size_t)pass->planes * sizeof *own);
-    for (int64_t p = part; p >= 0; p = pass->scene->parts[p].inside)
+    for (int64_t p = pass->scene->parts[part].inside; p >= 0; p = pass->scene->parts[p].inside)
         for (int64_t c = pass->first[p]; c < pass->first[p + 1]; c++)
             own[pass->contributions[c].plane] += pass->contributions[c].weight;
     for (int64_t k = 0; k < pass->planes; k++)
@@ -51,75 +47,45 @@ static int32_t list_own(const skg_pass *pass, int64_t part, double *own, skg_con
     return count;
 }
 
-static skg_status list_materials(const skg_pass *pass, material_lists *lists, int32_t *longest) {
+skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, skg_surroundings *around) {
     const int64_t parts = pass->scene->count;
     int64_t nested = 0;
-    *longest = 0;
+    int32_t *first = NULL;
+    skg_contribution *list = NULL;
+    double *own = NULL;
     for (int64_t p = 0; p < parts; p++) nested += pass->scene->parts[p].inside >= 0;
-    SKG_TRY(skg_alloc(parts, sizeof *lists->parts, "gradient", &lists->parts));
-    SKG_TRY(skg_alloc(pass->planes, sizeof *lists->own, "gradient", &lists->own));
-    SKG_TRY(skg_alloc(nested * pass->planes, sizeof *lists->contribution, "gradient", &lists->contribution));
-    nested = 0;
+    SKG_TRY(skg_staging_take(&job->staging, parts + 1, sizeof *first, "gradient", &first));
+    SKG_TRY(skg_staging_take(&job->staging, nested * pass->planes + 1, sizeof *list, "gradient", &list));
+    SKG_TRY(skg_staging_take(&job->staging, pass->planes + 1, sizeof *own, "gradient", &own));
     for (int64_t p = 0; p < parts; p++) {
-        skg_geometry_part *part = &lists->parts[p];
-        *part = pass->parts[p];
-        part->contributions = 0;
-        if (pass->scene->parts[p].inside < 0) continue;
-        part->contribution = lists->contribution + nested++ * pass->planes;
-        part->contributions =
-            list_own(pass, p, lists->own, lists->contribution + (nested - 1) * pass->planes);
-        *longest = part->contributions > *longest ? part->contributions : *longest;
+        const int listed = pass->parts[p].contributions && pass->scene->parts[p].inside >= 0;
+        first[p + 1] = first[p] + (listed ? list_around(pass, p, own, list + first[p]) : 0);
     }
+    *around = (skg_surroundings){.first = first, .list = list};
     return SKG_OK;
 }
 
-/* Gathers with the materials themselves: A(c, c) of parts in others. The tables of the pass are put back. */
-static skg_status gather_materials(skg_job *job, const skg_pass *pass, skg_force_sums *sums) {
-    skg_machine *machine = job->machine;
-    skg_geometry *geometry = &machine->geometry;
-    const int64_t state = geometry->state;
-    material_lists lists = {.parts = NULL};
-    skg_pass other = *pass;
-    skg_gathered gathered;
-    int32_t longest = 0;
-    skg_status status = SKG_OK;
-    other.priority.count = 0;
-    SKG_TRY_CLEANUP(list_materials(pass, &lists, &longest));
-    if (longest == 0) goto cleanup;
-    other.parts = lists.parts;
-    other.kernels.listed |= longest > 1;
-    SKG_TRY_CLEANUP(
-        skg_geometry_weigh(machine->context, geometry, &pass->camera, other.parts, pass->scale.scale));
-    SKG_TRY_CLEANUP(
-        skg_gradient_gather(&other, geometry, &machine->hits, &machine->gradient, &job->staging, &gathered));
-    SKG_TRY_CLEANUP(skg_gradient_add_faces(job, &other, &gathered, NULL, sums));
-    SKG_TRY_CLEANUP(
-        skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, pass->scale.scale));
-    geometry->state = state; /* the sums of the pass stand as before */
-cleanup:
-    skg_free(&lists.parts);
-    skg_free(&lists.contribution);
-    skg_free(&lists.own);
-    return status;
+/* The sum over the hits of a part of length times the weight by what stands around it. */
+static double sum_around(const skg_job *job, const skg_gathered *gathered, int64_t part, int64_t first) {
+    const skg_geometry *geometry = &job->machine->geometry;
+    const int64_t end = first + geometry->layouts[geometry->mesh_of_part[part]].triangles;
+    uint64_t sum = 0; /* wraps around */
+    for (int64_t t = first; t < end; t++) sum += (uint64_t)gathered->moments[4 * t + 3];
+    return (double)(int64_t)sum * gathered->around_units[part];
 }
 
-skg_status skg_gradient_add_densities(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
-                                      const skg_force_sums *sums) {
+void skg_gradient_add_densities(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
+                                const skg_gathered *gathered, const skg_force_sums *sums) {
     struct skg_gradient_work *gradient = job->gradient;
-    const skg_scene *scene = pass->scene;
-    skg_force_sums *own = NULL;
+    const skg_geometry *geometry = &job->machine->geometry;
     find_needs(job, work, pass, gradient->needs_lengths);
-    SKG_TRY(skg_alloc(scene->count, sizeof *own, "gradient", &own));
-    const skg_status status = gather_materials(job, pass, own);
-    for (int64_t p = 0; status == SKG_OK && p < scene->count; p++) {
-        const int64_t around = scene->parts[p].inside;
-        const double length = around < 0 ? sums[p].length : own[p].length;
-        if (!gradient->needs_lengths[p]) gradient->densities[p] += length;
-        if (around >= 0 && !gradient->needs_lengths[around])
-            gradient->densities[around] -= length - sums[p].length;
+    for (int64_t p = 0, first = 0; p < pass->scene->count; p++) {
+        const int64_t around = pass->scene->parts[p].inside;
+        const double of_around = around < 0 ? 0 : sum_around(job, gathered, p, first);
+        first += geometry->layouts[geometry->mesh_of_part[p]].triangles;
+        if (!gradient->needs_lengths[p]) gradient->densities[p] += sums[p].length + of_around;
+        if (around >= 0 && !gradient->needs_lengths[around]) gradient->densities[around] -= of_around;
     }
-    skg_free(&own);
-    return status;
 }
 
 skg_status skg_gradient_keep_planes(skg_job *job, const skg_pass *pass) {

@@ -4,10 +4,13 @@
 
 #include "frame/gradient_work.h"
 
+/* Lists what stands around the parts of a pass. Its arrays are staged. */
+skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, skg_surroundings *around);
+
 /* Adds the densities of a pass that take no path lengths, and marks the others in gradient->needs_lengths. sums: [parts] of the
- * gather of the pass */
-skg_status skg_gradient_add_densities(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
-                                      const skg_force_sums *sums);
+ * gather of the pass with what stands around its parts */
+void skg_gradient_add_densities(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
+                                const skg_gathered *gathered, const skg_force_sums *sums);
 
 /* Whether any density takes path lengths. */
 int skg_gradient_needs_lengths(const struct skg_gradient_work *gradient, int64_t parts);

@@ -57,7 +57,7 @@ skg_status skg_pixel_weights_read(skg_job *job, int64_t number, skg_pixel_weight
 /* Whether any face of a part is seen as a line. */
 static int has_edges(const int64_t *moments, int64_t triangles) {
     for (int64_t t = 0; t < triangles; t++)
-        if (moments[3 * t] == SKG_EDGE_ON) return 1;
+        if (moments[4 * t] == SKG_EDGE_ON) return 1;
     return 0;
 }
 
@@ -76,12 +76,14 @@ static skg_status list_faces(skg_job *job, const skg_pass *pass, const skg_gathe
         const int64_t triangles = geometry->layouts[geometry->mesh_of_part[p]].triangles;
         skg_face_moments *faces = &w->faces[p];
         skg_part_double entry;
-        const int64_t *moments = gathered->moments + 3 * first;
+        const int64_t *moments = gathered->moments + 4 * first;
         first += triangles;
         if (gathered->units[p] == 0) continue;
         if (has_edges(moments, triangles)) SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
         SKG_TRY(skg_gradient_place_faces(job, pass, p, faces));
         skg_camera_part(&pass->camera, part->pose, part->origin, part->reference, part->flipped, &entry);
+        SKG_TRY(skg_gradient_find_planes(geometry, faces->mesh, geometry->mesh_of_part[p],
+                                         &job->machine->gradient, &faces->planes));
         w->weights[p] = (skg_part_weights){.all = &w->of_pixels, .part = p};
         faces->moments = moments;
         faces->unit = gathered->units[p];

@@ -227,27 +227,31 @@ skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums
 
 /* Everything but the densities that need path lengths. */
 static skg_status add_gathered(skg_job *job, const skg_frame_work *work, int64_t number, const skg_pass *pass,
-                               skg_force_sums *of_parts) {
+                               const skg_surroundings *around, skg_force_sums *of_parts) {
     struct skg_gradient_work *gradient = job->gradient;
     skg_machine *machine = job->machine;
     skg_gathered gathered;
     skg_force_sums all = {0};
-    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
-                                &gathered));
+    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, around, &machine->gradient,
+                                &job->staging, &gathered));
     SKG_TRY(skg_gradient_add_faces(job, pass, &gathered, gradient->wanted.vertices, of_parts));
     add_sums(pass->scene->count, of_parts, gradient->poses, &all);
     if (gradient->wanted.source || gradient->wanted.detector)
         SKG_TRY(add_view(job, work, number, pass, &all));
-    return gradient->wanted.densities ? skg_gradient_add_densities(job, work, pass, of_parts) : SKG_OK;
+    if (around) skg_gradient_add_densities(job, work, pass, &gathered, of_parts);
+    return SKG_OK;
 }
 
 skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
                                  const skg_pass *pass, const skg_sums *sums, double factor) {
     struct skg_gradient_work *gradient = job->gradient;
     skg_force_sums *of_parts = NULL;
+    skg_surroundings around;
     SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 0));
+    if (gradient->wanted.densities) SKG_TRY(skg_gradient_find_surroundings(job, pass, &around));
     SKG_TRY(skg_alloc(pass->scene->count, sizeof *of_parts, "gradient", &of_parts));
-    const skg_status status = add_gathered(job, work, number, pass, of_parts);
+    const skg_status status =
+        add_gathered(job, work, number, pass, gradient->wanted.densities ? &around : NULL, of_parts);
     skg_free(&of_parts);
     SKG_TRY(status);
     if (gradient->wanted.densities && skg_gradient_needs_lengths(gradient, pass->scene->count)) {

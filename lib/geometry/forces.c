@@ -15,7 +15,8 @@ typedef struct {
     double beam[3]; /* parallel: d */
 } local_camera;
 
-/* Sums over faces in the axes of a mesh, of which those of the world follow: with V the sum of weight t^2 D, and n over h. */
+/* Sums over faces in the axes of a mesh and in units of a moment, of which those of the world follow: with V the sum of weight t^2 D, and
+ * n over h. */
 typedef struct {
     double length, force[3], along[3];
     double turn[3][3];         /* of the place of a hit times what pushes it */
@@ -129,40 +130,55 @@ static void find_camera(const skg_face_moments *faces, local_camera *local) {
     multiply(local->inverse, camera->first, local->beam);
 }
 
-/* A face seen from the camera's origin. push: its normal over h, which is n . v_0, or n . d with a parallel beam. */
+void skg_face_planes_find(const skg_mesh *mesh, const int32_t *corners, const int32_t *source,
+                          double *planes) {
+    for (int64_t face = 0; face < mesh->triangles; face++) {
+        double at[3][3], side[2][3];
+        for (int k = 0; k < 3; k++) {
+            const int32_t number = corners[3 * face + k];
+            skg_mesh_vertex(mesh, source ? source[number] : number, at[k]);
+        }
+        for (int k = 0; k < 2; k++) skg_add_scaled(at[k + 1], -1, at[0], side[k]);
+        skg_cross(side[0], side[1], planes + 4 * face);
+        planes[4 * face + 3] = skg_dot(planes + 4 * face, at[0]);
+    }
+}
+
+/* A face seen from the camera's origin, with moments in their unit: of weight t^2, and of that times D; with a parallel beam of weight,
+ * and of that times the pixel. inverse: 1 / h, of n . v_0, or of n . d with a parallel beam. */
 typedef struct {
-    double corner[3][3], push[3], inverse;
-    double moment,
-        place
-            [3]; /* sums of weight t^2, and of that times D; parallel: of weight and of that times the pixel */
+    double normal[3], height, inverse;
+    double moment, place[3];
 } seen_face;
 
 static int see_face(const skg_face_moments *faces, const local_camera *camera, int64_t face, seen_face *f) {
-    const int64_t *moments = faces->moments + 3 * face;
-    double side[2][3], normal[3];
-    for (int k = 0; k < 3; k++) {
-        skg_mesh_vertex(faces->mesh, vertex_of(faces, face, k), f->corner[k]);
-        for (int c = 0; c < 3; c++) f->corner[k][c] -= camera->origin[c];
-    }
-    for (int k = 0; k < 2; k++)
-        for (int c = 0; c < 3; c++) side[k][c] = f->corner[k + 1][c] - f->corner[0][c];
-    skg_cross(side[0], side[1], normal);
-    f->inverse = 1 / skg_dot(normal, faces->camera->parallel ? camera->beam : f->corner[0]);
-    f->moment = (double)moments[0] * faces->unit;
-    const double columns = (double)moments[1] * faces->unit, rows = (double)moments[2] * faces->unit;
+    const int64_t *moments = faces->moments + 4 * face;
+    const double *plane = faces->planes + 4 * face;
+    const double columns = (double)moments[1], rows = (double)moments[2];
+    f->height = plane[3] - skg_dot(plane, camera->origin);
+    f->inverse = 1 / (faces->camera->parallel ? skg_dot(plane, camera->beam) : f->height);
+    f->moment = (double)moments[0];
     for (int c = 0; c < 3; c++) {
-        f->push[c] = normal[c] * f->inverse;
+        f->normal[c] = plane[c];
         f->place[c] = f->moment * camera->first[c] + columns * camera->column[c] + rows * camera->row[c];
     }
     return isfinite(f->inverse);
 }
 
-/* The derivative by corner k is push times the sum of weight lambda_k t^2 / t_k. lambda_k / t_k is D . (v_i x v_j) over h, with a
- * parallel beam it is ((v_i - p) x (v_j - p)) . d over h; i and j are the other corners. */
+/* The derivative by corner k is the normal over h times the sum of weight lambda_k t^2 / t_k. lambda_k / t_k is D . (v_i x v_j) over h,
+ * with a parallel beam it is ((v_i - p) x (v_j - p)) . d over h; i and j are the other corners. */
 static void add_vertices(const skg_face_moments *faces, const local_camera *camera, int64_t face,
                          const seen_face *f, double *vertices) {
+    double corner[3][3];
+    int64_t number[3];
     for (int k = 0; k < 3; k++) {
-        const double *a = f->corner[(k + 1) % 3], *b = f->corner[(k + 2) % 3];
+        number[k] = vertex_of(faces, face, k);
+        skg_mesh_vertex(faces->mesh, number[k], corner[k]);
+        for (int c = 0; c < 3; c++) corner[k][c] -= camera->origin[c];
+    }
+    const double unit = faces->unit * f->inverse * f->inverse;
+    for (int k = 0; k < 3; k++) {
+        const double *a = corner[(k + 1) % 3], *b = corner[(k + 2) % 3];
         double across[3], side[3], turned[3];
         skg_cross(a, b, across);
         double share = skg_dot(f->place, across);
@@ -171,33 +187,35 @@ static void add_vertices(const skg_face_moments *faces, const local_camera *came
             skg_cross(side, camera->beam, turned);
             share = skg_dot(across, camera->beam) * f->moment - skg_dot(f->place, turned);
         }
-        double *at = vertices + 3 * vertex_of(faces, face, k);
-        for (int c = 0; c < 3; c++) at[c] += f->push[c] * share * f->inverse;
+        double *at = vertices + 3 * number[k];
+        for (int c = 0; c < 3; c++) at[c] += f->normal[c] * (share * unit);
     }
 }
 
 static void add_face(const skg_face_moments *faces, const local_camera *camera, int64_t face,
                      local_sums *sums, double *vertices) {
-    const int64_t *moments = faces->moments + 3 * face;
+    const int64_t *moments = faces->moments + 4 * face;
+    const int parallel = faces->camera->parallel;
     seen_face f;
-    if (!moments[0] && !moments[1] && !moments[2]) return;
+    if (!(moments[0] | moments[1] | moments[2])) return;
     if (moments[0] == SKG_EDGE_ON) {
         add_edge_on(faces, face, &sums->of_edge_on, vertices);
         return;
     }
     if (!see_face(faces, camera, face, &f)) return;
     if (vertices) add_vertices(faces, camera, face, &f, vertices);
-    /* 1 / t = push . D; with a parallel beam t - 1 = push . (v_0 - p), and hits lie behind their pixels by as much. */
-    const double depth = skg_dot(f.push, f.place);
-    const int parallel = faces->camera->parallel;
-    const double behind = parallel ? f.moment * skg_dot(f.push, f.corner[0]) - depth : 0;
-    const double force = parallel ? f.moment : depth, along = parallel ? behind : f.moment;
+    /* 1 / t = n . D / h; with a parallel beam t - 1 = n . (v_0 - p) / h, and hits lie behind their pixels by as much. */
+    const double depth = skg_dot(f.normal, f.place) * f.inverse;
+    const double behind = parallel ? f.moment * f.height * f.inverse - depth : 0;
+    const double force = (parallel ? f.moment : depth) * f.inverse;
+    const double along = (parallel ? behind : f.moment) * f.inverse;
     if (parallel) skg_add_scaled(f.place, behind, camera->beam, f.place);
     sums->length += parallel ? behind : depth;
+    for (int r = 0; r < 3; r++) f.place[r] *= f.inverse;
     for (int c = 0; c < 3; c++) {
-        sums->force[c] += force * f.push[c];
-        sums->along[c] += along * f.push[c];
-        for (int r = 0; r < 3; r++) sums->turn[r][c] += f.place[r] * f.push[c];
+        sums->force[c] += force * f.normal[c];
+        sums->along[c] += along * f.normal[c];
+        for (int r = 0; r < 3; r++) sums->turn[r][c] += f.place[r] * f.normal[c];
     }
 }
 
@@ -227,9 +245,10 @@ static int64_t divide(int64_t count, const forces_run *run, face_chunk *chunks) 
     return made;
 }
 
-/* Adds the sums of a chunk to those of its part, in the world's axes. */
+/* Adds the sums of a chunk, which count units, to those of its part, in the world's axes. */
 static void add_sums(const local_sums *more, const skg_face_moments *faces, const local_camera *camera,
                      skg_force_sums *sums) {
+    const double unit = faces->unit;
     double world[3][3], turn[3][3], torque[3], force[3], along[3];
     for (int r = 0; r < 3; r++) {
         force[r] = along[r] = 0;
@@ -245,12 +264,12 @@ static void add_sums(const local_sums *more, const skg_face_moments *faces, cons
             world[r][c] = turn[r][0] * camera->inverse[0][c] + turn[r][1] * camera->inverse[1][c] +
                           turn[r][2] * camera->inverse[2][c];
     skg_cross(faces->camera->origin, force, torque);
-    sums->length += more->length;
+    sums->length += unit * more->length;
     for (int k = 0; k < 3; k++) {
         const int i = (k + 1) % 3, j = (k + 2) % 3;
-        sums->force[k] += force[k] + more->of_edge_on.force[k];
-        sums->along[k] += along[k] + more->of_edge_on.along[k];
-        sums->torque[k] += torque[k] + world[i][j] - world[j][i] + more->of_edge_on.torque[k];
+        sums->force[k] += unit * force[k] + more->of_edge_on.force[k];
+        sums->along[k] += unit * along[k] + more->of_edge_on.along[k];
+        sums->torque[k] += unit * (torque[k] + world[i][j] - world[j][i]) + more->of_edge_on.torque[k];
     }
 }
 

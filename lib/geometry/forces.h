@@ -16,7 +16,8 @@ typedef struct {
     const double *pose;     /* 4x4 */
     const int32_t *corners; /* [triangles][3] in the device's numbering of vertices */
     const int32_t *source;  /* the mesh's number of each; NULL: the same */
-    /* [triangles][3] sums over hits of weight t^2, of that times the column, and times the row; NULL: none are added */
+    const double *planes;   /* [triangles][4] of skg_face_planes_find; slopes do not use them */
+    /* [triangles][4] sums over hits of weight t^2, of that times the column, and times the row; NULL: none are added */
     const int64_t *moments;
     double unit;             /* of a moment */
     int32_t pixel[2];        /* from which columns and rows count */
@@ -34,6 +35,11 @@ typedef struct {
 
 /* The normal of a face, twice its area long, turned outward: the mesh grows where it moves along it. at: corners in the world */
 void skg_face_outward(const skg_face_moments *faces, double at[3][3], double normal[3]);
+
+/* The planes of all faces in the axes of a mesh: normals, twice the area long, and their products with a corner. corners, source: as of
+ * skg_face_moments. planes: [triangles][4] */
+void skg_face_planes_find(const skg_mesh *mesh, const int32_t *corners, const int32_t *source,
+                          double *planes);
 
 /* Adds up the faces of parts. vertices: [count] NULL or [mesh->vertices][3] the derivatives by the positions of the mesh, which are
  * added to; all of those at one place go to the first of them. NULL: of no part. sums: [count] result */

@@ -10,27 +10,38 @@
 
 /* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces, node;
-    int64_t *gathered; /* [triangles][3] the moments on the host */
+    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces, node, around, first_around;
+    int64_t *gathered; /* [triangles][4] the moments on the host */
     int32_t *corners;  /* [triangles of all meshes][3] as the device has them */
+    double *
+        planes; /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
+    int64_t *versions;
 } skg_gradient_memory;
 void skg_gradient_memory_release(skg_gradient_memory *memory);
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
 
+/* What stands around each part: the contributions of all parts that it is inside. */
+typedef struct {
+    const int32_t *first; /* [parts + 1] those of part p are list[first[p]] to list[first[p + 1] - 1] */
+    const skg_contribution *list;
+} skg_surroundings;
+
 /* What the gather of a pass leaves. */
 typedef struct {
-    const int64_t *moments; /* [triangles][3] of the memory, in the device's order of triangles */
+    const int64_t *moments; /* [triangles][4] of the memory, in the device's order of triangles */
     const double *units;    /* [parts] staged: what a moment of 1 is worth; 0: the part has none */
+    const double
+        *around_units; /* [parts] of the fourth moments: sums of length times weight by what stands around */
     skg_weight_layout layout;
 } skg_gathered;
 
 /* Makes sure of memory for the derivatives of a pass by its sums, or by the mm of `planes` planes. */
 skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory);
 
-/* Gathers the moments of a pass whose sums are made, and waits for them. memory->weights: of skg_attenuate_transpose */
+/* Gathers the moments of a pass whose sums are made, and waits for them. around: NULL: without the fourth. memory->weights: of skg_attenuate_transpose */
 skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometry,
-                               const skg_hits_memory *hits, skg_gradient_memory *memory, skg_staging *staging,
-                               skg_gathered *gathered);
+                               const skg_hits_memory *hits, const skg_surroundings *around,
+                               skg_gradient_memory *memory, skg_staging *staging, skg_gathered *gathered);
 
 /* Adds up the derivatives of the rays of a pass, and waits for them.
  *
@@ -49,5 +60,9 @@ skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first,
 /* The corners of a mesh's triangles, [triangles][3] in the device's order and numbering of vertices; read once. */
 skg_status skg_gradient_find_corners(skg_context *context, const skg_geometry *geometry, int64_t mesh,
                                      skg_gradient_memory *memory, const int32_t **corners);
+
+/* The planes of a mesh's faces (geometry/forces.h), found anew when its vertices have moved. */
+skg_status skg_gradient_find_planes(const skg_geometry *geometry, const skg_mesh *mesh, int64_t number,
+                                    skg_gradient_memory *memory, const double **planes);
 
 #endif

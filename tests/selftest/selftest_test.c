@@ -240,7 +240,7 @@ static const struct {
     {"scatter.cl", "*left = kev * ratio", "*left = kev", SKG_SELF_TEST_SCATTER},
     {"scatter.cl", "p->changed |= changes;", "p->weight *= (skg_fv)(0.8f);", SKG_SELF_TEST_SCATTER},
     {"sight.clh", "s->sr = g0 + g1 - s->k", "s->sr = g0 + g1", SKG_SELF_TEST_SCATTER},
-    {"gather.clh", "own->rows += value * row;", "", SKG_SELF_TEST_GRADIENT},
+    {"gather.clh", "own.behind += own.sum;", "", SKG_SELF_TEST_GRADIENT},
     {"gather.clh", "value *= deep * deep", "value *= deep", SKG_SELF_TEST_GRADIENT},
     {"weights.cl", "values[r] * unit[r]", "values[r]", SKG_SELF_TEST_GRADIENT},
     {"slopes.cl", "off - before", "off", SKG_SELF_TEST_GRADIENT},

@@ -1,0 +1,38 @@
+/* What the files of the stage `gradient` share. Private. */
+#ifndef SKG_GRADIENT_PRIVATE_H
+#define SKG_GRADIENT_PRIVATE_H
+
+#include "stage/gradient.h"
+#include "stage/raster_private.h"
+
+/* One gather. */
+typedef struct {
+    const skg_pass *pass;
+    const skg_geometry *geometry;
+    const skg_hits_memory *hits;
+    skg_gradient_memory *memory;
+    skg_staging *staging;
+    const skg_raster *raster;
+    skg_context *context;
+    cl_program program;
+    skg_gradient_args args;
+    int32_t is_double;
+    int32_t forward;                /* 1: derivatives of pixels */
+    const skg_surroundings *around; /* NULL: lengths are not weighed by it */
+} skg_gather_run;
+
+/* Powers of two by which weights become integers, and what a moment of 1 is worth. most: [planes] the largest weights. around: NULL, or what
+ * stands around the parts. scales: [2][parts]; units: [2][parts] */
+void skg_gradient_find_scales(const skg_gather_run *run, const double *most, const skg_surroundings *around,
+                              double *scales, double *units);
+
+/* One scale for the hits of all parts, whose slopes are at most `slope`; 0: all derivatives are 0. scales: [parts] */
+double skg_gradient_find_scale(const skg_gather_run *run, const double *most, double slope, double *scales);
+
+/* Cuts slopes off at 2^24 times their mean, and returns the largest that is left. */
+double skg_gradient_cut_slopes(int64_t count, double *slopes, int64_t *saturated);
+
+/* What a unit of the contributions of a part is on the device: they weigh q = r / reference, with a parallel beam r. */
+double skg_gradient_depth_unit(const skg_gather_run *run, int64_t part);
+
+#endif
