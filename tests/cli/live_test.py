@@ -121,6 +121,22 @@ def wishes(path):
         check_same(turned, image(path, "--quantity", "attenuation", "--set", "Scan.StartAngle=90"))
 
 
+def bands(path):
+    """A band is a channel of the verb image; its number may be out of range."""
+    beam = {"Source.Beam": {"kVp": 80}}
+    with Server(command, path) as server:
+        page = Page(server)
+        pixels = image(path, "--quantity", "attenuation", "--bands", "20,40,80", "--set", 'Source.Beam={"kVp": 80}')
+        for band in (1, 0):
+            check_same(page.frame(page.wish(settings=beam, bands=[20, 40, 80], channel=band)), pixels[band::2])
+        page.wish(settings=beam, bands=[20, 40, 80], channel=2)
+        assert "no band 2" in page.text("error")["error"]
+        page.send({"take": "mha"})
+        for bad in ([20], [20, 20], [-1, 20], "x", [20, "40"], list(range(18))):
+            page.wish(settings=beam, bands=bad)
+            assert "bands" in page.text("refused")["refused"], bad
+
+
 def answers(path):
     with Server(command, path) as server:
         page = Page(server)
@@ -370,7 +386,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, wishes, answers, looks, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, wishes, bands, answers, looks, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

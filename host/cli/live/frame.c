@@ -156,6 +156,11 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
     output.data = scene->values;
     if (!live_scene_view(base, scene, wish, &view, sentence) || !live_frame_pose(scene, wish, sentence))
         return 0;
+    if (wish->channel >= scene->channels) {
+        snprintf(sentence, LIVE_SENTENCE, "\"channel\": the image has no band %lld",
+                 (long long)wish->channel);
+        return 0;
+    }
     shot->view = view;
     if (is_draft) live_view_coarsen(&view, scene->factor);
     scene->is_shown = 0;
@@ -176,15 +181,16 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
         .factor = (uint16_t)(is_draft ? scene->factor : 1),
         .quantity = (uint8_t)scene->session.options.quantity,
         .notes = (uint8_t)((is_draft ? LIVE_NOTE_DRAFT : 0) | (is_outside ? LIVE_NOTE_RANGE : 0))};
-    if (is_draft) { /* a larger pixel has its own flat field */
-        skg_channel channel;
-        skg_channel_init(&channel);
-        if (skg_plan_channel_get(scene->draft, 0, &channel) == SKG_OK) header.flat_field = channel.flat_field;
-    }
+    /* of the band that is shown, and of the draft's pixel, which is larger */
+    skg_channel channel;
+    skg_channel_init(&channel);
+    if (skg_plan_channel_get(is_draft ? scene->draft : scene->plan, wish->channel, &channel) == SKG_OK)
+        header.flat_field = channel.flat_field;
     scene->is_shown = 1;
     scene->shown = view;
+    scene->shown_channel = wish->channel;
     scene->shown_flat = header.flat_field;
-    if (pack(scene->values, &header, shot)) return 1;
+    if (pack(scene->values + wish->channel * view.columns * view.rows, &header, shot)) return 1;
     snprintf(sentence, LIVE_SENTENCE, "out of host memory for the frame");
     return 0;
 }

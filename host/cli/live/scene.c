@@ -117,9 +117,17 @@ int live_scene_view(const live_base *base, const live_scene *scene, const live_w
     return status == SKG_OK ? 1 : fail(sentence);
 }
 
+/* Whether a scene has the bands of a wish. */
+static int has_bands(const live_scene *scene, const live_wish *wish) {
+    if (scene->session.options.bands != wish->bands) return 0;
+    for (int64_t i = 0; wish->bands > 0 && i <= wish->bands; i++)
+        if (scene->band_kev[i] != wish->band_kev[i]) return 0;
+    return 1;
+}
+
 int live_scene_fits(const live_scene *scene, const live_wish *wish) {
     if (!scene->plan || (scene->is_posed && isnan(wish->phase))) return 0;
-    if (wish->quantity != scene->session.options.quantity) return 0;
+    if (wish->quantity != scene->session.options.quantity || !has_bands(scene, wish)) return 0;
     json_t *was = fixed_settings(scene->settings), *is = fixed_settings(wish->settings);
     const int fits = json_equal(was, is);
     json_decref(was);
@@ -147,7 +155,13 @@ static skg_status read_setup(const live_base *base, const live_wish *wish, live_
     if (base->precision >= 0) session->options.precision = base->precision;
     session->options.quantity = wish->quantity;
     session->options.profile = 1;
-    return status;
+    if (status != SKG_OK || wish->bands == 0) return status;
+    scene->band_kev = malloc(sizeof wish->band_kev);
+    if (!scene->band_kev) return SKG_ERR_MEMORY;
+    memcpy(scene->band_kev, wish->band_kev, sizeof wish->band_kev);
+    session->options.bands = wish->bands;
+    session->options.band_kev = scene->band_kev;
+    return SKG_OK;
 }
 
 static skg_status read_motion(const live_base *base, live_scene *scene) {
@@ -186,12 +200,11 @@ int live_scene_load(const live_base *base, const live_wish *wish, live_scene *sc
 
 int live_scene_make(const live_base *base, const live_wish *wish, live_scene *scene, char *sentence) {
     const skg_view *view = &scene->session.view;
-    int64_t channels = 1;
     if (!live_scene_load(base, wish, scene, sentence)) return 0;
     skg_status status = make_plan(base, scene);
-    if (status == SKG_OK) status = skg_plan_channel_count(scene->plan, &channels);
+    if (status == SKG_OK) status = skg_plan_channel_count(scene->plan, &scene->channels);
     if (status != SKG_OK) return fail(sentence);
-    scene->values = calloc((size_t)(view->columns * view->rows * channels), sizeof *scene->values);
+    scene->values = calloc((size_t)(view->columns * view->rows * scene->channels), sizeof *scene->values);
     if (!scene->values) snprintf(sentence, LIVE_SENTENCE, "out of host memory for the image");
     return scene->values != NULL;
 }
@@ -203,6 +216,7 @@ void live_scene_free(live_scene *scene) {
     skg_setup_release(&scene->setup);
     json_decref(scene->settings);
     free(scene->values);
+    free(scene->band_kev);
     *scene = (live_scene){0};
 }
 

@@ -37,14 +37,17 @@ typedef struct {
     int is_drafted;      /* 1: a draft was made, or could not be */
     int64_t factor;      /* pixels of the detector for each of the draft, along a side */
     json_t *settings;    /* of the wish with which it was made */
-    skg_channel channel; /* what the images hold */
+    skg_channel channel; /* what the images hold; of bands the first */
+    int64_t channels;    /* bands, or 1 */
+    double *band_kev;    /* [channels + 1] edges of the bands; NULL: there are none */
     int64_t parts, projections;
     double load_ms, plan_ms;
     double
         frame_ms; /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
     int64_t frames; /* whole images so far */
-    float *values;  /* [rows][columns] of an image */
-    int is_shown;   /* 1: `values` is a whole image: that of the view `shown` */
+    float *values;  /* [channels][rows][columns] of an image */
+    int is_shown;   /* 1: `values` is a whole image: channel shown_channel of the view `shown` is shown */
+    int64_t shown_channel;
     skg_view shown;
     double shown_flat; /* its flat field; 0: the values are -ln(I/I0) */
     double box[6];     /* least and greatest corner of the parts, mm, where has_box */

@@ -4,7 +4,7 @@
 const KEPT_BYTES = 128 * 2 ** 20;
 const sinogram = {frames: new Map(), key: '', most: Infinity, row: 0.5, sweep: null, timer: 0};
 // most: maximum number of cached frames. row: a fraction of the height. sweep: {back, asked, key} while all projections are requested.
-const keyOfState = ({settings, poses, phase, quantity}) => JSON.stringify([settings, poses, phase, quantity]);
+const keyOfState = ({settings, poses, phase, quantity, bands, channel}) => JSON.stringify([settings, poses, phase, quantity, bands, channel]);
 
 function keepOnly(key) {
   if (sinogram.key !== key) sinogram.frames.clear();
