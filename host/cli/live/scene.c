@@ -14,6 +14,12 @@ static const char *const moving[] = {"Source.Position", "Detector.Position", "De
                                      "Detector.RightVector"};
 enum { MOVING = sizeof moving / sizeof *moving };
 
+/* Photons of the first image with scatter; each further step has four times as many. */
+static const int64_t FIRST_HISTORIES = 16384;
+
+/* s: scatter that takes longer is shown step by step. */
+static const double LONG_S = 0.25;
+
 static int fail(char *sentence) {
     snprintf(sentence, LIVE_SENTENCE, "%s", skg_last_error());
     return 0;
@@ -206,10 +212,37 @@ int live_scene_make(const live_base *base, const live_wish *wish, live_scene *sc
     if (status != SKG_OK) return fail(sentence);
     scene->values = calloc((size_t)(view->columns * view->rows * scene->channels), sizeof *scene->values);
     if (!scene->values) snprintf(sentence, LIVE_SENTENCE, "out of host memory for the image");
+    scene->step = LIVE_STEPS;
     return scene->values != NULL;
 }
 
+void live_scene_refine(live_scene *scene, double seconds) {
+    const int is_slow = seconds == 0 || seconds > LONG_S;
+    scene->step = scene->session.options.scatter && is_slow ? 0 : LIVE_STEPS;
+}
+
+int live_scene_step(live_scene *scene, skg_plan **plan, char *sentence) {
+    const skg_scatter *asked = scene->session.options.scatter;
+    skg_plan_options options = scene->session.options;
+    const int64_t histories = scene->step < LIVE_STEPS ? FIRST_HISTORIES << 2 * scene->step : 0;
+    if (!asked || (asked->histories > 0 && asked->histories <= histories)) scene->step = LIVE_STEPS;
+    *plan = scene->plan;
+    if (scene->step == LIVE_STEPS) return 1;
+    if (!scene->steps[scene->step]) {
+        skg_scatter rough = *asked;
+        rough.tolerance = 0;
+        rough.histories = histories;
+        options.scatter = &rough;
+        if (skg_plan_create(scene->session.context, scene->session.scene, &scene->session.view,
+                            scene->session.spectrum, &options, scene->steps + scene->step) != SKG_OK)
+            return fail(sentence);
+    }
+    *plan = scene->steps[scene->step];
+    return 1;
+}
+
 void live_scene_free(live_scene *scene) {
+    for (int i = 0; i < LIVE_STEPS; i++) skg_plan_release(scene->steps + i);
     skg_plan_release(&scene->draft);
     skg_plan_release(&scene->plan);
     skg_motion_release(&scene->motion);

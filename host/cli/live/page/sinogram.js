@@ -13,7 +13,7 @@ function keepOnly(key) {
 
 // Caches a frame. its: the state that it shows.
 function noteProjection(frame, its) {
-  if (its.projection === null || frame.notes & 1 || live.projections < 2 || keyOfState(its) !== sinogram.key) return;
+  if (its.projection === null || frame.notes & 9 || live.projections < 2 || keyOfState(its) !== sinogram.key) return;
   const {frames, sweep} = sinogram;
   sinogram.most = Math.max(2, Math.floor(KEPT_BYTES / frame.numbers.byteLength));
   frames.delete(its.projection);
