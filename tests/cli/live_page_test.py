@@ -6,12 +6,13 @@ import json
 import os
 import sys
 import tempfile
+from types import SimpleNamespace
 
 import chromium
 from chromium import Browser
 from live_client import Page, Server
 from live_controls import cut, exposure, sinogram, tape
-from live_test import SCENE, has_server
+from live_test import SCENE, check_same, has_server, image
 from live_tried import Tried, check, failures
 
 command = sys.argv[1]
@@ -56,6 +57,35 @@ def beam_and_dials(tried):
     tried.browser.until("byId('sentence').textContent.includes('Beem')")
     tried.still()
     check("what was refused is taken back", run("!('Source.Beem' in state.settings)") and run("frameSum()") == first)
+
+
+def bands(tried, path):
+    """Photon-counting bands: each is what the verb image computes, and they are in what is taken away."""
+    run = tried.browser.run
+    run("byId('make-tube').click()")
+    tried.differs("bands", "typed(byId('bands'), '20, 40, 80')")
+    check("bands listed", run("[...byId('channel').options].map(o => o.textContent).join()") == "20 to 40 keV,40 to 80 keV")
+    check_bands(tried, path, 0)
+    tried.differs("second band", "typed(byId('channel'), '1')")
+    check_bands(tried, path, 1)
+    tried.differs("undo of a band", "byId('undo').click()")
+    run("document.querySelector('[data-take=command]').click(); document.querySelector('[data-take=py]').click()")
+    check("command of bands", run("byId('command').textContent.includes(' --bands 20,40,80 ')"), run("byId('command').textContent"))
+    check("script of bands", "scene.image(bands=[20, 40, 80])" in dict(run("saved"))["image.py"])
+    run("saved.length = 0; typed(byId('bands'), '40, 20')")
+    check("falling edges", run("byId('sentence').textContent.includes('rising') && byId('bands').value === '20, 40, 80'"))
+    run("byId('reset').click()")
+    tried.still()
+    check("no bands", run("byId('channel').hidden && byId('bands').value === ''"))
+
+
+def check_bands(tried, path, band):
+    frame = tried.browser.run("({numbers: [...xray.frame.numbers], low: xray.frame.low, step: xray.frame.step})")
+    pixels = image(path, "--quantity", "attenuation", "--bands", "20,40,80", "--set", 'Source.Beam={"kVp": 80, "Filter": [["Al", 2.5, "mm"]]}')
+    try:
+        check_same(SimpleNamespace(**frame), pixels[band::2])  # the channels of a .mha follow each other in each pixel
+    except AssertionError as error:
+        check(f"band {band} as the verb image", False, str(error))
 
 
 def geometry(tried):
@@ -229,6 +259,7 @@ def work(folder, path):
         with Browser(server.url) as browser:
             tried = Tried(browser)
             beam_and_dials(tried)
+            bands(tried, path)
             exposure(tried, path)
             check("software draws slowly", tried.browser.run("isSlow && isServed()"))
             for by in ("browser", "server"):

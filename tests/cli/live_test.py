@@ -121,6 +121,22 @@ def wishes(path):
         check_same(turned, image(path, "--quantity", "attenuation", "--set", "Scan.StartAngle=90"))
 
 
+def bands(path):
+    """A band is a channel of the verb image; its number may be out of range."""
+    beam = {"Source.Beam": {"kVp": 80}}
+    with Server(command, path) as server:
+        page = Page(server)
+        pixels = image(path, "--quantity", "attenuation", "--bands", "20,40,80", "--set", 'Source.Beam={"kVp": 80}')
+        for band in (1, 0):
+            check_same(page.frame(page.wish(settings=beam, bands=[20, 40, 80], channel=band)), pixels[band::2])
+        page.wish(settings=beam, bands=[20, 40, 80], channel=2)
+        assert "no band 2" in page.text("error")["error"]
+        page.send({"take": "mha"})
+        for bad in ([20], [20, 20], [-1, 20], "x", [20, "40"], list(range(18))):
+            page.wish(settings=beam, bands=bad)
+            assert "bands" in page.text("refused")["refused"], bad
+
+
 def answers(path):
     with Server(command, path) as server:
         page = Page(server)
@@ -247,6 +263,27 @@ def one_owner(path):
 LOOK = {"number": 7, "size": [60, 40], "target": [0, 0, 0], "distance": 400, "from": [0, -1, 0], "up": [0, 0, 1], "background": [10, 20, 30]}
 
 
+def scatter(path):
+    """Scatter comes in steps with less and less error, the last as the scene asks for it; a newer wish ends them."""
+    beam = {"Source.Beam": {"kVp": 80, "mAs": 1}, "Samples.tissue.Material": "Water", "Samples.bone.Material": "Aluminium"}
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        wish, shots, frames = page.wish(settings=beam | {"Scatter": 0.04}), {}, {}
+        while not frames or frames[max(frames)].notes & 8 or max(frames) not in shots:
+            message = page.receive()
+            if isinstance(message, Frame) and message.wish == wish:
+                frames[message.number] = message
+            elif isinstance(message, dict) and message.get("wish") == wish and "shot" in message:
+                shots[message["shot"]] = message["scatter"]
+        histories = [shots[k]["histories"] for k in sorted(shots)]
+        assert len(histories) > 1 and histories == sorted(histories) and histories[0] < 20000, histories
+        errors = [shots[k]["sigma"] / shots[k]["mean"] for k in sorted(shots)]
+        assert errors[-1] < errors[0], errors
+        words = [word for key, value in (beam | {"Scatter": 0.04}).items() for word in ("--set", f"{key}={json.dumps(value)}")]
+        check_same(frames[max(frames)], image(path, "--quantity", "attenuation", *words))
+
+
 def looks(path):
     """Pictures of the 3D view: for the page that asks, as it asks."""
     def picture(page, **keys):
@@ -370,7 +407,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, wishes, answers, looks, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, wishes, bands, answers, looks, scatter, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

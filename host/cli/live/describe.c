@@ -142,7 +142,7 @@ static json_t *stages_json(const skg_plan *plan) {
 static json_t *scatter_json(const live_scene *scene) {
     skg_scatter_report report;
     skg_scatter_report_init(&report);
-    if (!scene->session.options.scatter || skg_plan_scatter_report_get(scene->plan, &report) != SKG_OK)
+    if (!scene->session.options.scatter || skg_plan_scatter_report_get(scene->shown_plan, &report) != SKG_OK)
         return json_null();
     json_t *object = json_object();
     json_object_set_new(object, "mean", cli_json_number(report.mean));
@@ -166,7 +166,7 @@ json_t *live_describe_shot(live_scene *scene, const live_wish *wish, const skg_v
     json_t *object = live_describe_phase(wish, number, ms), *seen = json_object();
     const int is_draft = wish->dragging && scene->draft;
     json_object_set_new(object, "state", live_wish_json(wish));
-    json_object_set_new(object, "stages", stages_json(is_draft ? scene->draft : scene->plan));
+    json_object_set_new(object, "stages", stages_json(scene->shown_plan));
     json_object_set_new(object, "beam", beam_json(scene, view));
     json_object_set_new(object, "scatter", is_draft ? json_null() : scatter_json(scene));
     if (live_page_view(scene, view, seen) == CLI_DONE)

@@ -148,6 +148,7 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
                     int64_t number, live_shot *shot, char *sentence) {
     const double start = cli_now_ms();
     const int is_draft = wish->dragging && scene->draft;
+    skg_plan *plan = scene->draft;
     skg_view view;
     skg_output output;
     int is_outside = 0;
@@ -156,35 +157,43 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
     output.data = scene->values;
     if (!live_scene_view(base, scene, wish, &view, sentence) || !live_frame_pose(scene, wish, sentence))
         return 0;
+    if (wish->channel >= scene->channels) {
+        snprintf(sentence, LIVE_SENTENCE, "\"channel\": the image has no band %lld",
+                 (long long)wish->channel);
+        return 0;
+    }
+    if (!is_draft && !live_scene_step(scene, &plan, sentence)) return 0;
     shot->view = view;
     if (is_draft) live_view_coarsen(&view, scene->factor);
     scene->is_shown = 0;
-    if (!live_frame_render(scene, wish, is_draft ? scene->draft : scene->plan, &view, hub, &output, 1,
-                           &shot->is_dropped, &is_outside, sentence))
+    if (!live_frame_render(scene, wish, plan, &view, hub, &output, 1, &shot->is_dropped, &is_outside,
+                           sentence))
         return 0;
     shot->ms = cli_now_ms() - start;
     if (shot->is_dropped) return 1;
-    if (!is_draft && scene->frames++ > 0) scene->frame_ms = shot->ms;
-    live_header header = {
-        .mark = {'S', 'K', 'L', 'F'},
-        .number = (uint32_t)number,
-        .wish = (uint32_t)wish->number,
-        .columns = (uint16_t)view.columns,
-        .rows = (uint16_t)view.rows,
-        .flat_field = scene->channel.flat_field,
-        .ms = (float)shot->ms,
-        .factor = (uint16_t)(is_draft ? scene->factor : 1),
-        .quantity = (uint8_t)scene->session.options.quantity,
-        .notes = (uint8_t)((is_draft ? LIVE_NOTE_DRAFT : 0) | (is_outside ? LIVE_NOTE_RANGE : 0))};
-    if (is_draft) { /* a larger pixel has its own flat field */
-        skg_channel channel;
-        skg_channel_init(&channel);
-        if (skg_plan_channel_get(scene->draft, 0, &channel) == SKG_OK) header.flat_field = channel.flat_field;
-    }
+    if (plan == scene->plan && scene->frames++ > 0) scene->frame_ms = shot->ms;
+    live_header header = {.mark = {'S', 'K', 'L', 'F'},
+                          .number = (uint32_t)number,
+                          .wish = (uint32_t)wish->number,
+                          .columns = (uint16_t)view.columns,
+                          .rows = (uint16_t)view.rows,
+                          .flat_field = scene->channel.flat_field,
+                          .ms = (float)shot->ms,
+                          .factor = (uint16_t)(is_draft ? scene->factor : 1),
+                          .quantity = (uint8_t)scene->session.options.quantity,
+                          .notes = (uint8_t)((is_draft ? LIVE_NOTE_DRAFT : 0) |
+                                             (is_outside ? LIVE_NOTE_RANGE : 0) |
+                                             (!is_draft && plan != scene->plan ? LIVE_NOTE_REFINES : 0))};
+    /* of the band that is shown, and of the draft's pixel, which is larger */
+    skg_channel channel;
+    skg_channel_init(&channel);
+    if (skg_plan_channel_get(plan, wish->channel, &channel) == SKG_OK) header.flat_field = channel.flat_field;
     scene->is_shown = 1;
+    scene->shown_plan = plan;
     scene->shown = view;
+    scene->shown_channel = wish->channel;
     scene->shown_flat = header.flat_field;
-    if (pack(scene->values, &header, shot)) return 1;
+    if (pack(scene->values + wish->channel * view.columns * view.rows, &header, shot)) return 1;
     snprintf(sentence, LIVE_SENTENCE, "out of host memory for the frame");
     return 0;
 }

@@ -20,7 +20,7 @@ typedef struct {
     uint8_t notes;     /* LIVE_NOTE_... */
 } live_header;
 
-enum { LIVE_NOTE_DRAFT = 1, LIVE_NOTE_INFINITE = 2, LIVE_NOTE_RANGE = 4 };
+enum { LIVE_NOTE_DRAFT = 1, LIVE_NOTE_INFINITE = 2, LIVE_NOTE_RANGE = 4, LIVE_NOTE_REFINES = 8 };
 
 /* A frame. */
 typedef struct {

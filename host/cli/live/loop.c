@@ -90,6 +90,23 @@ static void tell_frame(live_loop *loop, const live_shot *shot) {
                        live_describe_shot(&loop->scene, &loop->wish, &shot->view, loop->number, shot->ms));
 }
 
+/* How long the whole scatter of a frame took, and what comes next. */
+static void note_scatter(live_loop *loop) {
+    live_scene *scene = &loop->scene;
+    skg_scatter_report report;
+    skg_scatter_report_init(&report);
+    loop->refines = 0;
+    if (loop->wish.dragging || !scene->session.options.scatter) return;
+    const int has = skg_plan_scatter_report_get(scene->shown_plan, &report) == SKG_OK;
+    if (scene->step == LIVE_STEPS)
+        loop->scatter_s = has ? report.seconds : 0;
+    else if (has && report.sigma <= 2 * scene->session.options.scatter->tolerance * report.mean)
+        scene->step = LIVE_STEPS; /* half of the error needs four times as many photons, as a step more */
+    else
+        scene->step++;
+    loop->refines = scene->shown_plan != scene->plan;
+}
+
 static int make_frame(live_loop *loop, char *sentence) {
     live_shot shot;
     const int64_t number = loop->number + 1;
@@ -101,6 +118,7 @@ static int make_frame(live_loop *loop, char *sentence) {
     loop->framed_ms = cli_now_ms();
     live_hub_show(loop->hub, number, shot.bytes, shot.size);
     tell_frame(loop, &shot);
+    note_scatter(loop);
     return 1;
 }
 
@@ -137,6 +155,7 @@ static void take_wish(live_loop *loop, live_wish *wish) {
     loop->wish = *wish;
     loop->is_wanted = 1;
     loop->is_told = 0;
+    live_scene_refine(&loop->scene, loop->scatter_s);
     if (is_new && make_page(loop)) tell_scene(loop, 1);
 }
 
@@ -165,6 +184,7 @@ static void play(live_loop *loop) {
         loop->wish.phase = fmod(loop->wish.phase + (now - loop->played_ms) / 1000 / loop->scene.period, 1);
     loop->played_ms = now;
     loop->is_wanted = 1;
+    live_scene_refine(&loop->scene, loop->scatter_s); /* the first step alone, until it stands */
 }
 
 static void answer(live_loop *loop, const live_asked *asked) {
@@ -193,8 +213,8 @@ static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
     if (!loop->is_told) tell_scene(loop, 0);
     if (loop->is_wanted || !live_hub_is_thirsty(loop->hub)) return; /* no page is there */
-    if (loop->scene.frames == 1)
-        loop->is_wanted = 1; /* once more, for its time */
+    if (loop->refines || (loop->scene.frames == 1 && !loop->scene.session.options.scatter))
+        loop->is_wanted = 1; /* with more scatter, or once more, for its time */
     else if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
         tell_error(loop, loop->wish.number, sentence);
 }

@@ -51,8 +51,9 @@ static int fill_colours(const live_scene *scene, const live_look *asked, uint8_t
 static void fill_image(const live_scene *scene, const live_look *asked, uint8_t *image) {
     const double scale = asked->grey[1] != asked->grey[0] ? 255 / (asked->grey[1] - asked->grey[0]) : 0;
     const double flat = scene->shown_flat;
+    const float *values = scene->values + scene->shown_channel * scene->shown.columns * scene->shown.rows;
     for (int64_t i = 0; i < scene->shown.columns * scene->shown.rows; i++) {
-        const double value = (double)scene->values[i], shown = flat > 0 ? -log(value / flat) : value;
+        const double value = (double)values[i], shown = flat > 0 ? -log(value / flat) : value;
         const double grey = (shown - asked->grey[0]) * scale;
         image[i] = (uint8_t)(grey > 0 ? grey < 255 ? grey + 0.5 : 255 : 0);
     }

@@ -14,6 +14,12 @@ static const char *const moving[] = {"Source.Position",      "Detector.Position"
                                      "Detector.RightVector", "Detector.ColumnStep", "Detector.RowStep"};
 enum { MOVING = sizeof moving / sizeof *moving };
 
+/* Photons of the first image with scatter; each further step has four times as many. */
+static const int64_t FIRST_HISTORIES = 16384;
+
+/* s: scatter that takes longer is shown step by step. */
+static const double LONG_S = 0.25;
+
 static int fail(char *sentence) {
     snprintf(sentence, LIVE_SENTENCE, "%s", skg_last_error());
     return 0;
@@ -117,9 +123,17 @@ int live_scene_view(const live_base *base, const live_scene *scene, const live_w
     return status == SKG_OK ? 1 : fail(sentence);
 }
 
+/* Whether a scene has the bands of a wish. */
+static int has_bands(const live_scene *scene, const live_wish *wish) {
+    if (scene->session.options.bands != wish->bands) return 0;
+    for (int64_t i = 0; wish->bands > 0 && i <= wish->bands; i++)
+        if (scene->band_kev[i] != wish->band_kev[i]) return 0;
+    return 1;
+}
+
 int live_scene_fits(const live_scene *scene, const live_wish *wish) {
     if (!scene->plan || (scene->is_posed && isnan(wish->phase))) return 0;
-    if (wish->quantity != scene->session.options.quantity) return 0;
+    if (wish->quantity != scene->session.options.quantity || !has_bands(scene, wish)) return 0;
     json_t *was = fixed_settings(scene->settings), *is = fixed_settings(wish->settings);
     const int fits = json_equal(was, is);
     json_decref(was);
@@ -147,7 +161,13 @@ static skg_status read_setup(const live_base *base, const live_wish *wish, live_
     if (base->precision >= 0) session->options.precision = base->precision;
     session->options.quantity = wish->quantity;
     session->options.profile = 1;
-    return status;
+    if (status != SKG_OK || wish->bands == 0) return status;
+    scene->band_kev = malloc(sizeof wish->band_kev);
+    if (!scene->band_kev) return SKG_ERR_MEMORY;
+    memcpy(scene->band_kev, wish->band_kev, sizeof wish->band_kev);
+    session->options.bands = wish->bands;
+    session->options.band_kev = scene->band_kev;
+    return SKG_OK;
 }
 
 static skg_status read_motion(const live_base *base, live_scene *scene) {
@@ -186,23 +206,50 @@ int live_scene_load(const live_base *base, const live_wish *wish, live_scene *sc
 
 int live_scene_make(const live_base *base, const live_wish *wish, live_scene *scene, char *sentence) {
     const skg_view *view = &scene->session.view;
-    int64_t channels = 1;
     if (!live_scene_load(base, wish, scene, sentence)) return 0;
     skg_status status = make_plan(base, scene);
-    if (status == SKG_OK) status = skg_plan_channel_count(scene->plan, &channels);
+    if (status == SKG_OK) status = skg_plan_channel_count(scene->plan, &scene->channels);
     if (status != SKG_OK) return fail(sentence);
-    scene->values = calloc((size_t)(view->columns * view->rows * channels), sizeof *scene->values);
+    scene->values = calloc((size_t)(view->columns * view->rows * scene->channels), sizeof *scene->values);
     if (!scene->values) snprintf(sentence, LIVE_SENTENCE, "out of host memory for the image");
+    scene->step = LIVE_STEPS;
     return scene->values != NULL;
 }
 
+void live_scene_refine(live_scene *scene, double seconds) {
+    const int is_slow = seconds == 0 || seconds > LONG_S;
+    scene->step = scene->session.options.scatter && is_slow ? 0 : LIVE_STEPS;
+}
+
+int live_scene_step(live_scene *scene, skg_plan **plan, char *sentence) {
+    const skg_scatter *asked = scene->session.options.scatter;
+    skg_plan_options options = scene->session.options;
+    const int64_t histories = scene->step < LIVE_STEPS ? FIRST_HISTORIES << 2 * scene->step : 0;
+    if (!asked || (asked->histories > 0 && asked->histories <= histories)) scene->step = LIVE_STEPS;
+    *plan = scene->plan;
+    if (scene->step == LIVE_STEPS) return 1;
+    if (!scene->steps[scene->step]) {
+        skg_scatter rough = *asked;
+        rough.tolerance = 0;
+        rough.histories = histories;
+        options.scatter = &rough;
+        if (skg_plan_create(scene->session.context, scene->session.scene, &scene->session.view,
+                            scene->session.spectrum, &options, scene->steps + scene->step) != SKG_OK)
+            return fail(sentence);
+    }
+    *plan = scene->steps[scene->step];
+    return 1;
+}
+
 void live_scene_free(live_scene *scene) {
+    for (int i = 0; i < LIVE_STEPS; i++) skg_plan_release(scene->steps + i);
     skg_plan_release(&scene->draft);
     skg_plan_release(&scene->plan);
     skg_motion_release(&scene->motion);
     skg_setup_release(&scene->setup);
     json_decref(scene->settings);
     free(scene->values);
+    free(scene->band_kev);
     *scene = (live_scene){0};
 }
 

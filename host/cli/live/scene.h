@@ -26,6 +26,9 @@ int live_base_read(live_base *base, char *sentence);
 int live_base_is_stale(const live_base *base);
 void live_base_free(live_base *base);
 
+/* Plans with fewer histories of scatter than the scene asks for, whose images come first. */
+enum { LIVE_STEPS = 5 };
+
 typedef struct {
     skg_setup *setup;
     cli_session session; /* of this set-up; it owns nothing */
@@ -33,18 +36,24 @@ typedef struct {
     double period;       /* of the breath, s */
     int is_posed;        /* 1: the meshes are no longer where the file has them */
     skg_plan *plan;
-    skg_plan *draft;     /* for images while something is dragged; NULL: the plan serves */
-    int is_drafted;      /* 1: a draft was made, or could not be */
-    int64_t factor;      /* pixels of the detector for each of the draft, along a side */
-    json_t *settings;    /* of the wish with which it was made */
-    skg_channel channel; /* what the images hold */
+    skg_plan *draft;             /* for images while something is dragged; NULL: the plan serves */
+    int is_drafted;              /* 1: a draft was made, or could not be */
+    int64_t factor;              /* pixels of the detector for each of the draft, along a side */
+    skg_plan *steps[LIVE_STEPS]; /* NULL: not made yet */
+    int step;                    /* of the next frame; LIVE_STEPS: it is made by `plan` */
+    const skg_plan *shown_plan;  /* of the last frame */
+    json_t *settings;            /* of the wish with which it was made */
+    skg_channel channel;         /* what the images hold; of bands the first */
+    int64_t channels;            /* bands, or 1 */
+    double *band_kev;            /* [channels + 1] edges of the bands; NULL: there are none */
     int64_t parts, projections;
     double load_ms, plan_ms;
     double
         frame_ms; /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
     int64_t frames; /* whole images so far */
-    float *values;  /* [rows][columns] of an image */
-    int is_shown;   /* 1: `values` is a whole image: that of the view `shown` */
+    float *values;  /* [channels][rows][columns] of an image */
+    int is_shown;   /* 1: `values` is a whole image: channel shown_channel of the view `shown` is shown */
+    int64_t shown_channel;
     skg_view shown;
     double shown_flat; /* its flat field; 0: the values are -ln(I/I0) */
     double box[6];     /* least and greatest corner of the parts, mm, where has_box */
@@ -73,5 +82,11 @@ void live_view_coarsen(skg_view *view, int64_t factor);
 
 /* Makes the plan for images while something is dragged: fewer pixels, so that an image takes about `ms`, and no scatter. */
 int live_scene_draft(const live_base *base, live_scene *scene, double ms, char *sentence);
+
+/* The plan of the next frame; the draft is another. Returns 0 with a sentence. */
+int live_scene_step(live_scene *scene, skg_plan **plan, char *sentence);
+
+/* Begins the steps of a frame's scatter. seconds: that it took last; 0: unknown. Fast scatter is computed at once. */
+void live_scene_refine(live_scene *scene, double seconds);
 
 #endif

@@ -76,6 +76,15 @@ int live_take(const live_base *base, const live_wish *wish, const char *format, 
     picture.view = &view;
     picture.name = scene.channel.name, picture.unit = scene.channel.unit;
     picture.flat_field = scene.channel.flat_field;
+    const char *names[SKG_CHANNELS_MAX];
+    skg_channel channels[SKG_CHANNELS_MAX];
+    for (int64_t c = 0; is_made && c < scene.channels; c++) {
+        skg_channel_init(channels + c);
+        if (skg_plan_channel_get(scene.plan, c, channels + c) != SKG_OK) is_made = fail(sentence);
+        names[c] = channels[c].name;
+    }
+    picture.channels = is_made ? scene.channels : 1;
+    picture.channel_names = names;
     if (is_made && skg_picture_window_get(&picture, OUTSIDE, OUTSIDE, &picture.low, &picture.high) != SKG_OK)
         is_made = fail(sentence);
     is_made = is_made && encode(&picture, format, bytes, size, sentence);

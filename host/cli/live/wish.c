@@ -57,6 +57,9 @@ json_t *live_wish_json(const live_wish *wish) {
     json_object_set_new(object, "projection",
                         wish->projection < 0 ? json_null() : json_integer(wish->projection));
     json_object_set_new(object, "quantity", json_string(quantities[wish->quantity]));
+    json_object_set_new(object, "bands",
+                        cli_json_numbers(wish->band_kev, wish->bands > 0 ? (int)wish->bands + 1 : 0));
+    json_object_set_new(object, "channel", json_integer(wish->channel));
     json_object_set_new(object, "play", json_boolean(wish->plays));
     return object;
 }
@@ -127,6 +130,22 @@ static int read_numbers(const char *key, json_t *value, live_wish *wish, char *s
     return 1;
 }
 
+/* Edges of bands in keV, rising; an empty list: no bands. The plan says what else is wrong with them. */
+static int read_bands(json_t *value, live_wish *wish, char *sentence) {
+    const size_t count = json_array_size(value);
+    if (!json_is_array(value) || count == 1 || count > SKG_CHANNELS_MAX + 1)
+        return refuse(sentence, "\"bands\" is no list of 2 to %d edges in keV", SKG_CHANNELS_MAX + 1);
+    for (size_t i = 0; i < count; i++) {
+        wish->band_kev[i] = json_number_value(json_array_get(value, i));
+        if (!json_is_number(json_array_get(value, i)) || !(wish->band_kev[i] >= 0) ||
+            (i > 0 && !(wish->band_kev[i] > wish->band_kev[i - 1])))
+            return refuse(sentence, "\"bands\": edge %zu is not an energy in keV above the one before it",
+                          i + 1);
+    }
+    wish->bands = count > 0 ? (int64_t)count - 1 : 0;
+    return 1;
+}
+
 /* One key of a wish. */
 static int read_key(const char *key, json_t *value, live_wish *wish, char *sentence) {
     if (strcmp(key, "wish") == 0) {
@@ -140,6 +159,13 @@ static int read_key(const char *key, json_t *value, live_wish *wish, char *sente
     if (strcmp(key, "quantity") == 0) return read_quantity(value, wish, sentence);
     if (strcmp(key, "phase") == 0 || strcmp(key, "projection") == 0)
         return read_numbers(key, value, wish, sentence);
+    if (strcmp(key, "bands") == 0) return read_bands(value, wish, sentence);
+    if (strcmp(key, "channel") == 0) {
+        wish->channel = json_integer_value(value);
+        return json_is_integer(value) && wish->channel >= 0 && wish->channel < SKG_CHANNELS_MAX
+                   ? 1
+                   : refuse(sentence, "\"channel\" is no number of a band");
+    }
     if (strcmp(key, "drag") == 0) {
         wish->dragging = json_is_true(value);
         return json_is_boolean(value) ? 1 : refuse(sentence, "\"drag\" is neither true nor false");

@@ -4,6 +4,7 @@
 
 #include "live/look.h"
 
+#include <skiagraph/options.h>
 #include <stddef.h>
 
 /* How the scene shall be. */
@@ -12,9 +13,12 @@ typedef struct {
     json_t *settings; /* {"KEY": VALUE}, as --set, on top of the scene file */
     json_t *poses; /* {"PART": [16]}: what moves this part in the world, on top of its pose, row by row, mm */
     double phase;  /* of the breath; NaN: as in the file */
-    int64_t projection;  /* of the scan; -1: the scene's own view */
-    int32_t quantity;    /* enum skg_quantity */
-    int dragging, plays; /* plays: the phase goes on by itself */
+    int64_t projection;                    /* of the scan; -1: the scene's own view */
+    int32_t quantity;                      /* enum skg_quantity */
+    double band_kev[SKG_CHANNELS_MAX + 1]; /* edges of photon-counting bands, keV */
+    int64_t bands;                         /* 0: one channel of all energies */
+    int64_t channel;                       /* the band that is shown */
+    int dragging, plays;                   /* plays: the phase goes on by itself */
 } live_wish;
 
 enum { LIVE_WISH, LIVE_ACK, LIVE_PROBE, LIVE_TAKE, LIVE_MEASURE, LIVE_LOOK, LIVE_KINDS };

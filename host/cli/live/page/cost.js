@@ -11,6 +11,7 @@ function showCost(frame) {
   byId('ms').textContent = `${number(frame.ms, 3)} ms for ${frame.columns} x ${frame.rows}${each}${reduced}`;
   if (frame.notes & 2) notes.push('Some values are not finite; they are shown as the largest.');
   if (frame.notes & 4) notes.push('Some path lengths lie outside the range for which the tolerance was verified.');
+  if (frame.notes & 8) notes.push('The scatter is refined while nothing moves.');
   byId('notes').textContent = notes.join(' ');
 }
 

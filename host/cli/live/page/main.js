@@ -39,6 +39,7 @@ function takeScene(message) {
     net.sent = wish;
     good = JSON.stringify(state);
     fillBeam();
+    fillBands();
     fillSpot();
     fillJaws();
     fillMotion();

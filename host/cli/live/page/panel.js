@@ -57,6 +57,25 @@ function fillBeam() {
   watch(() => { byId('noise').checked = !!valueOf('Noise'); showBeam(); });
 }
 
+// The edges of photon-counting bands, and the band that is shown.
+function fillBands() {
+  const text = byId('bands'), channel = byId('channel');
+  text.onchange = () => {
+    const edges = text.value.split(/[\s,;]+/).filter(Boolean).map(Number);
+    if (edges.length !== 1 && edges.length <= 17 && edges.every((x, k) => x >= 0 && x < Infinity && (k === 0 || x > edges[k - 1])))
+      return alter(s => { s.bands = edges, s.channel = 0; });
+    text.value = state.bands.join(', ');
+    showSentence('Bands are 2 to 17 rising edges in keV, such as 20, 40, 60.');
+  };
+  channel.onchange = () => alter(s => { s.channel = Number(channel.value); });
+  watch(() => {
+    if (document.activeElement !== text) text.value = state.bands.join(', ');
+    channel.hidden = state.bands.length < 2;
+    channel.replaceChildren(...state.bands.slice(1).map((edge, k) => new Option(`${state.bands[k]} to ${edge} keV`, k)));
+    channel.value = state.channel;
+  });
+}
+
 function fillMotion() {
   const phase = byId('phase'), play = byId('play'), projection = byId('projection');
   let begun = null;

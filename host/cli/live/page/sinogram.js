@@ -4,7 +4,7 @@
 const KEPT_BYTES = 128 * 2 ** 20;
 const sinogram = {frames: new Map(), key: '', most: Infinity, row: 0.5, sweep: null, timer: 0};
 // most: maximum number of cached frames. row: a fraction of the height. sweep: {back, asked, key} while all projections are requested.
-const keyOfState = ({settings, poses, phase, quantity}) => JSON.stringify([settings, poses, phase, quantity]);
+const keyOfState = ({settings, poses, phase, quantity, bands, channel}) => JSON.stringify([settings, poses, phase, quantity, bands, channel]);
 
 function keepOnly(key) {
   if (sinogram.key !== key) sinogram.frames.clear();
@@ -13,7 +13,7 @@ function keepOnly(key) {
 
 // Caches a frame. its: the state that it shows.
 function noteProjection(frame, its) {
-  if (its.projection === null || frame.notes & 1 || live.projections < 2 || keyOfState(its) !== sinogram.key) return;
+  if (its.projection === null || frame.notes & 9 || live.projections < 2 || keyOfState(its) !== sinogram.key) return;
   const {frames, sweep} = sinogram;
   sinogram.most = Math.max(2, Math.floor(KEPT_BYTES / frame.numbers.byteLength));
   frames.delete(its.projection);

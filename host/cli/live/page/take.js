@@ -39,7 +39,8 @@ const quoted = text => "'" + text.replaceAll("'", "'\\''") + "'";
 function commandLine() {
   const words = Object.entries(state.settings).map(([key, value]) => `${key}=${JSON.stringify(value)}`);
   for (const [index, transform] of transforms(live.document)) words.push(`Samples.${index}.Transform=${JSON.stringify(transform)}`);
-  const verb = state.phase === null ? 'image' : 'breathe', more = state.phase === null ? '' : ` --phase ${state.phase}`;
+  const verb = state.phase === null ? 'image' : 'breathe', bands = state.bands.length && verb === 'image' ? ` --bands ${state.bands}` : '';
+  const more = bands + (state.phase === null ? '' : ` --phase ${state.phase}`);
   return `skiagraph ${verb} ${quoted(live.path)}${words.map(word => ' --set ' + quoted(word)).join('')}${more} -o image.mha`;
 }
 
@@ -56,7 +57,7 @@ function pythonScript() {
     lines.push(`moved = np.array([${rows.join(', ')}])`, `scene[${label}].pose = moved @ scene[${label}].pose`);
   }
   if (state.phase !== null) lines.push(`scene.breathe(phase=${state.phase})`);
-  lines.push('image = scene.image()', 'np.save("image.npy", image)', '');
+  lines.push(`image = scene.image(${state.bands.length ? `bands=[${state.bands.join(', ')}]` : ''})`, 'np.save("image.npy", image)', '');
   return lines.join('\n');
 }
 
@@ -66,6 +67,7 @@ const takes = {
   command: () => {
     byId('command').textContent = commandLine();
     byId('command').hidden = false;
+    if (state.bands.length && state.phase !== null) showSentence('The verb breathe has no --bands, so the command leaves them out; the Python script has them.');
     if (navigator.clipboard) navigator.clipboard.writeText(commandLine()).catch(() => {});
   },
   png: () => say({take: 'png'}), tif: () => say({take: 'tif'}), mha: () => say({take: 'mha'}),

@@ -119,7 +119,7 @@ function drawHistogram() {
   draw.fillStyle = style.getPropertyValue('--mark');
   for (const end of [xray.low, xray.high]) draw.fillRect(at(end) - 1, 0, 2, height);
   byId('low').value = number(xray.low), byId('high').value = number(xray.high);
-  const photons = live && live.beam.photons, starved = photons > 0 ? bins.reduce((sum, count, i) =>
+  const photons = live && !state.bands.length && live.beam.photons, starved = photons > 0 ? bins.reduce((sum, count, i) =>
     sum + (photons * Math.exp(-shownOf(frame, first + (i + 0.5) * step)) < 10 ? count : 0), 0) / total(bins) : 0;
   byId('starved').hidden = starved < 0.001;
   byId('starved').textContent = `${number(100 * starved, 2)} % of the pixels get fewer than 10 photons.`;
