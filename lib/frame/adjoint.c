@@ -1,6 +1,6 @@
 #include "frame/adjoint.h"
 
-#include "frame/job.h"
+#include "frame/caller.h"
 #include "plan/decide.h"
 #include "spectral/quantity.h"
 
@@ -29,16 +29,18 @@ static skg_status check(const char *call, const skg_recipe *recipe, const skg_ad
     return SKG_OK;
 }
 
-/* Reads the adjoint from a buffer of the caller. */
-static skg_status read_buffer(const char *call, const skg_plan *plan, const skg_adjoint *a, int64_t bytes,
-                              void *to) {
+/* Enqueues the read of a buffer of the caller. */
+static skg_status read_buffer(skg_job *job, int64_t bytes) {
+    struct skg_gradient_work *gradient = job->gradient;
+    const skg_adjoint *a = &gradient->given;
     int64_t size = 0;
-    SKG_TRY(skg_caller_buffer_check(call, plan->context, a->buffer, &size));
+    SKG_TRY(skg_caller_buffer_check(gradient->call, job->machine->context, a->buffer, &size));
     if (a->offset < 0 || a->offset > size || bytes > size - a->offset)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: the adjoint ends at byte %" PRId64 ", its buffer at %" PRId64,
-                        call, a->offset + bytes, size);
-    SKG_CL_TRY(clEnqueueReadBuffer(plan->context->device->queue, a->buffer, CL_TRUE, (size_t)a->offset,
-                                   (size_t)bytes, to, 0, NULL, NULL));
+                        gradient->call, a->offset + bytes, size);
+    SKG_TRY(skg_alloc(bytes, 1, "adjoint", &gradient->raw));
+    SKG_CL_TRY(clEnqueueReadBuffer(job->machine->context->device->queue, a->buffer, CL_FALSE,
+                                   (size_t)a->offset, (size_t)bytes, gradient->raw, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -54,35 +56,30 @@ static skg_status check_finite(const char *call, const skg_adjoint *a, const dou
     return SKG_OK;
 }
 
-skg_status skg_adjoint_read(const char *call, const skg_plan *plan, const skg_adjoint *adjoint,
-                            double **values) {
-    skg_adjoint ours;
-    void *raw = NULL;
-    skg_status status = SKG_OK;
-    skg_adjoint_init(&ours);
-    SKG_TRY(skg_struct_read(adjoint, "skg_adjoint", &ours, sizeof ours));
-    SKG_TRY(check(call, plan->recipe, &ours));
-    const int64_t count = ours.channels * ours.rows * ours.columns;
-    const int is_double = ours.type == SKG_TYPE_FLOAT64;
-    const int64_t bytes = count * (int64_t)(is_double ? sizeof(double) : sizeof(float));
-    const void *from = ours.data;
-    SKG_TRY(skg_alloc(count, sizeof **values, "adjoint", values));
-    if (ours.buffer) {
-        SKG_TRY_CLEANUP(skg_alloc(bytes, 1, "adjoint", &raw));
-        SKG_TRY_CLEANUP(read_buffer(call, plan, &ours, bytes, raw));
-        from = raw;
-    }
-    for (int64_t i = 0; i < count; i++)
-        (*values)[i] = is_double ? ((const double *)from)[i] : (double)((const float *)from)[i];
-    status = check_finite(call, &ours, *values);
-cleanup:
-    skg_free(&raw);
-    if (status != SKG_OK) skg_free(values);
-    return status;
+static skg_status take_values(struct skg_gradient_work *gradient, const void *from) {
+    const skg_adjoint *a = &gradient->given;
+    const int is_double = a->type == SKG_TYPE_FLOAT64;
+    for (int64_t i = 0; i < a->channels * a->rows * a->columns; i++)
+        gradient->adjoint[i] = is_double ? ((const double *)from)[i] : (double)((const float *)from)[i];
+    return check_finite(gradient->call, a, gradient->adjoint);
 }
 
-int skg_adjoint_needs_image(const skg_plan *plan) {
-    return skg_decide_late_logarithm(plan->recipe);
+skg_status skg_adjoint_read(skg_job *job) {
+    struct skg_gradient_work *gradient = job->gradient;
+    const skg_adjoint *a = &gradient->given;
+    SKG_TRY(check(gradient->call, job->recipe, a));
+    const int64_t count = a->channels * a->rows * a->columns;
+    SKG_TRY(skg_alloc(count, sizeof *gradient->adjoint, "adjoint", &gradient->adjoint));
+    if (!a->buffer) return take_values(gradient, a->data);
+    return read_buffer(job, count * (int64_t)(a->type == SKG_TYPE_FLOAT64 ? sizeof(double) : sizeof(float)));
+}
+
+skg_status skg_adjoint_take(skg_job *job) {
+    return job->gradient->raw ? take_values(job->gradient, job->gradient->raw) : SKG_OK;
+}
+
+int skg_adjoint_needs_image(const skg_recipe *recipe) {
+    return skg_decide_late_logarithm(recipe);
 }
 
 /* The transpose of -ln: d(-ln T) / dT = -1 / T = -exp(image). Below the smallest T that is shown the image is constant. */
@@ -92,14 +89,14 @@ static void undo_logarithm(int64_t count, const double *image, double *values) {
 }
 
 /* The transpose of the factors of the stage `detect`. */
-static skg_status undo_detection(const skg_plan *plan, const skg_view *view, double *values) {
-    const skg_recipe *recipe = plan->recipe;
+static skg_status undo_detection(const skg_job *job, const skg_view *view, double *values) {
+    const skg_recipe *recipe = job->recipe;
     const int64_t size = view->rows * view->columns;
     double factors[SKG_CHANNELS_MAX];
     int32_t wanted = 0;
     skg_detection detection;
     skg_camera camera;
-    if (!plan->machine.detector) return SKG_OK;
+    if (!job->machine->detector) return SKG_OK;
     SKG_TRY(skg_decide_detection(recipe, &detection, factors, &wanted));
     SKG_TRY(skg_camera_make(view, NULL, 0, 0, &camera));
     double frame = recipe->options.quantity == SKG_QUANTITY_FLUENCE ? 1 / skg_camera_pixel_area(&camera) : 1;
@@ -109,9 +106,9 @@ static skg_status undo_detection(const skg_plan *plan, const skg_view *view, dou
 }
 
 /* The transposes of the blurs of all layers; noise, which may have a layer of its own, is left out. */
-static skg_status undo_blurs(const skg_plan *plan, double **values) {
-    const skg_recipe *recipe = plan->recipe;
-    const skg_layers *layers = &plan->machine.layers;
+static skg_status undo_blurs(const skg_job *job, double **values) {
+    const skg_recipe *recipe = job->recipe;
+    const skg_layers *layers = &job->machine->layers;
     const int64_t columns = recipe->view.columns, rows = recipe->view.rows;
     const int64_t channels = recipe->model.channels, count = recipe->model.layers;
     double *spread = NULL;
@@ -127,10 +124,10 @@ static skg_status undo_blurs(const skg_plan *plan, double **values) {
     return status;
 }
 
-skg_status skg_derivative_of_image(const skg_plan *plan, const skg_view *view, const double *image,
+skg_status skg_derivative_of_image(const skg_job *job, const skg_view *view, const double *image,
                                    double **values) {
-    const skg_recipe *recipe = plan->recipe;
-    const skg_layers *layers = &plan->machine.layers;
+    const skg_recipe *recipe = job->recipe;
+    const skg_layers *layers = &job->machine->layers;
     const int64_t columns = view->columns, size = view->rows * columns, channels = recipe->model.channels;
     double *blurred = NULL;
     for (int64_t c = 0; c < channels && layers->count > 0; c++) {
@@ -138,17 +135,17 @@ skg_status skg_derivative_of_image(const skg_plan *plan, const skg_view *view, c
         skg_blur_apply(layers->blurs[0], columns, view->rows, *values + c * size, blurred + c * size);
     }
     if (blurred) skg_free(values), *values = blurred;
-    SKG_TRY(undo_detection(plan, view, *values));
+    SKG_TRY(undo_detection(job, view, *values));
     if (image) undo_logarithm(channels * size, image, *values);
     return SKG_OK;
 }
 
-skg_status skg_adjoint_of_intensities(const skg_plan *plan, const skg_view *view, const double *image,
+skg_status skg_adjoint_of_intensities(const skg_job *job, const skg_view *view, const double *image,
                                       double **values) {
-    const int64_t count = plan->recipe->model.channels * view->rows * view->columns;
+    const int64_t count = job->recipe->model.channels * view->rows * view->columns;
     if (image) undo_logarithm(count, image, *values);
-    SKG_TRY(undo_detection(plan, view, *values));
-    return undo_blurs(plan, values);
+    SKG_TRY(undo_detection(job, view, *values));
+    return undo_blurs(job, values);
 }
 
 skg_status skg_adjoint_send(skg_job *job, const double *adjoint) {

@@ -2,6 +2,7 @@
 
 #include "core/parallel.h"
 #include "core/vector.h"
+#include "frame/derivative_density.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
 #include "geometry/slopes.h"
@@ -206,6 +207,7 @@ skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int
         for (int64_t p = 0; p < job->recipe->model.channels * size; p++) gradient->adjoint[p] = p / size == c;
         SKG_TRY_CLEANUP(skg_gradient_weigh(job, pass, sums, factor, 0));
         SKG_TRY_CLEANUP(add_channel(job, work, pass, &w, c, values));
+        SKG_TRY_CLEANUP(skg_derivative_add_changes(job, pass, sums, factor, c));
     }
 cleanup:
     release_slopes(&w);

@@ -3,6 +3,7 @@
 #define SKG_DERIVATIVE_PASS_H
 
 #include "frame/gradient_work.h"
+#include "frame/job.h"
 
 /* Adds the derivatives of the intensities of one pass, whose sums are made, and waits for them. Arguments as of
  * skg_gradient_add_pass. */

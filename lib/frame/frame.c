@@ -1,5 +1,6 @@
 #include "frame/frame.h"
 #include "frame/derivative_pass.h"
+#include "frame/derivative_rates.h"
 #include "frame/detector.h"
 #include "frame/gradient_density.h"
 #include "frame/gradient_pass.h"
@@ -248,6 +249,15 @@ cleanup:
     return status;
 }
 
+/* Those of all parts that need path lengths. */
+static skg_status add_densities(skg_job *job, const skg_frame_work *work, int64_t number) {
+    const uint8_t *needs = job->gradient->needs_lengths;
+    if (job->gradient->forward) skg_derivative_clear_rates(job);
+    for (int64_t p = 0; p < job->recipe->scene->count; p++)
+        if (needs[p]) SKG_TRY(add_density(job, work, number, p));
+    return SKG_OK;
+}
+
 /* Passes that wait to be drawn together: `count` of them, from number `first` on, in a raster of `room`. */
 typedef struct {
     skg_pass *passes;
@@ -297,6 +307,8 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
     skg_machine *machine = job->machine;
     skg_pass pass;
     skg_status status = SKG_OK;
+    /* A pass by itself, and so before this one, whose memory it shares. */
+    if (job->gradient && job->gradient->forward) SKG_TRY(add_densities(job, work, number));
     SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &machine->pass, &pass));
     SKG_TRY_CLEANUP(pin_raster(job->recipe, machine, number, &pass, job->gradient != NULL, job->outcome));
     skg_raster_pin_copy(&pass.main, &job->main);
@@ -312,8 +324,8 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
         job->gradient ? add_gradient(job, work, number, &pass) : enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
-    for (int64_t p = 0; job->gradient && job->gradient->needs_lengths && p < job->recipe->scene->count; p++)
-        if (status == SKG_OK && job->gradient->needs_lengths[p]) status = add_density(job, work, number, p);
+    if (job->gradient && !job->gradient->forward && status == SKG_OK)
+        status = add_densities(job, work, number);
     return status;
 }
 
@@ -326,6 +338,18 @@ static skg_status enqueue_passes(skg_job *job, const skg_frame_work *work, int64
 cleanup:
     for (int32_t p = 0; p < g.count; p++) skg_pass_release(&g.passes[p]);
     skg_free(&g.passes);
+    return status;
+}
+
+skg_status skg_frame_enqueue_sums(skg_job *job, const skg_frame_work *work) {
+    const int64_t number = first_of(job->recipe);
+    skg_pass pass;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &job->machine->pass, &pass));
+    SKG_TRY_CLEANUP(pin_raster(job->recipe, job->machine, number, &pass, 1, job->outcome));
+    status = enqueue_sums(job, work, &pass);
+cleanup:
+    skg_pass_release(&pass);
     return status;
 }
 
@@ -382,8 +406,7 @@ skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
     const int64_t first = first_of(recipe);
     if (work->lengths_of >= 0) return enqueue_passes(job, work, -1, 0);
     if (skg_output_is_scatter(work->shows)) return skg_frame_show_scatter(job, work);
-    if (job->gradient)
-        return enqueue_passes(job, work, first, first < 0 ? 0 : skg_samples_passes(&recipe->samples));
+    if (job->gradient) return enqueue_passes(job, work, first + work->pass, first + work->pass + 1);
     if (work->shows == SKG_OUTPUT_VARIANCE) return enqueue_variance(job, work);
     SKG_TRY(enqueue_values(job, work));
     return skg_decide_late_logarithm(recipe) ? skg_frame_take_logarithm(job, work) : SKG_OK;

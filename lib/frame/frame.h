@@ -11,7 +11,10 @@ void skg_frame_expect(const skg_recipe *recipe, const skg_machine *machine);
 /* Compiles and allocates for images of the recipe's view. */
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome);
 
-/* Enqueues a frame. When the device is done with it the result is in its place. */
+/* Enqueues the sums of the first pass of a gradient, which find them where they stand. */
+skg_status skg_frame_enqueue_sums(skg_job *job, const skg_frame_work *work);
+
+/* Enqueues a frame, or a pass of a gradient. When the device is done with it the result is in its place. */
 skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work);
 
 #endif

@@ -3,12 +3,12 @@
 #include "frame/adjoint.h"
 #include "frame/gradient_work.h"
 #include "frame/submission.h"
-#include "frame/wait.h"
 #include "geometry/collimation.h"
 #include "plan/decide.h"
 #include "spectral/quantity.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 void skg_gradient_init_sized(void *gradient, int32_t size) {
@@ -73,93 +73,68 @@ static skg_status check_wanted(const char *call, const skg_recipe *recipe, const
     return wanted->source || wanted->detector ? check_view(call, recipe) : SKG_OK;
 }
 
-/* --- the call */
+/* --- jobs */
 
-/* The image of the frame as it is shown. */
-static skg_status make_image(skg_plan *plan, const skg_frame *frame, double **image) {
-    const skg_recipe *recipe = plan->recipe;
-    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
-    skg_output output;
-    skg_job *job = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(count, sizeof **image, "gradient", image));
-    skg_output_init(&output);
-    output.data = *image;
-    if (plan->context->device->info.double_precision) output.type = SKG_TYPE_FLOAT64;
-    SKG_TRY_CLEANUP(skg_plan_submit(plan, 1, frame, &output, &job));
-    status = skg_job_wait(&job);
-    if (status == SKG_RANGE) status = SKG_OK; /* the image is in place */
-    if (status != SKG_OK) goto cleanup;
-    for (int64_t i = count - 1; output.type == SKG_TYPE_FLOAT32 && i >= 0; i--)
-        (*image)[i] = (double)((float *)output.data)[i];
-cleanup:
-    if (status != SKG_OK) skg_free(image);
-    return status;
-}
-
-/* The view of a frame. Densities of parts that are filled in part have no gradient. */
-static skg_status view_of(const char *call, const skg_plan *plan, const skg_frame *frame,
-                          const skg_gradient *wanted, skg_view *view) {
+/* Densities of parts that are filled in part have no gradient. */
+static skg_status check_frame(const char *call, const skg_frame *frame, const skg_gradient *wanted) {
     skg_frame ours;
     skg_frame_init(&ours);
-    *view = plan->recipe->view;
     if (!frame) return SKG_OK;
     SKG_TRY(skg_struct_read(frame, "skg_frame", &ours, sizeof ours));
     if (wanted->densities && ours.fill_fractions)
         return refuse(call, "a density beside fill fractions", "leave one of the two out");
-    if (!ours.view) return SKG_OK;
-    skg_view_init(view);
-    SKG_TRY(skg_view_check(ours.view));
-    return skg_struct_read(ours.view, "skg_view", view, sizeof *view);
+    return SKG_OK;
 }
 
-static skg_status find_adjoint(const char *call, skg_plan *plan, const skg_frame *frame,
-                               const skg_adjoint *adjoint, const skg_gradient *wanted, double **values) {
-    double *image = NULL;
-    skg_view view;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_adjoint_read(call, plan, adjoint, values));
-    SKG_TRY_CLEANUP(view_of(call, plan, frame, wanted, &view));
-    if (skg_adjoint_needs_image(plan)) SKG_TRY_CLEANUP(make_image(plan, frame, &image));
-    status = skg_adjoint_of_intensities(plan, &view, image, values);
-cleanup:
-    skg_free(&image);
-    return status;
+/* Materials that were changed may have other energies, which the caller's memory has no place for. */
+static skg_status check_nodes(const char *call, int64_t count, const void *attenuations, int64_t given) {
+    if (!attenuations || given == count) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "%s: the attenuations have memory for %" PRId64 " energies, and the plan has %" PRId64
+                    "; set `nodes` to what skg_plan_node_count says now",
+                    call, given, count);
 }
 
-/* Renders the frame as far as its sums, and adds up what its passes give. */
-static skg_status run(skg_plan *plan, const skg_frame *frame, struct skg_gradient_work *work) {
+/* Memory for the image, where it has to be known. */
+static skg_status place_image(const skg_plan *plan, struct skg_gradient_work *work) {
+    const skg_recipe *recipe = plan->recipe;
+    skg_output output;
+    if (!skg_adjoint_needs_image(recipe)) return SKG_OK;
+    SKG_TRY(skg_alloc(recipe->model.channels * recipe->view.rows * recipe->view.columns, sizeof *work->image,
+                      "gradient", &work->image));
+    skg_output_init(&output);
+    output.data = work->image;
+    if (plan->context->device->info.double_precision) output.type = SKG_TYPE_FLOAT64;
+    return skg_frame_output_read(work->call, recipe, &plan->machine, 1, &output, 0, &work->shown);
+}
+
+/* Makes a job of the passes of a frame, which takes over the work. */
+static skg_status make_job(skg_plan *plan, struct skg_gradient_work **work, skg_job **job) {
+    const skg_recipe *recipe = plan->recipe;
+    const int64_t passes = skg_recipe_averages(recipe) ? skg_samples_passes(&recipe->samples) : 1;
     skg_output nowhere;
-    skg_job *job = NULL;
     skg_output_init(&nowhere);
-    nowhere.data = work->view; /* is not written */
-    SKG_TRY(skg_job_create("skg_plan_gradient", plan->recipe, &plan->machine, &plan->outcome, 1, 1, &nowhere,
-                           &job));
-    job->gradient = work;
-    SKG_TRY(skg_submission_enqueue(&job, frame, 1));
-    return skg_job_complete(&job);
+    nowhere.data = (*work)->view; /* is not written */
+    SKG_TRY(place_image(plan, *work));
+    SKG_TRY(skg_alloc(recipe->scene->count, 1, "gradient", &(*work)->needs_lengths));
+    SKG_TRY(skg_job_create((*work)->call, recipe, &plan->machine, &plan->outcome, passes, 1, &nowhere, job));
+    (*job)->gradient = *work;
+    *work = NULL;
+    return SKG_OK;
 }
 
-/* Clears what is wanted of vertices, which is added to. */
-static void clear_vertices(const skg_scene *scene, const skg_gradient *wanted) {
-    for (int64_t p = 0; wanted->vertices && p < scene->count; p++)
-        if (wanted->vertices[p])
-            memset(wanted->vertices[p], 0,
-                   3 * (size_t)scene->parts[p].mesh->vertices * sizeof **wanted->vertices);
-}
-
-static skg_status hand_out(const skg_scene *scene, const struct skg_gradient_work *work) {
-    const skg_gradient *wanted = &work->wanted;
-    if (wanted->poses) memcpy(wanted->poses, work->poses, 6 * (size_t)scene->count * sizeof *work->poses);
-    if (wanted->densities)
-        memcpy(wanted->densities, work->densities, (size_t)scene->count * sizeof *work->densities);
-    if (wanted->attenuations)
-        memcpy(wanted->attenuations, work->attenuations,
-               (size_t)(scene->count * work->node_count) * sizeof *work->attenuations);
-    if (wanted->source) memcpy(wanted->source, work->view, 3 * sizeof *work->view);
-    if (wanted->detector) memcpy(wanted->detector, work->view + 3, 6 * sizeof *work->view);
-    for (int64_t p = 0; wanted->vertices && p < scene->count; p++)
-        if (wanted->vertices[p]) SKG_TRY(skg_forces_share(scene->parts[p].mesh, wanted->vertices[p]));
+/* A copy that the job frees; NULL of NULL. */
+static skg_status copy_numbers(skg_job *job, const char *what, int64_t count, const double **numbers) {
+    double *copy = NULL;
+    if (!*numbers) return SKG_OK;
+    for (int64_t i = 0; i < count; i++)
+        if (!isfinite((*numbers)[i]))
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "%s: number %" PRId64 " of the direction's %s is %g; it has to be finite",
+                            job->gradient->call, i, what, (*numbers)[i]);
+    SKG_TRY(skg_staging_take(&job->staging, count, sizeof *copy, "direction", &copy));
+    memcpy(copy, *numbers, (size_t)count * sizeof *copy);
+    *numbers = copy;
     return SKG_OK;
 }
 
@@ -170,109 +145,205 @@ void skg_direction_init_sized(void *direction, int32_t size) {
     skg_struct_init(direction, size, &defaults, sizeof defaults);
 }
 
-static skg_status derive(const char *call, skg_plan *plan, const skg_frame *frame,
-                         struct skg_gradient_work *work) {
-    const skg_recipe *recipe = plan->recipe;
-    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
-    double *image = NULL;
-    skg_view view;
-    skg_status status = SKG_OK;
-    SKG_TRY(check_wanted(call, recipe, &plan->machine, &work->wanted));
-    if (recipe->model.layers > 1)
-        return refuse(call, "a blur that depends on depth, along a direction,", "take skg_plan_gradient");
-    SKG_TRY(view_of(call, plan, frame, &work->wanted, &view));
-    SKG_TRY(skg_alloc(count, sizeof *work->derivative, "derivative", &work->derivative));
-    SKG_TRY(skg_alloc(count, sizeof *work->adjoint, "derivative", &work->adjoint));
-    if (skg_adjoint_needs_image(plan)) SKG_TRY(make_image(plan, frame, &image));
-    status = run(plan, frame, work);
-    if (status == SKG_OK) status = skg_derivative_of_image(plan, &view, image, &work->derivative);
-    skg_free(&image);
-    return status;
+static skg_status copy_vertices(skg_job *job, skg_direction *direction) {
+    const skg_scene *scene = job->recipe->scene;
+    const double **copies = NULL;
+    if (!direction->vertices) return SKG_OK;
+    SKG_TRY(skg_staging_take(&job->staging, scene->count, sizeof *copies, "direction", &copies));
+    for (int64_t p = 0; p < scene->count; p++) {
+        copies[p] = direction->vertices[p];
+        SKG_TRY(copy_numbers(job, "vertices", 3 * scene->parts[p].mesh->vertices, &copies[p]));
+    }
+    direction->vertices = copies;
+    return SKG_OK;
 }
 
-static skg_status make_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
-                                  double *derivative, int64_t *saturated) {
+/* Parts whose matter changes. */
+static void find_needs(const skg_job *job, uint8_t *needs) {
+    const skg_direction *direction = &job->gradient->direction;
+    const int64_t nodes = job->recipe->model.nodes;
+    for (int64_t p = 0; p < job->recipe->scene->count; p++) {
+        needs[p] = direction->densities && direction->densities[p] != 0;
+        for (int64_t n = 0; n < nodes && direction->attenuations; n++)
+            needs[p] |= direction->attenuations[p * nodes + n] != 0;
+    }
+}
+
+static skg_status copy_direction(skg_job *job) {
+    skg_direction *direction = &job->gradient->direction;
+    const int64_t parts = job->recipe->scene->count;
+    SKG_TRY(copy_numbers(job, "poses", 6 * parts, &direction->poses));
+    SKG_TRY(copy_numbers(job, "source", 3, &direction->source));
+    SKG_TRY(copy_numbers(job, "detector", 6, &direction->detector));
+    SKG_TRY(copy_numbers(job, "densities", parts, &direction->densities));
+    SKG_TRY(copy_numbers(job, "attenuations", parts * direction->nodes, &direction->attenuations));
+    SKG_TRY(copy_vertices(job, direction));
+    find_needs(job, job->gradient->needs_lengths);
+    return SKG_OK;
+}
+
+/* What the checks of a gradient would find wanted. */
+static skg_gradient wanted_of(const skg_direction *direction, double *any) {
+    skg_gradient wanted;
+    skg_gradient_init(&wanted);
+    if (direction->source || direction->detector) wanted.source = any;
+    if (direction->densities) wanted.densities = any;
+    if (direction->attenuations) wanted.attenuations = any;
+    return wanted;
+}
+
+static skg_status check_direction(skg_plan *plan, const skg_frame *frame,
+                                  const struct skg_gradient_work *work) {
+    double any[9];
+    const skg_recipe *recipe = plan->recipe;
+    const skg_direction *direction = &work->direction;
+    const skg_gradient wanted = wanted_of(direction, any);
+    SKG_TRY(check_wanted(work->call, recipe, &plan->machine, &wanted));
+    if (recipe->model.layers > 1)
+        return refuse(work->call, "a blur that depends on depth, along a direction,",
+                      "take skg_plan_gradient");
+    SKG_TRY(check_nodes(work->call, recipe->model.nodes, direction->attenuations, direction->nodes));
+    return check_frame(work->call, frame, &wanted);
+}
+
+/* What both submissions begin with. */
+static skg_status begin(const char *call, skg_plan *plan, skg_job **job, struct skg_gradient_work **work) {
+    *job = NULL;
+    SKG_TRY(skg_context_enter(plan->context));
+    skg_submission_flush(plan->context);
+    SKG_TRY(skg_alloc(1, sizeof **work, "gradient", work));
+    (*work)->call = call;
+    return SKG_OK;
+}
+
+/* Starts a job that is complete but for its device. */
+static skg_status start(skg_plan *plan, const skg_frame *frame, skg_job **made, skg_job **job) {
+    SKG_TRY(skg_submission_enqueue(made, frame, 0));
+    skg_ref(&plan->refs);
+    (*made)->plan = plan;
+    *job = *made;
+    *made = NULL;
+    return SKG_OK;
+}
+
+static skg_status submit_derivative(const char *call, skg_plan *plan, const skg_frame *frame,
+                                    const skg_direction *direction, double *derivative, int64_t *saturated,
+                                    skg_job **job) {
     SKG_PLAIN;
-    static const char call[] = "skg_plan_derivative";
-    struct skg_gradient_work work = {.forward = 1};
-    double any[6];
+    struct skg_gradient_work *work = NULL;
+    skg_job *made = NULL;
+    skg_status status = SKG_OK;
     SKG_NEEDS_OF(call, plan);
     SKG_NEEDS_OF(call, direction);
     SKG_NEEDS_OF(call, derivative);
-    SKG_TRY(skg_context_enter(plan->context));
-    skg_submission_flush(plan->context);
-    SKG_TRY(skg_struct_read(direction, "skg_direction", &work.direction, sizeof work.direction));
-    SKG_TRY(skg_plan_renew(plan));
+    SKG_NEEDS_OF(call, job);
+    SKG_TRY(begin(call, plan, job, &work));
+    work->forward = 1;
+    work->result = derivative;
+    work->saturated_count = saturated;
+    SKG_TRY_CLEANUP(skg_struct_read(direction, "skg_direction", &work->direction, sizeof work->direction));
+    SKG_TRY_CLEANUP(skg_plan_renew(plan));
+    SKG_TRY_CLEANUP(check_direction(plan, frame, work));
+    SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
     const skg_recipe *recipe = plan->recipe;
     const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
-    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
-    if (work.direction.source || work.direction.detector) work.wanted.source = any; /* for the checks */
-    const skg_status status = derive(call, plan, frame, &work);
-    if (status == SKG_OK) memcpy(derivative, work.derivative, (size_t)count * sizeof *derivative);
-    if (saturated) *saturated = work.saturated;
-    skg_free(&work.adjoint);
-    skg_free(&work.derivative);
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *work->derivative, "derivative", &work->derivative));
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *work->adjoint, "derivative", &work->adjoint));
+    SKG_TRY_CLEANUP(make_job(plan, &work, &made));
+    SKG_TRY_CLEANUP(copy_direction(made));
+    status = start(plan, frame, &made, job);
+cleanup:
+    skg_job_release(&made);
+    skg_gradient_work_release(&work);
     return status;
+}
+
+/* Waits for a job that a call has started. */
+static skg_status finish(skg_status status, skg_job **job) {
+    return status == SKG_OK ? skg_job_wait(job) : status;
+}
+
+skg_status skg_plan_derivative_submit(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
+                                      double *derivative, int64_t *saturated, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_derivative("skg_plan_derivative_submit", plan, frame, direction,
+                                                   derivative, saturated, job));
 }
 
 skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                double *derivative, int64_t *saturated) {
     const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, make_derivative(plan, frame, direction, derivative, saturated));
+    skg_job *job = NULL;
+    const skg_status status =
+        submit_derivative("skg_plan_derivative", plan, frame, direction, derivative, saturated, &job);
+    return skg_call_end(handler, finish(status, &job));
 }
 
 /* --- by everything */
 
-/* Materials that were changed may have other energies, which the caller's memory has no place for. */
-static skg_status check_nodes(const char *call, int64_t count, const skg_gradient *wanted) {
-    if (!wanted->attenuations || wanted->nodes == count) return SKG_OK;
-    return skg_fail(SKG_ERR_ARGUMENT,
-                    "%s: the attenuations have memory for %" PRId64 " energies, and the plan has %" PRId64
-                    "; set `nodes` to what skg_plan_node_count says now",
-                    call, wanted->nodes, count);
+/* The array of arrays may be the caller's for the call alone. */
+static skg_status copy_targets(skg_job *job) {
+    double *const **vertices = &job->gradient->wanted.vertices;
+    const int64_t parts = job->recipe->scene->count;
+    double **copy = NULL;
+    if (!*vertices) return SKG_OK;
+    SKG_TRY(skg_staging_take(&job->staging, parts, sizeof *copy, "gradient", &copy));
+    memcpy(copy, *vertices, (size_t)parts * sizeof *copy);
+    *vertices = copy;
+    return SKG_OK;
 }
 
-static skg_status make_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
-                                const skg_gradient *gradient) {
+static skg_status allocate_results(const skg_recipe *recipe, struct skg_gradient_work *work) {
+    const int64_t parts = recipe->scene->count;
+    work->node_count = recipe->model.nodes;
+    SKG_TRY(skg_alloc(6 * parts, sizeof *work->poses, "gradient", &work->poses));
+    SKG_TRY(skg_alloc(parts, sizeof *work->densities, "gradient", &work->densities));
+    if (!work->wanted.attenuations) return SKG_OK;
+    return skg_alloc(parts * work->node_count, sizeof *work->attenuations, "gradient", &work->attenuations);
+}
+
+static skg_status submit_gradient(const char *call, skg_plan *plan, const skg_frame *frame,
+                                  const skg_adjoint *adjoint, const skg_gradient *gradient, skg_job **job) {
     SKG_PLAIN;
-    static const char call[] = "skg_plan_gradient";
-    struct skg_gradient_work work = {0};
+    struct skg_gradient_work *work = NULL;
+    skg_job *made = NULL;
     skg_status status = SKG_OK;
     SKG_NEEDS_OF(call, plan);
     SKG_NEEDS_OF(call, adjoint);
     SKG_NEEDS_OF(call, gradient);
-    SKG_TRY(skg_context_enter(plan->context));
-    skg_submission_flush(plan->context);
-    SKG_TRY(skg_struct_read(gradient, "skg_gradient", &work.wanted, sizeof work.wanted));
-    SKG_TRY(skg_plan_renew(plan));
-    const skg_scene *scene = plan->recipe->scene;
-    SKG_TRY(check_wanted(call, plan->recipe, &plan->machine, &work.wanted));
-    SKG_TRY(check_nodes(call, plan->recipe->model.nodes, &work.wanted));
-    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
-    SKG_TRY_CLEANUP(skg_alloc(6 * scene->count, sizeof *work.poses, "gradient", &work.poses));
-    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.densities, "gradient", &work.densities));
-    work.node_count = plan->recipe->model.nodes;
-    if (work.wanted.attenuations)
-        SKG_TRY_CLEANUP(skg_alloc(scene->count * work.node_count, sizeof *work.attenuations, "gradient",
-                                  &work.attenuations));
-    SKG_TRY_CLEANUP(skg_alloc(scene->count, sizeof *work.needs_lengths, "gradient", &work.needs_lengths));
-    SKG_TRY_CLEANUP(find_adjoint(call, plan, frame, adjoint, &work.wanted, &work.adjoint));
-    clear_vertices(scene, &work.wanted);
-    SKG_TRY_CLEANUP(run(plan, frame, &work));
-    status = hand_out(scene, &work);
+    SKG_NEEDS_OF(call, job);
+    SKG_TRY(begin(call, plan, job, &work));
+    skg_adjoint_init(&work->given);
+    SKG_TRY_CLEANUP(skg_struct_read(gradient, "skg_gradient", &work->wanted, sizeof work->wanted));
+    SKG_TRY_CLEANUP(skg_struct_read(adjoint, "skg_adjoint", &work->given, sizeof work->given));
+    SKG_TRY_CLEANUP(skg_plan_renew(plan));
+    SKG_TRY_CLEANUP(check_wanted(call, plan->recipe, &plan->machine, &work->wanted));
+    SKG_TRY_CLEANUP(
+        check_nodes(call, plan->recipe->model.nodes, work->wanted.attenuations, work->wanted.nodes));
+    SKG_TRY_CLEANUP(check_frame(call, frame, &work->wanted));
+    SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
+    SKG_TRY_CLEANUP(allocate_results(plan->recipe, work));
+    SKG_TRY_CLEANUP(make_job(plan, &work, &made));
+    SKG_TRY_CLEANUP(copy_targets(made));
+    SKG_TRY_CLEANUP(skg_adjoint_read(made));
+    status = start(plan, frame, &made, job);
 cleanup:
-    skg_free(&work.adjoint);
-    skg_free(&work.poses);
-    skg_free(&work.densities);
-    skg_free(&work.needs_lengths);
-    skg_free(&work.planes);
-    skg_free(&work.attenuations);
-    skg_free(&work.nodes);
+    skg_job_release(&made);
+    skg_gradient_work_release(&work);
     return status;
+}
+
+skg_status skg_plan_gradient_submit(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
+                                    const skg_gradient *gradient, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler,
+                        submit_gradient("skg_plan_gradient_submit", plan, frame, adjoint, gradient, job));
 }
 
 skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
                              const skg_gradient *gradient) {
     const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, make_gradient(plan, frame, adjoint, gradient));
+    skg_job *job = NULL;
+    const skg_status status = submit_gradient("skg_plan_gradient", plan, frame, adjoint, gradient, &job);
+    return skg_call_end(handler, finish(status, &job));
 }

@@ -8,6 +8,7 @@
  * what a hit is worth, an image of path lengths is rendered instead. */
 #include "frame/gradient_density.h"
 
+#include "frame/derivative_rates.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_nodes.h"
 
@@ -167,8 +168,12 @@ skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t 
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *own, "gradient", &own));
     SKG_TRY_CLEANUP(
         skg_gradient_read(pass, job->machine->gradient.lengths.memory, 0, columns * rows, lengths));
-    if (gradient->wanted.attenuations) SKG_TRY_CLEANUP(skg_gradient_add_nodes(job, pass, part, lengths));
     find_own(recipe, part, own);
+    if (gradient->forward) {
+        status = skg_derivative_add_lengths(job, pass, part, own, lengths);
+        goto cleanup;
+    }
+    if (gradient->wanted.attenuations) SKG_TRY_CLEANUP(skg_gradient_add_nodes(job, pass, part, lengths));
     for (int64_t k = 0; k < planes && gradient->wanted.densities; k++) {
         const double *slopes = gradient->planes + k * layout.plane;
         for (int64_t r = 0; r < rows && own[k] != 0; r++)

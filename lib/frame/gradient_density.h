@@ -3,6 +3,8 @@
 #define SKG_GRADIENT_DENSITY_H
 
 #include "frame/gradient_work.h"
+#include "frame/job.h"
+#include "geometry/forces.h"
 
 /* Adds the densities of a pass that take no path lengths, and marks the others in gradient->needs_lengths. sums: [parts] of the
  * gather of the pass */
@@ -18,7 +20,8 @@ skg_status skg_gradient_keep_planes(skg_job *job, const skg_pass *pass);
 /* Where the path lengths along all rays of a pass go, for the derivative by a density. */
 skg_status skg_gradient_place_lengths(skg_job *job, const skg_pass *pass, skg_image_place *place);
 
-/* Adds the share of a part's density in a pass, from its path lengths; waits for them. */
+/* Adds the share of a part's density in a pass, from its path lengths; waits for them. Along a direction: keeps how fast they change
+ * planes and exponents (derivative_rates.h). */
 skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t part);
 
 #endif

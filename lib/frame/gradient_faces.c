@@ -6,7 +6,7 @@ skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t 
     const skg_geometry *geometry = &machine->geometry;
     const int64_t mesh = geometry->mesh_of_part[part];
     *faces = (skg_face_moments){.camera = &pass->camera,
-                                .mesh = job->recipe->meshes.meshes[mesh],
+                                .mesh = &job->then.meshes[mesh],
                                 .pose = pass->parts[part].pose,
                                 .source = geometry->layouts[mesh].source};
     return skg_gradient_find_corners(machine->context, geometry, mesh, &machine->gradient, &faces->corners);

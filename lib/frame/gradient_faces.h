@@ -3,6 +3,8 @@
 #define SKG_GRADIENT_FACES_H
 
 #include "frame/gradient_work.h"
+#include "frame/job.h"
+#include "geometry/forces.h"
 
 /* Says where the faces of a part are in a pass. */
 skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t part,

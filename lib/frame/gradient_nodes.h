@@ -6,6 +6,7 @@
 #define SKG_GRADIENT_NODES_H
 
 #include "frame/gradient_work.h"
+#include "frame/job.h"
 
 /* Makes the derivatives by the exponents of all nodes in a pass, whose sums are made: gradient->nodes. It replaces the adjoint and the
  * weights on the device. */

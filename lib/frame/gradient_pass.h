@@ -3,6 +3,7 @@
 #define SKG_GRADIENT_PASS_H
 
 #include "frame/gradient_work.h"
+#include "frame/job.h"
 
 /* Adds the share of one pass, whose sums are made, and waits for it.
  *

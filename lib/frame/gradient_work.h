@@ -1,32 +1,45 @@
-/* Gradients of a frame: the derivatives of a loss from those by its image. Private. */
+/* Gradients of a frame: the derivatives of a loss from those by its image, or of an image along a direction. Private. */
 #ifndef SKG_GRADIENT_WORK_H
 #define SKG_GRADIENT_WORK_H
 
-#include "frame/job.h"
-#include "geometry/forces.h"
+#include "frame/outputs.h"
 
 #include <skiagraph/gradient.h>
 
-/* What a job computes instead of an image. */
+/* What a job computes instead of an image; the job owns it. Its frames are the passes of one frame. */
 struct skg_gradient_work {
+    const char *call; /* the name of the public function */
     skg_gradient wanted;
+    skg_adjoint given;      /* the caller's */
+    void *raw;              /* what is read of given.buffer; NULL: given.data was read */
+    skg_view of_frame;      /* the view of the frame */
+    skg_frame_output shown; /* the image, if it is needed: to.data is `image` */
+    double *image;          /* [channels][rows][columns] or NULL */
+    cl_event ready;         /* `raw` and `image` are read */
     /* [layers][channels][rows][columns] by the intensities that the stage `attenuate` shows */
     double *adjoint;
     double *poses;          /* [parts][6] */
     double *densities;      /* [parts] */
     uint8_t *needs_lengths; /* [parts] 1: its density takes the path lengths through it */
     double view[9];         /* by the source and by the twist of the detector */
-    /* [planes of the model][rows][row_stride] by the mm of a pass, if densities are wanted; freed by the caller */
+    /* [planes of the model][rows][row_stride] by the mm of a pass, if densities are wanted */
     double *planes;
     int64_t node_count;
     double *attenuations; /* [parts][nodes] */
-    /* the planes of rays of all nodes of the model, by the exponent of each, if attenuations are wanted; freed by the caller */
+    /* the planes of rays of all nodes of the model, by the exponent of each, if attenuations are wanted */
     double *nodes;
     int32_t forward; /* 1: the derivative of the image along `direction` instead */
     int32_t reserved;
-    skg_direction direction;
-    double *derivative; /* [channels][rows][columns] of the intensities */
-    int64_t saturated;  /* faces whose slopes were cut off */
+    skg_direction direction;  /* its arrays are the job's */
+    double *derivative;       /* [channels][rows][columns] of the intensities */
+    double *result;           /* the caller's */
+    int64_t saturated;        /* faces whose slopes were cut off */
+    int64_t *saturated_count; /* the caller's, or NULL */
+    /* Along `direction`, of the rays of a pass: how fast the mm of each plane of the model change by densities, and the exponent of each
+     * node by attenuation coefficients; [planes or nodes][rows][columns]. NULL: not at all. */
+    double *plane_changes, *node_changes;
 };
+
+void skg_gradient_work_release(struct skg_gradient_work **work);
 
 #endif

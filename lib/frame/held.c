@@ -92,6 +92,14 @@ static skg_status check_overrides(const skg_recipe *recipe, const skg_frame *fra
     return status;
 }
 
+/* The host's part of a gradient reads vertices when the caller may have moved them. */
+static skg_status own_vertices(skg_job *job, skg_mesh *mesh) {
+    const int64_t count = 3 * mesh->vertices;
+    if (mesh->positions_stale)
+        return copy_array(job, count, sizeof *mesh->offsets, mesh->offsets, &mesh->offsets);
+    return copy_array(job, count, sizeof *mesh->positions, mesh->positions, &mesh->positions);
+}
+
 /* The scene as the frames that are enqueued already were made of it. */
 static skg_status copy_scene(skg_job *job) {
     const skg_scene *scene = job->recipe->scene;
@@ -103,11 +111,12 @@ static skg_status copy_scene(skg_job *job) {
         memcpy(then->poses + 16 * p, scene->parts[p].pose, 16 * sizeof *then->poses);
     for (int64_t m = 0; m < meshes->count; m++)
         memcpy(&then->meshes[m], meshes->meshes[m], sizeof *then->meshes);
+    for (int64_t m = 0; job->gradient && m < meshes->count; m++) SKG_TRY(own_vertices(job, &then->meshes[m]));
     return SKG_OK;
 }
 
 skg_status skg_held_frames_copy(skg_job *job, const skg_frame *frames) {
-    const int64_t count = job->count - job->enqueued;
+    const int64_t count = job->gradient ? 1 : job->count - job->enqueued;
     const double **poses = NULL; /* are checked here, and read again later */
     skg_frame *copies = NULL;
     skg_status status = SKG_OK;

@@ -53,6 +53,7 @@ void skg_job_release(skg_job **job) {
     for (int64_t f = 0; done->ends && f < done->enqueued; f++) clReleaseEvent(done->ends[f]);
     if (done->last) clReleaseEvent(done->last);
     skg_raster_pin_release(&done->main);
+    skg_gradient_work_release(&done->gradient);
     skg_staging_release(&done->staging);
     skg_recipe_release(&done->recipe);
     skg_plan_release(&done->plan);

@@ -3,6 +3,7 @@
 #ifndef SKG_JOB_H
 #define SKG_JOB_H
 
+#include "frame/gradient_work.h"
 #include "frame/outputs.h"
 #include "frame/plan.h"
 #include "plan/report.h"
@@ -23,9 +24,8 @@ struct skg_job {
     skg_plan *plan;     /* retained; NULL: the caller keeps machine and outcome */
     skg_recipe *recipe; /* retained: that of the submission */
     skg_machine *machine;
-    skg_scatterer *scatterer; /* of the plan; NULL: images of the primary alone */
-    struct skg_gradient_work
-        *gradient;        /* borrowed: frames are gradients (frame/gradient_work.h); NULL: images */
+    skg_scatterer *scatterer;           /* of the plan; NULL: images of the primary alone */
+    struct skg_gradient_work *gradient; /* frames are the passes of a gradient; NULL: frames are images */
     skg_outcome *outcome; /* takes what is known of a frame when it is enqueued, and remembers warnings */
     skg_frame_output *outputs; /* [output_count] */
     int64_t output_count;

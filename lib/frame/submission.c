@@ -1,6 +1,7 @@
 #include "frame/submission.h"
 
 #include "frame/frame.h"
+#include "frame/gradient_run.h"
 #include "frame/held.h"
 #include "plan/choose.h"
 
@@ -18,7 +19,6 @@ static skg_status enqueue_output(skg_job *job, const skg_frame_output *output, i
     work->shows = output->to.kind;
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
     SKG_TRY(skg_frame_enqueue(job, work));
-    if (job->gradient) return SKG_OK;
     return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log);
 }
 
@@ -31,6 +31,14 @@ static skg_status enqueue_outputs(skg_job *job, int64_t index, skg_frame_work *w
     return SKG_OK;
 }
 
+/* One pass of a gradient. */
+static skg_status enqueue_gradient(skg_job *job, int64_t pass, skg_frame_work *work) {
+    if (pass == 0) SKG_TRY(skg_gradient_begin(job));
+    work->lengths_of = -1;
+    work->pass = pass;
+    return skg_frame_enqueue(job, work);
+}
+
 static skg_status enqueue_frame(skg_job *job, const skg_frame *frames, const double **poses) {
     skg_machine *machine = job->machine;
     const int64_t index = job->enqueued;
@@ -38,9 +46,9 @@ static skg_status enqueue_frame(skg_job *job, const skg_frame *frames, const dou
     skg_view view;
     skg_frame frame;
     skg_frame_work work = {.view = &view, .poses = poses, .meshes = job->then.meshes, .frame = &frame};
-    SKG_TRY(skg_held_frame_read(job, frames, index, &frame, &view, poses, &work.noise));
+    SKG_TRY(skg_held_frame_read(job, frames, job->gradient ? 0 : index, &frame, &view, poses, &work.noise));
     SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
-    SKG_TRY(enqueue_outputs(job, index, &work));
+    SKG_TRY(job->gradient ? enqueue_gradient(job, index, &work) : enqueue_outputs(job, index, &work));
     SKG_TRY(skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *bad_vertex, bad_vertex));
     SKG_CL_TRY(
         clEnqueueMarkerWithWaitList(machine->context->device->queue, 0, NULL, &job->ends[job->enqueued]));
@@ -58,7 +66,11 @@ static skg_status enqueue_until(skg_job *job, const skg_frame *frames, int64_t e
                         "parts of the scene were added or put elsewhere before all frames of a job "
                         "were given to the device; wait for the job first");
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
-    while (status == SKG_OK && job->enqueued < end) status = enqueue_frame(job, frames, poses);
+    while (status == SKG_OK && job->enqueued < end) {
+        /* Passes of a gradient are waited for, so that there is time to cancel them. */
+        if (job->gradient && atomic_load(&job->cancelled)) break;
+        status = enqueue_frame(job, frames, poses);
+    }
     skg_free(&poses);
     return status;
 }
@@ -74,6 +86,7 @@ static const double RAY_S = 20e-9, TRIANGLE_S = 200e-9, GPU_UNIT = 20;
 
 /* How many frames are under way at once: at least two, so that the device does not wait for the host. */
 static int64_t frames_ahead(const skg_job *job) {
+    if (job->gradient) return 1;
     const skg_recipe *recipe = job->recipe;
     const skg_device_info *device = &job->machine->context->device->info;
     const double fine = (double)recipe->samples.fine;
@@ -139,7 +152,44 @@ skg_status skg_submission_finish(skg_job *job) {
     return skg_queue_flush(machine->context);
 }
 
+/* Enqueues what a gradient needs first: the image, if it has to be known, or the sums of the first pass. */
+static skg_status enqueue_first(skg_job *job, const skg_frame *frames, const double **poses) {
+    struct skg_gradient_work *gradient = job->gradient;
+    skg_machine *machine = job->machine;
+    skg_frame frame;
+    skg_frame_work work = {.view = &gradient->of_frame, .poses = poses, .frame = &frame, .lengths_of = -1};
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_held_frame_read(job, frames, 0, &frame, &gradient->of_frame, poses, &work.noise));
+    SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
+    if (gradient->image) {
+        job->gradient = NULL; /* the image is that of any frame */
+        status = enqueue_output(job, &gradient->shown, 0, &work);
+        job->gradient = gradient;
+    } else {
+        status = skg_frame_enqueue_sums(job, &work);
+    }
+    SKG_TRY(status);
+    SKG_CL_TRY(clEnqueueMarkerWithWaitList(machine->context->device->queue, 0, NULL, &gradient->ready));
+    return SKG_OK;
+}
+
+/* The passes of a gradient alternate between device and host, and follow when the job is asked or waited for. */
+static skg_status start_gradient(skg_job *job, const skg_frame *frames) {
+    skg_context *context = job->machine->context;
+    const double **poses = NULL;
+    SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
+    const skg_status status = enqueue_first(job, frames, poses);
+    skg_free(&poses);
+    SKG_TRY(status);
+    SKG_TRY(clear_counters(job->machine)); /* what is counted is that of the gradient */
+    SKG_TRY(skg_held_frames_copy(job, frames));
+    SKG_TRY(skg_queue_flush(context));
+    context->held = job;
+    return SKG_OK;
+}
+
 static skg_status start(skg_job *job, const skg_frame *frames, int at_once) {
+    if (job->gradient) return start_gradient(job, frames);
     skg_context *context = job->machine->context;
     const int64_t ahead = at_once || !is_for_later(job) ? job->count : frames_ahead(job);
     SKG_TRY(clear_counters(job->machine));

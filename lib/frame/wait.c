@@ -2,6 +2,7 @@
 
 #include "core/plain.h"
 #include "driver/driver.h"
+#include "frame/gradient_run.h"
 #include "frame/submission.h"
 
 #include <inttypes.h>
@@ -24,7 +25,15 @@ static skg_status outcome_of(skg_job *job) {
                                                 &job->results, &job->staging.log, job->outcome);
     if (job->failure != SKG_OK)
         return skg_fail(job->failure, "%s", job->sentence ? job->sentence : "out of host memory");
-    if (job->enqueued == job->count) return reported;
+    if (job->enqueued == job->count) {
+        if (job->gradient && reported >= 0) SKG_TRY(skg_gradient_finish(job));
+        return reported;
+    }
+    if (job->gradient)
+        return skg_fail(SKG_ERR_CANCELLED,
+                        "the job was cancelled: %" PRId64 " of %" PRId64
+                        " passes were made, and the results are not in place",
+                        job->enqueued, job->count);
     return skg_fail(SKG_ERR_CANCELLED,
                     "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place", job->enqueued,
                     job->count);

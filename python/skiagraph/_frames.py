@@ -74,7 +74,7 @@ def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progres
                 started.append((job, keep, count, begun))
                 sent += count
             job, keep, count, begun = started[0]
-            _wait(job)
+            wait(job)
             started.pop(0)
             if check(lib.skg_job_wait(job)) == RANGE:
                 ranged = text(lib.skg_last_error())
@@ -106,7 +106,7 @@ def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[An
     return job, keep
 
 
-def _wait(job: Any) -> None:
+def wait(job: Any) -> None:
     """Waits for a job with its eyes open: a signal is answered within a nap."""
     done = ffi.new("int32_t *")
     begun = time.monotonic()

@@ -1,13 +1,14 @@
 """Gradients: the derivative of a loss by the scene, from its derivative by an image. Private."""
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._frames import Batch
+from ._frames import Batch, wait
 from ._images import number_frames
 from ._interface import OK, ArgumentError, SceneError
 from ._library import check, ffi, integer, lib, struct, text
@@ -59,12 +60,13 @@ class Differentiable:
     def derivative(self, direction: Mapping[str, Any], quantity: str | None = None, **options: Any) -> NDArray[np.float64]:
         """The derivative of the image along a direction, [row, column], with bands [band, row, column].
 
-        direction: {"poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label: [n, 3]}}, of which any may be
-        missing: how fast each moves. quantity and options: of the image. The rest is as in gradient().
+        direction: {"poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label: [n, 3]}, "density": {label:
+        number}, "mu": {label: [energies]}}, of which any may be missing: how fast each moves or changes, in the units of
+        gradient(), whose results have the same shapes. quantity and options: of the image. The rest is as in gradient().
         """
         for name in direction:
-            if name not in NAMES[:4]:
-                raise ArgumentError(f"the direction has {name!r}; it is made of {', '.join(map(repr, NAMES[:4]))}")
+            if name not in NAMES:
+                raise ArgumentError(f"the direction has {name!r}; it is made of {', '.join(map(repr, NAMES))}")
         with self._state.calls():
             return _derivative(self._state, direction, {"quantity": quantity, **options})
 
@@ -94,20 +96,15 @@ def _gradient(state: State, weights: NDArray[np.float64], wrt: list[str], option
         wanted.vertices = keep
     coefficients = np.zeros((len(labels), 0))
 
-    def work(plan: Any, frame: Any) -> int:
+    def start(plan: Any, frame: Any, job: Any) -> int:
         nonlocal coefficients
-        status: int = 0
-        for _ in range(2 if "mu" in wrt else 1):  # the first call may find that changed materials have other energies
-            wanted.nodes = integer("skg_plan_node_count", plan)
-            coefficients = np.zeros((len(labels), wanted.nodes))
-            if "mu" in wrt:
-                wanted.attenuations = _pointer(coefficients)
-            status = lib.skg_plan_gradient(plan, frame, adjoint, wanted)
-            if status == OK or integer("skg_plan_node_count", plan) == wanted.nodes:
-                break
-        return status
+        wanted.nodes = integer("skg_plan_node_count", plan)
+        coefficients = np.zeros((len(labels), wanted.nodes))
+        if "mu" in wrt:
+            wanted.attenuations = _pointer(coefficients)
+        return int(lib.skg_plan_gradient_submit(plan, frame, adjoint, wanted, job))
 
-    _run(state, options, work)
+    _run(state, options, start, "mu" in wrt, lambda: (poses, source, detector, densities, vertices, coefficients))
     found: dict[str, Any] = {"poses": dict(zip(labels, poses)), "source": source, "detector": detector,
                              "vertices": dict(zip(labels, vertices)),
                              "density": {label: float(x) for label, x in zip(labels, densities)},
@@ -138,18 +135,53 @@ def _derivative(state: State, direction: Mapping[str, Any], options: dict[str, A
         keep.append(_vector(moves, parts[number].mesh.vertices.shape, f"vertices[{label!r}]"))
         keep[0][number] = _pointer(keep[-1])
     given.vertices = ffi.cast("double **", keep[0])
+    if "density" in direction:
+        keep.append(np.zeros(len(parts)))
+        for label, change in direction["density"].items():
+            keep[-1][state.number(label)] = float(change)
+        given.densities = _pointer(keep[-1])
     bands = options.get("bands")
     shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
     found = np.empty(shape)
-    _run(state, options, lambda plan, frame: lib.skg_plan_derivative(plan, frame, given, _pointer(found), ffi.NULL))
+
+    def start(plan: Any, frame: Any, job: Any) -> int:
+        given.nodes = integer("skg_plan_node_count", plan)
+        coefficients = np.zeros((len(parts), given.nodes))
+        for label, change in direction.get("mu", {}).items():
+            coefficients[state.number(label)] = _vector(change, (given.nodes,), f"mu[{label!r}]")
+        if "mu" in direction:
+            given.attenuations = _pointer(coefficients)
+        return int(lib.skg_plan_derivative_submit(plan, frame, given, _pointer(found), ffi.NULL, job))
+
+    _run(state, options, start, False, lambda: found)
     return found
 
 
-def _run(state: State, options: dict[str, Any], work: Callable[[Any, Any], int]) -> None:
-    """Does the work with the plan of the scene as it stands; a stale plan is made anew once."""
+def _run(state: State, options: dict[str, Any], start: Callable[[Any, Any, Any], int], has_nodes: bool,
+         results: Callable[[], Any]) -> None:
+    """Starts a job with the plan of the scene as it stands, and waits for it; a stale plan is made anew once.
+
+    has_nodes: the first call may find that changed materials have other energies. results: the memory that the job fills.
+    """
     batch = Batch(1, index=number_frames(state, 1, None, options), complete=state.completer())
     for again in (False, True):
         keep: list[Any] = []
-        if check(work(state.plan(options, None, again), batch.frames(0, 1, keep))) == OK:
+        plan, frames, job = state.plan(options, None, again), batch.frames(0, 1, keep), ffi.new("skg_job **")
+        nodes = integer("skg_plan_node_count", plan)
+        status = start(plan, frames, job)
+        if has_nodes and status != OK and integer("skg_plan_node_count", plan) != nodes:
+            status = start(plan, frames, job)
+        if check(status) == OK and _finish(state, job, results()) == OK:
             return
     raise SceneError(text(lib.skg_last_error()))
+
+
+def _finish(state: State, job: Any, results: Any) -> int:
+    """Waits for a job; after an interrupt it is cancelled, and its memory stays until it is over."""
+    try:
+        wait(job)
+    except BaseException:
+        lib.skg_job_cancel(job[0])
+        state.device.abandon(functools.partial(lib.skg_job_wait, job), (results,))
+        raise
+    return check(lib.skg_job_wait(job))

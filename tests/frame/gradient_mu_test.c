@@ -84,6 +84,24 @@ static void make_mu_gradient(skg_plan *plan, const setting *set, const double *a
     ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
 }
 
+/* Along the direction of one coefficient the image changes so that its sum with the adjoint is the gradient; both go the same way
+ * through the same lengths, forward and back. */
+static void check_direction(skg_plan *plan, const double *adjoint, int64_t count, int64_t number,
+                            double gradient, double size) {
+    static double derivative[CHANNELS_MAX * PIXELS];
+    double changes[PARTS * ENERGIES] = {0}, sum = 0;
+    skg_direction along_one;
+    skg_direction_init(&along_one);
+    changes[number] = 1;
+    along_one.attenuations = changes;
+    ck_skg(skg_plan_node_count(plan, &along_one.nodes));
+    ck_skg(skg_plan_derivative(plan, NULL, &along_one, derivative, NULL));
+    for (int64_t p = 0; p < count; p++) sum += adjoint[p] * derivative[p];
+    /* Sums in double, in another order. */
+    ck_assert_msg(fabs(sum - gradient) <= 1e-9 * size, "coefficient %d: %.12g, gradient %.12g", (int)number,
+                  sum, gradient);
+}
+
 START_TEST(coefficients_are_those_of_differences) {
     const setting *set = &settings[_i];
     static double adjoint[CHANNELS_MAX * PIXELS];
@@ -102,7 +120,6 @@ START_TEST(coefficients_are_those_of_differences) {
     ck_assert_int_eq(nodes, energies);
     make_mu_gradient(plan, set, adjoint, found, densities);
     make_mu_gradient(plan, set, adjoint, again, NULL);
-    skg_plan_release(&plan);
     for (int64_t p = 0; p < parts; p++) {
         double sum = 0, size = 0, of_all = 0;
         for (int e = 0; e < energies; e++) {
@@ -114,6 +131,7 @@ START_TEST(coefficients_are_those_of_differences) {
                           "%s, part %d, energy %d: %.12g, not %.12g of %.3g", set->name, (int)p, e, *of_node,
                           expected, size);
             ck_assert_double_gt(size, 0);
+            check_direction(plan, adjoint, count, p * energies + e, *of_node, size);
             sum += mu_of(p, e) * *of_node;
             of_all += mu_of(p, e) * size;
         }
@@ -121,6 +139,7 @@ START_TEST(coefficients_are_those_of_differences) {
         ck_assert_msg(fabs(sum - densities[p]) <= 1e-9 * of_all, "%s, part %d: %.12g, density %.12g",
                       set->name, (int)p, sum, densities[p]);
     }
+    skg_plan_release(&plan);
     release(&r);
 }
 END_TEST

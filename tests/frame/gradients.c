@@ -241,6 +241,8 @@ void make_derivative(skg_plan *plan, const direction *d, double *derivative) {
     skg_direction_init(&given);
     given.poses = d->poses[0], given.vertices = vertices;
     if (moves_view > 0) given.source = d->source, given.detector = d->detector;
+    for (int64_t p = 0; p < parts; p++)
+        if (d->densities[p] != 0) given.densities = d->densities;
     ck_skg(skg_plan_derivative(plan, NULL, &given, derivative, &saturated));
     ck_assert_int_eq(saturated, 0);
     for (int64_t p = 0; p < parts; p++) free(moves[p]);

@@ -50,7 +50,7 @@ void differentiate(skg_plan *plan, const skg_view *view, const direction *d, int
 void make_gradient(skg_plan *plan, const setting *set, const double *adjoint, result *r);
 double along(const result *r, const direction *d);
 
-/* The derivative of the image along a direction in which no density changes. */
+/* The derivative of the image along a direction. */
 void make_derivative(skg_plan *plan, const direction *d, double *derivative);
 
 /* d loss / d image: a number between -0.5 and 0.5 for every value. */

@@ -33,13 +33,19 @@ static skg_status by_everything(skg_plan *plan, const skg_view *view, void *weig
     TRY(skg_plan_node_count(plan, &gradient.nodes));
     if (gradient.nodes > NODES) return SKG_ERR_ARGUMENT;
     gradient.attenuations = attenuations;
-    return skg_plan_gradient(plan, NULL, &adjoint, &gradient);
+    skg_job *job = NULL;
+    int32_t done = 0;
+    TRY(skg_plan_gradient_submit(plan, NULL, &adjoint, &gradient, &job));
+    const skg_status asked = skg_job_test(job, &done);
+    TRY(skg_job_wait(&job)); /* the job is released, whatever became of the question */
+    return asked;
 }
 
 static skg_status along_a_direction(skg_plan *plan, float *image) {
     static const double twists[PARTS][6] = {{0}, {0.1, 0, 0.2, 0, 0.01, 0}};
     static const double away[3] = {0, -1, 0};
-    static double ones[3 * VERTICES], derivative[CHANNELS * PIXELS];
+    static const double changes[PARTS] = {0, 1, 0};
+    static double ones[3 * VERTICES], derivative[CHANNELS * PIXELS], coefficients[PARTS * NODES];
     const double *const of_parts[PARTS] = {NULL, ones, NULL};
     int64_t saturated = 0;
     skg_direction direction;
@@ -48,6 +54,11 @@ static skg_status along_a_direction(skg_plan *plan, float *image) {
     direction.poses = *twists;
     direction.vertices = of_parts;
     direction.source = away;
+    direction.densities = changes;
+    TRY(skg_plan_node_count(plan, &direction.nodes));
+    if (direction.nodes > NODES) return SKG_ERR_ARGUMENT;
+    coefficients[direction.nodes] = 0.01; /* of part 1 at the first energy */
+    direction.attenuations = coefficients;
     TRY(skg_plan_derivative(plan, NULL, &direction, derivative, &saturated));
     for (int i = 0; i < PIXELS; i++) image[i] = (float)derivative[i];
     return SKG_OK;

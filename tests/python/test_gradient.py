@@ -85,8 +85,8 @@ def test_forward_and_reverse_agree(scene):
 
 
 def test_what_is_wrong_is_said(scene):
-    with pytest.raises(sk.ArgumentError, match="'density'"):
-        scene.derivative({"density": {"inner": 1}})
+    with pytest.raises(sk.ArgumentError, match="'colour'"):
+        scene.derivative({"colour": {"inner": 1}})
     with pytest.raises(sk.ArgumentError, match="source has the shape"):
         scene.derivative({"source": [1, 2]})
     with pytest.raises(sk.ArgumentError, match="'colour'"):
@@ -167,3 +167,24 @@ def test_torch_by_its_own_check(scene):
     # central differences over 2e-5 mm: a hit that changes its face changes its slope by that much, and the sum over 768 pixels
     # of numbers of order 1 is rounded by 1e-13, which is 1e-8 of the differences; torch's own tolerances are 1e-3 and 1e-5
     assert torch.autograd.gradcheck(loss, (rows, source), eps=1e-5, atol=1e-5, rtol=1e-3)
+
+
+def test_directions_of_density_and_coefficients(scene):
+    scene.beam = sk.Beam([40, 60, 90], [50, 80, 30])
+    given = weights((24, 32))
+    options = {"quantity": "attenuation", "precision": "double"}
+    found = scene.gradient(given, wrt=("density", "mu"), **options)
+    along = scene.derivative({"density": {"inner": 0.5}}, **options)
+    size = np.abs(given * along).sum()
+    # the same sums forward and back
+    assert float((given * along).sum()) == pytest.approx(0.5 * found["density"]["inner"], abs=1e-9 * size)
+    change = np.array([0.01, 0.0, 0.02])
+    along = scene.derivative({"mu": {"outer": change}}, **options)
+    size = np.abs(given * along).sum()
+    assert float((given * along).sum()) == pytest.approx(float(change @ found["mu"]["outer"]), abs=1e-9 * size)
+    with pytest.raises(sk.ArgumentError, match="the direction has 'colour'"):
+        scene.derivative({"colour": 1})
+    with pytest.raises(sk.ArgumentError, match="mu"):
+        scene.derivative({"mu": {"outer": [1, 2]}}, **options)
+    with pytest.raises(sk.ArgumentError, match="it has to be finite"):
+        scene.derivative({"density": {"outer": float("nan")}}, **options)

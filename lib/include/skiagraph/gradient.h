@@ -37,7 +37,7 @@ typedef struct {
     int64_t rows;
     /** Number of columns; it must be the image's. */
     int64_t columns;
-    /** The caller's memory; it is read before the call returns. */
+    /** The caller's memory; it is read before the call that submits returns. */
     const void *data;
     /** A cl_mem of the plan's context that holds it instead of data (opencl.h); NULL: data. */
     void *buffer;
@@ -83,11 +83,20 @@ typedef struct {
 
 SKG_INIT(skg_gradient)
 
-/** Makes the gradient of a loss for one frame, and waits for it.
+/** Starts the gradient of a loss for one frame: a job like those of frame.h, with skg_job_wait, skg_job_test, skg_job_progress, which
+ * counts the samples of the source and rays of a pixel that are drawn apart, and skg_job_cancel.
  *
  *     frame      the frame whose image the adjoint belongs to; NULL: as plan and scene stand
  *     adjoint    d loss / d image
- *     gradient   what is wanted, and where it goes
+ *     gradient   what is wanted, and where it goes: filled when the job was waited for. Undefined if the job fails or was cancelled
+ *     job        result
+ *     sums       the device is given the frame as far as its sums, and its image where the quantity is -ln of a mean; nothing if the
+ *                same frame was rendered just before, whose sums are taken. All else alternates between device and host, and is done
+ *                while the job is asked or waited for, or when another job is submitted to the context: each of these calls may
+ *                last as long as a pass
+ *     waits      for the number of hits, if parts compete by priority, and for the self-test, the first time; for nothing else
+ *     snapshot   frame, scene and an adjoint in host memory may be changed when the call returns. An adjoint in a cl_mem is read in the
+ *                order of the context's queue; whether its values are finite is known when the job is waited for
  *     errors     SKG_ERR_ARGUMENT if the adjoint has another size than the image, or a value that is not finite;
  *                SKG_ERR_UNSUPPORTED, with the reason, for half precision, scatter, leaky meshes, parts that reach the plane of
  *                the source, positions set on the device, and ratios to a flat field that differs from pixel to pixel if
@@ -95,11 +104,15 @@ SKG_INIT(skg_gradient)
  *                oblique scintillator, jaws, and a world with ratios or in a parallel beam
  *     range      SKG_RANGE if a derivative by a path length is not finite
  *     stale      SKG_STALE as skg_plan_submit */
+SKG_API skg_status skg_plan_gradient_submit(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
+                                            const skg_gradient *gradient, skg_job **job);
+
+/** Makes the gradient of a loss for one frame: skg_plan_gradient_submit and skg_job_wait. */
 SKG_API skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
                                      const skg_gradient *gradient);
 
-/** A direction: how fast parts, vertices, source and detector move. Prepare with skg_direction_init: nothing moves. Twists and axes
- * are those of skg_gradient. */
+/** A direction: how fast parts, vertices, source and detector move, and how fast matter changes. Prepare with skg_direction_init:
+ * nothing changes. Twists, axes and units are those of skg_gradient. All numbers have to be finite. */
 typedef struct {
     /** Set by skg_direction_init. */
     int32_t size;
@@ -113,19 +126,33 @@ typedef struct {
     const double *detector;
     /** [parts] of the positions of the mesh of each part: [vertices][3], or NULL for parts whose vertices stay. NULL: of no part. */
     const double *const *vertices;
+    /** [parts] of the density of each part over that of its material; NULL: none changes. It costs an image of path lengths for each
+     * part whose number is not 0. */
+    const double *densities;
+    /** [parts][nodes] of the attenuation coefficient of the material of each part at each energy of the plan, 1/mm; NULL: none
+     * changes. Likewise, and for each energy a pass over the image and 16 bytes for each of its rays. */
+    const double *attenuations;
+    /** Number of energies of `attenuations`: that of the plan (skg_plan_node_count). */
+    int64_t nodes;
 } skg_direction;
 
 SKG_INIT(skg_direction)
 
-/** Makes the derivative of a frame's image along a direction, and waits for it.
+/** Starts the derivative of a frame's image along a direction: a job as skg_plan_gradient_submit starts.
  *
  *     frame        NULL: as plan and scene stand
- *     direction    what moves
- *     derivative   result: [channels][rows][columns], in the plan's quantity for a unit of the direction
+ *     direction    what moves or changes; it may be changed when the call returns
+ *     derivative   result, when the job was waited for: [channels][rows][columns], in the plan's quantity for a unit of the direction
  *     saturated    result: number of slopes of faces at their corners that were cut off at 2^24 times the mean slope, because the
  *                  sums over hits are 64-bit integers; may be NULL
  *     limits       as above: faces that contain rays change the means of their pixels
- *     errors       as of skg_plan_gradient; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
+ *     job          result
+ *     errors       as of skg_plan_gradient_submit; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
+SKG_API skg_status skg_plan_derivative_submit(skg_plan *plan, const skg_frame *frame,
+                                              const skg_direction *direction, double *derivative,
+                                              int64_t *saturated, skg_job **job);
+
+/** Makes the derivative of a frame's image along a direction: skg_plan_derivative_submit and skg_job_wait. */
 SKG_API skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                        double *derivative, int64_t *saturated);
 

@@ -1,0 +1,38 @@
+#include "frame/derivative_density.h"
+
+#include "frame/gradient_density.h"
+#include "frame/gradient_nodes.h"
+#include "frame/gradient_pass.h"
+
+/* Adds the products of rates and slopes of all planes or nodes to a channel of the image. */
+static void add_products(const skg_job *job, const skg_pass *pass, int64_t count, const double *slopes,
+                         const double *rates, double *image) {
+    const int64_t columns = pass->camera.columns, rows = pass->camera.rows, fine = pass->fine;
+    const skg_weight_layout layout =
+        skg_attenuate_weight_layout(pass->main.raster, (int32_t)job->recipe->samples.fine);
+    for (int64_t k = 0; k < count; k++)
+        for (int64_t r = 0; r < rows; r++) {
+            const double *slope = slopes + k * layout.plane + r * layout.stride,
+                         *rate = rates + (k * rows + r) * columns;
+            double *to = image + r / fine * (columns / fine);
+            for (int64_t c = 0; c < columns; c++) to[c / fine] += slope[c] * rate[c];
+        }
+}
+
+skg_status skg_derivative_add_changes(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
+                                      int64_t channel) {
+    struct skg_gradient_work *gradient = job->gradient;
+    const skg_model *model = &job->recipe->model;
+    const int64_t size = job->recipe->view.rows * job->recipe->view.columns;
+    double *image = gradient->derivative + channel * size;
+    if (gradient->plane_changes) {
+        SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
+        SKG_TRY(skg_gradient_keep_planes(job, pass));
+        add_products(job, pass, model->planes, gradient->planes, gradient->plane_changes, image);
+    }
+    if (gradient->node_changes) {
+        SKG_TRY(skg_gradient_keep_nodes(job, pass, sums, factor));
+        add_products(job, pass, model->nodes, gradient->nodes, gradient->node_changes, image);
+    }
+    return SKG_OK;
+}

@@ -1,0 +1,32 @@
+#include "frame/derivative_rates.h"
+
+void skg_derivative_clear_rates(skg_job *job) {
+    skg_free(&job->gradient->plane_changes);
+    skg_free(&job->gradient->node_changes);
+}
+
+/* Adds a multiple of the lengths to the rates of one plane or node. */
+static void add_scaled(int64_t rays, double scale, const double *lengths, double *rates) {
+    for (int64_t i = 0; scale != 0 && i < rays; i++) rates[i] += scale * lengths[i];
+}
+
+skg_status skg_derivative_add_lengths(skg_job *job, const skg_pass *pass, int64_t part, const double *own,
+                                      const double *lengths) {
+    struct skg_gradient_work *gradient = job->gradient;
+    const skg_direction *direction = &gradient->direction;
+    const skg_model *model = &job->recipe->model;
+    const int64_t rays = pass->camera.rows * pass->camera.columns;
+    if (direction->densities) {
+        double **rates = &gradient->plane_changes;
+        if (!*rates) SKG_TRY(skg_alloc(model->planes * rays, sizeof **rates, "derivative", rates));
+        for (int64_t k = 0; k < model->planes; k++)
+            add_scaled(rays, direction->densities[part] * own[k], lengths, *rates + k * rays);
+    }
+    if (direction->attenuations) {
+        double **rates = &gradient->node_changes;
+        if (!*rates) SKG_TRY(skg_alloc(model->nodes * rays, sizeof **rates, "derivative", rates));
+        for (int64_t n = 0; n < model->nodes; n++)
+            add_scaled(rays, direction->attenuations[part * model->nodes + n], lengths, *rates + n * rays);
+    }
+    return SKG_OK;
+}

@@ -1,0 +1,20 @@
+#include "frame/gradient_work.h"
+
+void skg_gradient_work_release(struct skg_gradient_work **work) {
+    if (!*work) return;
+    struct skg_gradient_work *w = *work;
+    if (w->ready) clReleaseEvent(w->ready);
+    skg_free(&w->raw);
+    skg_free(&w->image);
+    skg_free(&w->adjoint);
+    skg_free(&w->poses);
+    skg_free(&w->densities);
+    skg_free(&w->needs_lengths);
+    skg_free(&w->planes);
+    skg_free(&w->attenuations);
+    skg_free(&w->nodes);
+    skg_free(&w->derivative);
+    skg_free(&w->plane_changes);
+    skg_free(&w->node_changes);
+    skg_free(work);
+}
