@@ -85,8 +85,8 @@ def test_forward_and_reverse_agree(scene):
 
 
 def test_what_is_wrong_is_said(scene):
-    with pytest.raises(sk.ArgumentError, match="'density'"):
-        scene.derivative({"density": {"inner": 1}})
+    with pytest.raises(sk.ArgumentError, match="'colour'"):
+        scene.derivative({"colour": {"inner": 1}})
     with pytest.raises(sk.ArgumentError, match="source has the shape"):
         scene.derivative({"source": [1, 2]})
     with pytest.raises(sk.ArgumentError, match="'colour'"):
