@@ -37,7 +37,7 @@ image = gvxr.computeXRayImage()                  # NumPy, [row, column], MeV
 | a label that is made again | the mesh is replaced; surface and material stay | two children with one label |
 | inner and outer surfaces | the inner ones displace the one outer surface; two outer ones are refused where there are inner ones | several outer ones |
 | `voxelise`, `getLastVoxelisation` of gVXR 2.0 | `voxeliseImplicitSurface`, `getImplicitSurfaceLastVoxelisation` | no longer there |
-| lengths through large triangles that lie oblique to the beam, near the source | exact | interpolated over the triangle: 7 % longer at the top of the tutorial's pyramid |
+| lengths through large triangles that lie oblique to the beam, near the source | exact | up to 7 % longer, at the top of the tutorial's pyramid |
 | photons of a tube without an exposure | those of 1 mAs | a spectrum with a total energy of 80 eV |
 
 ## The modules beside it
@@ -62,7 +62,7 @@ with the path of a wheel it takes that one.
 `python3 tests/python/gvxr_scripts.py FOLDER` runs the scripts and notebooks of a folder with the import alone changed, each in a
 copy of its whole project, and counts those that end without an error. A comment `# arguments: ...` at the top of a script gives
 it the words of a command line. On 25 November 2026, 58 public scripts and notebooks of 20 projects were run so, written out
-without comments and with other meshes where theirs are not public: 57 ended well, 47 of them at their own sizes and 10 with
+without comments and with other meshes where theirs are not public: 57 ended well, 48 of them at their own sizes and 9 with
 a detector 4 or 8 times coarser, and one of 1,030 images had not ended. Eleven take CIL, for which a stand-in stood. Some twenty more fail in
 gVXR 2.1 itself, or for want of packages or of files, and were left out.
 
