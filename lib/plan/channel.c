@@ -1,5 +1,5 @@
 #include "geometry/optics.h"
-#include "plan/recipe.h"
+#include "plan/inputs.h"
 
 #include <inttypes.h>
 #include <stdio.h>

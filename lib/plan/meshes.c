@@ -1,4 +1,4 @@
-#include "plan/recipe.h"
+#include "plan/inputs.h"
 
 #include "core/context.h"
 

@@ -169,6 +169,22 @@ def test_an_error_keeps_the_last_frame(solid, hub, keys, sentence):
     one.check(solid)
 
 
+def test_bands_are_shown_one_at_a_time(solid, hub):
+    solid.beam = sk.Beam.tube(80, mas=1)
+    one = Page(hub)
+    one.wish(bands=[20, 40, 60], channel=1)
+    both, step = solid.image("attenuation", bands=[20, 40, 60], index=0), HEADER.unpack_from(one.frames[-1])[6]
+    np.testing.assert_allclose(one.image(), both[1], atol=0.51 * step + 1e-6 * np.abs(both[1]).max())
+    assert np.abs(both[0] - both[1]).max() > 100 * step
+    frames = len(one.frames)
+    one.wish(bands=[20, 40, 60], channel=2)
+    assert "no band 2" in one.last("error")["error"] and len(one.frames) == frames
+    one.wish(bands=[40, 20])
+    assert '"bands": edge 2' in one.last("refused")["refused"]
+    one.wish()
+    one.check(solid)
+
+
 def test_frames_that_are_not_taken_are_dropped(solid, hub):
     one = Page(hub)
     one.ack()

@@ -20,6 +20,7 @@ from .._library import listed
 from .._picture import write_picture
 from ..view import View
 from .subject import Subject
+from .wish import Wish
 
 #: ms that an image may take while something is dragged, and the fewest pixels that it then has.
 _FLUENT, _FEWEST = 40, 4096
@@ -58,6 +59,8 @@ class Camera:
         subject = self.subject
         state, view = subject.state, subject.view()
         options: dict[str, Any] = {"quantity": subject.wish.quantity, "profile": True}
+        if subject.wish.bands:
+            options["bands"] = subject.wish.bands
         has_scatter = bool(state.plans.options(state.options_setup, {}, []).scatter)
         factor = self._factor(view) if drag and not has_scatter else 1
         is_draft = drag and (factor > 1 or has_scatter)
@@ -67,6 +70,8 @@ class Camera:
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
             image = _images.render(state, subject.batch(view), None, False, True, None, **options)
+        if subject.wish.bands:
+            image = image[subject.wish.channel]
         ms = 1000 * (time.perf_counter() - start)
         if not is_draft:
             self._whole += 1
@@ -91,7 +96,7 @@ def _coarse(view: View, factor: int) -> View:
                 row_step=view.row_step * (view.pixels[1] / rows), pixels=(columns, rows), projection=view.projection)
 
 
-def pack(frame: Frame, number: int, wish: int, quantity: str) -> bytes:
+def pack(frame: Frame, number: int, wish: Wish) -> bytes:
     """The header, and rows of 16-bit numbers between the least and the largest value."""
     image = frame.image.astype(np.float32, copy=False)
     is_finite = np.isfinite(image)
@@ -102,10 +107,10 @@ def pack(frame: Frame, number: int, wish: int, quantity: str) -> bytes:
     # what is no number is shown as the largest, too
     packed = np.clip(np.nan_to_num(numbers, nan=65535, posinf=65535, neginf=0), 0, 65535).astype("<u2")
     notes = _DRAFT * frame.is_draft | _INFINITE * (not is_finite.all()) | _RANGE * frame.is_outside
-    flat = listed("skg_channel", "skg_plan_channel", frame.plan)[0]["flat_field"]
+    flat = listed("skg_channel", "skg_plan_channel", frame.plan)[wish.channel]["flat_field"]
     rows, columns = image.shape
-    header = _HEADER.pack(b"SKLF", number, wish, columns, rows, low, step, flat, frame.ms, frame.factor,
-                          ENUMS["quantity"][quantity], notes)
+    header = _HEADER.pack(b"SKLF", number, wish.wish, columns, rows, low, step, flat, frame.ms, frame.factor,
+                          ENUMS["quantity"][wish.quantity], notes)
     rows16: bytes = packed.tobytes()
     return header + rows16
 

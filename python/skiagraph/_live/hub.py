@@ -194,7 +194,7 @@ class Hub:
         subject, number = self._subject, self._number + 1
         with self._state.calls():
             frame = self._camera.make(self._drag)
-            data = pack(frame, number, subject.wish.wish, subject.wish.quantity)
+            data = pack(frame, number, subject.wish)
             shot = describe.shot(subject, subject.view(), frame.plan, number, frame.ms, frame.is_draft)
             if not self._is_told:
                 self._is_told = True

@@ -64,7 +64,8 @@ class Subject:
         self._still: list[tuple[Mesh, NDArray[np.float64]]] = []
         if self.breathes and self._breath is None:
             self._still = [(part.mesh, part.mesh.vertices) for part in state.parts()]
-        self.wish = Wish(_later(self.wish.wish), phase=self._breath, quantity=self.wish.quantity)
+        self.wish = Wish(_later(self.wish.wish), phase=self._breath, quantity=self.wish.quantity, bands=self.wish.bands,
+                         channel=self.wish.channel)
         self.surfaces = self._surfaces()
         self.note()
 
@@ -83,6 +84,8 @@ class Subject:
             raise SceneError("the scene does not breathe: it has no key Breathing")
         if wish.projection is not None and wish.projection >= len(self.scan or ()):
             raise SceneError(f"the scene has no projection {wish.projection}")
+        if wish.channel >= max(1, len(wish.bands) - 1):
+            raise SceneError(f"\"channel\": the image has no band {wish.channel}")
         for key in wish.settings:
             if key.split(".")[0].strip().lower() in _OF_PARTS:
                 raise SceneError(f"{key}: in a notebook, parts are changed by Python, such as scene[\"liver\"].density = 1.06; the "
@@ -91,7 +94,7 @@ class Subject:
     def apply(self, wish: Wish) -> bool:
         """Makes the scene as the wish has it. Returns whether it needs other plans."""
         self.check(wish)
-        is_new = wish.quantity != self.wish.quantity
+        is_new = (wish.quantity, wish.bands) != (self.wish.quantity, self.wish.bands)
         if wish.settings != self.wish.settings:
             is_new = self._set(wish.settings) or is_new
         moves, before = wish.moves(), self.wish.moves()

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from .._interface import ENUMS
 
 _SETTINGS_MAX, _KEY_MAX, _LARGEST = 1000, 400, 1e9
+_BANDS_MAX = ENUMS["limit"]["channels_max"]
 KINDS = ("wish", "ack", "probe", "take", "measure")
 FORMATS = ("png", "tif", "mha")
 
@@ -35,6 +36,10 @@ class Wish:
     #: Of the scan; None: the scene's own view.
     projection: int | None = None
     quantity: str = "attenuation"
+    #: Edges of photon-counting bands in keV; none: one image of all energies.
+    bands: list[float] = field(default_factory=list)
+    #: Number of the band that is shown.
+    channel: int = 0
     play: bool = False
 
     def moves(self) -> dict[int, NDArray[np.float64]]:
@@ -139,6 +144,19 @@ def _quantity(value: Any) -> None:
         raise Refusal(f'"quantity" is not one of {", ".join(ENUMS["quantity"])}')
 
 
+def _bands(value: Any) -> None:
+    if not isinstance(value, list) or len(value) == 1 or len(value) > _BANDS_MAX + 1:
+        raise Refusal(f'"bands" is no list of 2 to {_BANDS_MAX + 1} edges in keV')
+    for number, edge in enumerate(value):
+        if not (_is_number(edge) and edge >= 0 and (number == 0 or edge > value[number - 1])):
+            raise Refusal(f'"bands": edge {number + 1} is not an energy in keV above the one before it')
+
+
+def _channel(value: Any) -> None:
+    if not (_is_whole(value) and 0 <= value < _BANDS_MAX):
+        raise Refusal('"channel" is no number of a band')
+
+
 _READERS: dict[str, Callable[[Any], None]] = {
     "wish": _number, "settings": _settings, "poses": _poses, "phase": _phase, "projection": _projection, "quantity": _quantity,
-    "play": _boolean("play")}
+    "bands": _bands, "channel": _channel, "play": _boolean("play")}

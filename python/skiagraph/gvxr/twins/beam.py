@@ -1,6 +1,7 @@
 """The beams of a twin."""
 from __future__ import annotations
 
+import inspect
 from collections.abc import Sequence
 from dataclasses import dataclass, field
 from enum import Enum
@@ -49,6 +50,8 @@ class TwinFlux:
         made = getattr(joined, "make_smoothing_spline" if name == "SmoothingSpline" else name, None)
         if made is None:
             raise ValueError(f"flux: {self.interpolator!r} is no interpolator of SciPy")
+        if keys and "method" not in inspect.signature(made.__init__).parameters:
+            raise UnsupportedError("the flux of this twin is joined by modified Akima splines, which need SciPy 1.13")
         return float(made(self.x, self.y, **keys)(energy))
 
     @staticmethod
