@@ -4,8 +4,8 @@
  * Lengths are signed sums over hits, so that a gather of all faces gives them. With A(c, p) for the sum over the faces of part c of
  * depth times what a mm of part p's material is worth, part p has A(p, p) less the sum of A(c, p) over the parts c inside it. A part
  * contributes what its material differs from that around it, so that the gather of the gradient gives A(c, c) - A(c, p); and its
- * fourth moments give A(c, p). Where priorities, a world or a frame's own densities change what a hit is worth, and for parts that
- * are of the material around them and contribute nothing, an image of path lengths is rendered instead. */
+ * fourth moments give A(c, p). A part of the material around it contributes nothing; it is drawn for its fourth moments. Where
+ * priorities, a world or a frame's own densities change what a hit is worth, an image of path lengths is rendered instead. */
 #include "frame/gradient_density.h"
 
 #include "frame/derivative_rates.h"
@@ -31,10 +31,6 @@ static void find_needs(const skg_job *job, const skg_frame_work *work, const skg
         needs[part] = 1;
         if (around >= 0) needs[around] = 1;
     }
-    for (int64_t p = 0; p < pass->scene->count; p++) {
-        const int64_t around = pass->scene->parts[p].inside;
-        if (around >= 0 && pass->parts[p].contributions == 0) needs[p] = needs[around] = 1;
-    }
 }
 
 /* Adds up what all parts around a part contribute. Returns the number of planes. */
@@ -49,21 +45,35 @@ static int32_t list_around(const skg_pass *pass, int64_t part, double *own, skg_
     return count;
 }
 
-skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, skg_surroundings *around) {
+skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, skg_surroundings *around,
+                                          skg_geometry_part **drawn) {
     const int64_t parts = pass->scene->count;
     int64_t nested = 0;
     int32_t *first = NULL;
     skg_contribution *list = NULL;
+    skg_geometry_part *all = NULL;
+    uint8_t *same = NULL;
     double *own = NULL;
+    *drawn = pass->parts;
     for (int64_t p = 0; p < parts; p++) nested += pass->scene->parts[p].inside >= 0;
     SKG_TRY(skg_staging_take(&job->staging, parts + 1, sizeof *first, "gradient", &first));
     SKG_TRY(skg_staging_take(&job->staging, nested * pass->planes + 1, sizeof *list, "gradient", &list));
+    SKG_TRY(skg_staging_take(&job->staging, parts, sizeof *all, "gradient", &all));
+    SKG_TRY(skg_staging_take(&job->staging, parts, sizeof *same, "gradient", &same));
     SKG_TRY(skg_staging_take(&job->staging, pass->planes + 1, sizeof *own, "gradient", &own));
+    for (int64_t s = 0; s < pass->priority.count; s++) same[pass->priority.parts[s]] = 1;
     for (int64_t p = 0; p < parts; p++) {
-        const int listed = pass->parts[p].contributions && pass->scene->parts[p].inside >= 0;
-        first[p + 1] = first[p] + (listed ? list_around(pass, p, own, list + first[p]) : 0);
+        all[p] = pass->parts[p];
+        const int competes = same[p],
+                  nests = pass->scene->parts[p].inside >= 0 && pass->scene->parts[p].mesh->closed;
+        first[p + 1] = first[p] + (nests && !competes ? list_around(pass, p, own, list + first[p]) : 0);
+        same[p] = (uint8_t)(all[p].contributions == 0 && first[p + 1] > first[p]);
+        if (!same[p]) continue;
+        all[p].contributions = 1;
+        all[p].contribution = list + first[p];
+        *drawn = all;
     }
-    *around = (skg_surroundings){.first = first, .list = list};
+    *around = (skg_surroundings){.first = first, .list = list, .same = same};
     return SKG_OK;
 }
 

@@ -6,8 +6,10 @@
 #include "frame/job.h"
 #include "geometry/forces.h"
 
-/* Lists what stands around the parts of a pass. Its arrays are staged. */
-skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, skg_surroundings *around);
+/* Lists what stands around the parts of a pass. Arrays are staged. drawn: the pass's parts, or a copy in which parts of the
+ * material around them are drawn, too. */
+skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, skg_surroundings *around,
+                                          skg_geometry_part **drawn);
 
 /* Adds the densities of a pass that take no path lengths, and marks the others in gradient->needs_lengths. sums: [parts] of the
  * gather of the pass with what stands around its parts */

@@ -225,15 +225,33 @@ skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums
                                    &job->staging.log);
 }
 
+/* Gathers with the parts as `drawn` has them. The tables of the pass are put back. */
+static skg_status gather(skg_job *job, const skg_pass *pass, const skg_surroundings *around,
+                         skg_geometry_part *drawn, skg_gathered *gathered) {
+    skg_machine *machine = job->machine;
+    skg_geometry *geometry = &machine->geometry;
+    const int64_t state = geometry->state;
+    skg_pass other = *pass;
+    other.parts = drawn;
+    if (drawn != pass->parts)
+        SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, drawn, pass->scale.scale));
+    SKG_TRY(skg_gradient_gather(&other, geometry, &machine->hits, around, &machine->gradient, &job->staging,
+                                gathered));
+    if (drawn != pass->parts)
+        SKG_TRY(
+            skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, pass->scale.scale));
+    geometry->state = state; /* the sums of the pass stand as before */
+    return SKG_OK;
+}
+
 /* Everything but the densities that need path lengths. */
 static skg_status add_gathered(skg_job *job, const skg_frame_work *work, int64_t number, const skg_pass *pass,
-                               const skg_surroundings *around, skg_force_sums *of_parts) {
+                               const skg_surroundings *around, skg_geometry_part *drawn,
+                               skg_force_sums *of_parts) {
     struct skg_gradient_work *gradient = job->gradient;
-    skg_machine *machine = job->machine;
     skg_gathered gathered;
     skg_force_sums all = {0};
-    SKG_TRY(skg_gradient_gather(pass, &machine->geometry, &machine->hits, around, &machine->gradient,
-                                &job->staging, &gathered));
+    SKG_TRY(gather(job, pass, around, drawn, &gathered));
     SKG_TRY(skg_gradient_add_faces(job, pass, &gathered, gradient->wanted.vertices, of_parts));
     add_sums(pass->scene->count, of_parts, gradient->poses, &all);
     if (gradient->wanted.source || gradient->wanted.detector)
@@ -246,12 +264,13 @@ skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64
                                  const skg_pass *pass, const skg_sums *sums, double factor) {
     struct skg_gradient_work *gradient = job->gradient;
     skg_force_sums *of_parts = NULL;
+    skg_geometry_part *drawn = pass->parts;
     skg_surroundings around;
     SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 0));
-    if (gradient->wanted.densities) SKG_TRY(skg_gradient_find_surroundings(job, pass, &around));
+    if (gradient->wanted.densities) SKG_TRY(skg_gradient_find_surroundings(job, pass, &around, &drawn));
     SKG_TRY(skg_alloc(pass->scene->count, sizeof *of_parts, "gradient", &of_parts));
     const skg_status status =
-        add_gathered(job, work, number, pass, gradient->wanted.densities ? &around : NULL, of_parts);
+        add_gathered(job, work, number, pass, gradient->wanted.densities ? &around : NULL, drawn, of_parts);
     skg_free(&of_parts);
     SKG_TRY(status);
     if (gradient->wanted.densities && skg_gradient_needs_lengths(gradient, pass->scene->count)) {

@@ -24,6 +24,9 @@ int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
 typedef struct {
     const int32_t *first; /* [parts + 1] those of part p are list[first[p]] to list[first[p + 1] - 1] */
     const skg_contribution *list;
+    /* [parts] 1: the part is of the material around it. It has one of those contributions so that it is drawn, and only its
+     * fourth moments count. */
+    const uint8_t *same;
 } skg_surroundings;
 
 /* What the gather of a pass leaves. */

@@ -81,7 +81,8 @@ void skg_gradient_find_scales(const skg_gather_run *run, const double *most, con
     for (int64_t p = 0; p < parts; p++) {
         if (run->pass->parts[p].contributions == 0) continue;
         const double bound = hit_bound(run, p, most, competing) * fmax(pixels_of(run, p) * far, 4096);
-        if (bound > 0) scales[p] = scale_for(bound), units[p] = reference_of(run, p) / scales[p];
+        if (bound > 0 && !(around && around->same[p]))
+            scales[p] = scale_for(bound), units[p] = reference_of(run, p) / scales[p];
         const int32_t layers = run->pass->scene->parts[p].mesh->layers;
         const double of_around = around ? around_bound(run, p, most, around) * (layers > 1 ? layers : 1) : 0;
         if (of_around > 0) {
