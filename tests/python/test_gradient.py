@@ -67,6 +67,20 @@ def test_coefficients_make_up_the_density(scene):
             assert found["mu"][name] @ sk.Material(matter).attenuation(energies) / 10 == pytest.approx(found["density"][name], rel=1e-6)
 
 
+@pytest.mark.parametrize("precision", ["double", "single"])
+def test_a_part_of_the_material_around_it_has_a_density(scene, precision):
+    """It adds nothing to the image, but more of it would; a third part inside it, and its own child, count as well."""
+    scene["inner"].material = "water"
+    scene.add("core", sk.Mesh.sphere(4, 12), material="Al", inside="inner", pose=sk.translate(5, -3, 2))
+    given = weights((24, 32))
+    found = scene.gradient(given, wrt=("density", "poses"), quantity="attenuation", precision=precision)
+    mu, tolerance = sk.Material("water").attenuation(60) / 10, {"double": 1e-9, "single": 1e-4}[precision]
+    for label in ("outer", "inner"):
+        length = scene.lengths(label, precision="double")
+        assert found["density"][label] == pytest.approx(mu * float((length * given).sum()), rel=tolerance, abs=tolerance * mu * length.sum())
+    assert (found["poses"]["inner"] == 0).all() and (found["poses"]["core"] != 0).any()
+
+
 def test_forward_and_reverse_agree(scene):
     given = weights((24, 32))
     rng = np.random.default_rng(2)
