@@ -17,8 +17,8 @@ static const double ends[DEPTHS] = {0.2, 0.6, 1}, layer = 0.1, energy = 40;
 /* Noise is blurred along rows and columns by the samples beside, own, beside. The DQE at frequency 0. */
 static const double beside = -0.25, own = 1.5, dqe_zero = 0.8;
 
-/* keV per pixel, of the test of variances. */
-static const double electronic = 300, step = 50;
+/* keV per pixel, of the test of variances. Steps have a third of the variance of the electronic noise. */
+static const double electronic = 300, step = 600;
 
 static skg_detector_blur lines(int64_t columns, const double *along_row, int64_t rows,
                                const double *along_column) {

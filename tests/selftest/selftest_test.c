@@ -164,7 +164,7 @@ static const struct {
     {"project.cl", "(p->anchor_x + across, p->anchor_y + down, r, t)",
      "(p->anchor_x + across, p->anchor_y + down, r * 1.0000001f, t)", SKG_SELF_TEST_PARALLEL},
     /* Strategies; the loops of draw.clh: tiny, narrow, rows, tall, spans, steep; what only large triangles take. */
-    {"raster_copies.cl", "blocks, triangle, end);", "blocks, triangle, end - 1);", SKG_SELF_TEST_COPIES},
+    {"raster_copies.cl", "blocks, triangle, last);", "blocks, triangle, last - 1);", SKG_SELF_TEST_COPIES},
     {"raster_passes.cl", "blocks, 0, layout->triangles);", "blocks, 0, layout->triangles - 1);",
      SKG_SELF_TEST_PASSES},
     {"raster_passes.cl", "(p.y, q.y, r.y, s.y)", "(p.y, q.y, r.y, r.y)", SKG_SELF_TEST_SIDE},
