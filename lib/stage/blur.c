@@ -15,6 +15,7 @@ enum { SAMPLES_MAX = 4095 };
 typedef struct {
     cl_kernel down_kernel, across_kernel, variance_kernel;
     skg_buffer down, across; /* weights */
+    int32_t has_weights, reserved;
 } blur_type;
 
 struct skg_blur {
@@ -160,10 +161,12 @@ static skg_status get_program(const skg_blur *blur, int is_double, const char *f
 
 static skg_status get_weights(const skg_blur *blur, int is_double, blur_type *type) {
     const int64_t down = blur->separable ? blur->rows : 1;
-    if (type->across.memory) return SKG_OK;
+    if (type->has_weights) return SKG_OK;
     SKG_TRY(upload(blur, is_double, down, blur->down, BLUR_ROWS - 1, &type->down));
-    return upload(blur, is_double, blur->columns * (blur->separable ? 1 : blur->rows), blur->across, 0,
-                  &type->across);
+    SKG_TRY(upload(blur, is_double, blur->columns * (blur->separable ? 1 : blur->rows), blur->across, 0,
+                   &type->across));
+    type->has_weights = 1;
+    return SKG_OK;
 }
 
 static skg_status get_type(skg_blur *blur, int is_double, blur_type **got) {
