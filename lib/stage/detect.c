@@ -7,6 +7,7 @@ typedef struct {
     cl_kernel kernels[2];   /* with noise and steps, and of the mean */
     cl_kernel variances[2]; /* of values, and of their -ln */
     skg_buffer factor;
+    int32_t has_factor, reserved;
 } detector_type;
 
 struct skg_detector {
@@ -73,10 +74,12 @@ static skg_status get_factor(skg_detector *detector, int is_double) {
     skg_buffer *factor = &detector->type[is_double].factor;
     const size_t element = is_double ? sizeof(double) : sizeof(float);
     float rounded[SKG_CHANNELS_MAX];
-    if (factor->memory) return SKG_OK;
+    if (detector->type[is_double].has_factor) return SKG_OK;
     for (int32_t c = 0; c < detection->channels; c++) rounded[c] = (float)detector->factor[c];
-    return skg_buffer_write(detector->context, factor, detection->channels * (int64_t)element,
-                            is_double ? (const void *)detector->factor : rounded, "detector");
+    SKG_TRY(skg_buffer_write(detector->context, factor, detection->channels * (int64_t)element,
+                             is_double ? (const void *)detector->factor : rounded, "detector"));
+    detector->type[is_double].has_factor = 1;
+    return SKG_OK;
 }
 
 static skg_status get_kernel(skg_detector *detector, int is_double, int of_mean, cl_kernel *kernel) {
