@@ -128,6 +128,7 @@ def test_the_list(twin, tmp_path, monkeypatch):
 
 
 def test_the_twins_of_gvxr():
+    pytest.importorskip("scipy", minversion="1.13")
     try:
         described = utils.getDigitalTwinList()
     except FileNotFoundError as missing:
