@@ -63,7 +63,7 @@ def planes(state: State, quantity: str | None, components: bool, options: dict[s
 
     def submit(plan: Any) -> Any:
         used.append(plan)
-        return together(found, choose)(plan)
+        return together(list(found), choose)(plan)
 
     with state.calls():
         compute(state, submit, batch, found[0], False, True, bool(channels), {"quantity": quantity, **options})
