@@ -16,6 +16,10 @@ def program():
     return shutil.which(os.environ.get("CHROMIUM", "chromium"))
 
 
+class PageLeft(RuntimeError):
+    """The page went away while it was asked: it is loaded anew, or another one."""
+
+
 class Browser:
     """One page of a browser."""
 
@@ -58,7 +62,8 @@ class Browser:
             answer = json.loads(self.socket.receive_raw()[1])
             if answer.get("id") == self.calls:
                 if "error" in answer:
-                    raise RuntimeError(f"{method}: {answer['error']}")
+                    left = any(word in answer["error"].get("message", "") for word in ("navigated", "context was destroyed"))
+                    raise (PageLeft if left else RuntimeError)(f"{method}: {answer['error']}")
                 return answer["result"]
             if answer.get("method") == "Runtime.exceptionThrown":
                 self.events.append(answer["params"]["exceptionDetails"])
@@ -77,11 +82,14 @@ class Browser:
         return result["result"].get("value")
 
     def until(self, script, seconds=60):
-        """Waits until an expression is true."""
+        """Waits until an expression is true, also of a page that is being loaded."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:
-            if self.run(script):
-                return
+            try:
+                if self.run(script):
+                    return
+            except PageLeft:
+                pass
             time.sleep(0.03)
         raise TimeoutError(f"{script} stays false; errors: {json.dumps(self.events)[:2000]}")
 
