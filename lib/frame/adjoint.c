@@ -56,12 +56,19 @@ static skg_status check_finite(const char *call, const skg_adjoint *a, const dou
     return SKG_OK;
 }
 
+enum { LANES = 4 }; /* sums that do not wait for each other */
+
 static skg_status take_values(struct skg_gradient_work *gradient, const void *from) {
     const skg_adjoint *a = &gradient->given;
-    const int is_double = a->type == SKG_TYPE_FLOAT64;
-    for (int64_t i = 0; i < a->channels * a->rows * a->columns; i++)
-        gradient->adjoint[i] = is_double ? ((const double *)from)[i] : (double)((const float *)from)[i];
-    return check_finite(gradient->call, a, gradient->adjoint);
+    const int64_t count = a->channels * a->rows * a->columns;
+    const double *doubles = a->type == SKG_TYPE_FLOAT64 ? from : NULL;
+    const float *floats = from;
+    double *to = gradient->adjoint, odd[LANES] = {0}; /* 0 unless a value is not finite */
+    for (int64_t i = 0; i < count; i++) {
+        to[i] = doubles ? doubles[i] : (double)floats[i];
+        odd[i % LANES] += to[i] - to[i];
+    }
+    return odd[0] + odd[1] + odd[2] + odd[3] == 0 ? SKG_OK : check_finite(gradient->call, a, to);
 }
 
 skg_status skg_adjoint_read(skg_job *job) {
@@ -158,6 +165,6 @@ skg_status skg_adjoint_send(skg_job *job, const double *adjoint) {
                                 count * (int64_t)sizeof *adjoint, adjoint, "adjoint");
     SKG_TRY(skg_staging_take(&job->staging, count, sizeof *rounded, "adjoint", &rounded));
     for (int64_t i = 0; i < count; i++) rounded[i] = (float)adjoint[i];
-    return skg_buffer_write(machine->context, &machine->gradient.adjoint, count * (int64_t)sizeof *rounded,
-                            rounded, "adjoint");
+    return skg_staging_write(&job->staging, &machine->gradient.adjoint, count * (int64_t)sizeof *rounded,
+                             rounded, "adjoint");
 }

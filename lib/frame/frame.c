@@ -140,14 +140,16 @@ static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const s
                                    .strategy = recipe->leaky_strategy,
                                    .tile = recipe->options.tile};
     cl_int *extents = NULL;
-    SKG_TRY(update_meshes(job));
-    SKG_TRY(skg_geometry_project(machine->context, &machine->geometry,
-                                 skg_raster_projection(pass->main.raster), &pass->camera, pass->parts,
-                                 pass->scale.scale, log));
+    const cl_kernel projection = skg_raster_projection(pass->main.raster);
     /* What is found from the sums of a frame that was rendered last needs none besides those that stand there; gradients need its
      * vertices. */
     const int from_sums =
         job->gradient || work->shows == SKG_OUTPUT_MEAN || work->shows == SKG_OUTPUT_VARIANCE;
+    SKG_TRY(update_meshes(job));
+    SKG_TRY(skg_geometry_weigh(machine->context, &machine->geometry, &pass->camera, pass->parts,
+                               pass->scale.scale));
+    if (!from_sums || !skg_geometry_is_projected(&machine->geometry, projection))
+        SKG_TRY(skg_geometry_project(machine->context, &machine->geometry, projection, log));
     if (from_sums && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
     if (pass->priority.count)

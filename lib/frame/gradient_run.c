@@ -23,7 +23,8 @@ static void widen_image(const skg_job *job) {
 
 skg_status skg_gradient_begin(skg_job *job) {
     struct skg_gradient_work *gradient = job->gradient;
-    const cl_int code = skg_event_wait(gradient->ready);
+    const int is_read = gradient->raw || gradient->image;
+    const cl_int code = is_read ? skg_event_wait(gradient->ready) : CL_SUCCESS;
     if (code != CL_SUCCESS) return skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
     widen_image(job);
     if (gradient->forward) return SKG_OK;

@@ -47,7 +47,8 @@ static skg_status enqueue_frame(skg_job *job, const skg_frame *frames, const dou
     skg_frame frame;
     skg_frame_work work = {.view = &view, .poses = poses, .meshes = job->then.meshes, .frame = &frame};
     SKG_TRY(skg_held_frame_read(job, frames, job->gradient ? 0 : index, &frame, &view, poses, &work.noise));
-    SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
+    if (!job->gradient || index > 0) /* what a gradient needs first was projected for its first pass, too */
+        SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
     SKG_TRY(job->gradient ? enqueue_gradient(job, index, &work) : enqueue_outputs(job, index, &work));
     SKG_TRY(skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *bad_vertex, bad_vertex));
     SKG_CL_TRY(

@@ -77,6 +77,11 @@ static skg_status get_batches(const skg_gather_run *run, cl_program *program) {
     return skg_kernels_get(run->context, &run->pass->kernels, 5, files, SKG_DEFINES(defines), program);
 }
 
+/* What the kernels of gradient.cl are for: all faces, or what priorities add. */
+static int needs_faces(const skg_gather_run *run) {
+    return !in_batches(run) || run->pass->priority.count > 0;
+}
+
 static skg_status begin(skg_gather_run *run) {
     static const char *const files[] = {"pixel.clh", "hits.cl", "slopes.cl", "gradient.cl"};
     const skg_priority *priority = &run->pass->priority;
@@ -92,6 +97,7 @@ static skg_status begin(skg_gather_run *run) {
         .stride = (SKG_INT)layout.stride,
         .plane = (SKG_INT)layout.plane,
         .planes = (SKG_INT)layout.planes};
+    if (!needs_faces(run)) return SKG_OK;
     return skg_kernels_get(run->context, &run->pass->kernels, 4, files, SKG_DEFINES(defines), &run->program);
 }
 
@@ -133,7 +139,7 @@ static skg_status upload_reals(const skg_gather_run *run, int64_t count, const d
         return skg_buffer_write(run->context, buffer, count * (int64_t)sizeof *numbers, numbers, "gradient");
     SKG_TRY(skg_staging_take(run->staging, count, sizeof *rounded, "gradient", &rounded));
     for (int64_t i = 0; i < count; i++) rounded[i] = (float)numbers[i];
-    return skg_buffer_write(run->context, buffer, count * (int64_t)sizeof *rounded, rounded, "gradient");
+    return skg_staging_write(run->staging, buffer, count * (int64_t)sizeof *rounded, rounded, "gradient");
 }
 
 /* The hits of competing parts are listed still, by skg_hits_settle of this pass. */
@@ -200,7 +206,7 @@ static skg_status run_faces(const skg_gather_run *run) {
     const skg_gradient_memory *m = run->memory;
     SKG_TRY(reserve_sums(run));
     if (in_batches(run)) SKG_TRY(run_batches(run));
-    if (in_batches(run) && run->pass->priority.count == 0) return SKG_OK;
+    if (!needs_faces(run)) return SKG_OK;
     const skg_work_size work = {
         2, {geometry->triangles, run->context->device->info.gpu ? SLICES : 1}, {GROUP, 1}};
     const skg_argument arguments[] = {
@@ -243,12 +249,12 @@ static skg_status send_around(const skg_gather_run *run) {
             rounded[c] = (skg_contribution_float){.weight = (float)list[c].weight, .plane = list[c].plane};
         }
     }
-    SKG_TRY(skg_buffer_write(run->context, &m->first_around, (parts + 1) * (int64_t)sizeof(int32_t),
-                             run->around->first, "gradient"));
-    return run->is_double ? skg_buffer_write(run->context, &m->around, (count + 1) * (int64_t)sizeof *list,
-                                             list, "gradient")
-                          : skg_buffer_write(run->context, &m->around, (count + 1) * (int64_t)sizeof *rounded,
-                                             rounded, "gradient");
+    SKG_TRY(skg_staging_write(run->staging, &m->first_around, (parts + 1) * (int64_t)sizeof(int32_t),
+                              run->around->first, "gradient"));
+    return run->is_double ? skg_staging_write(run->staging, &m->around, (count + 1) * (int64_t)sizeof *list,
+                                              list, "gradient")
+                          : skg_staging_write(run->staging, &m->around,
+                                              (count + 1) * (int64_t)sizeof *rounded, rounded, "gradient");
 }
 
 skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometry,
@@ -264,10 +270,10 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     SKG_TRY(skg_staging_take(staging, 2 * parts, sizeof *units, "gradient", &units));
     if (!memory->gathered)
         SKG_TRY(skg_alloc(4 * geometry->triangles, sizeof *memory->gathered, "gradient", &memory->gathered));
+    if (around) SKG_TRY(send_around(&run)); /* while the weights are made, which the next call waits for */
     SKG_TRY(find_max(&run, most));
     skg_gradient_find_scales(&run, most, around, scales, units);
     SKG_TRY(upload_reals(&run, 2 * parts, scales, &memory->scales));
-    if (around) SKG_TRY(send_around(&run));
     SKG_TRY(run_slopes(&run));
     SKG_TRY(run_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,

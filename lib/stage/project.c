@@ -12,6 +12,7 @@ static size_t real_size(const skg_geometry *geometry) {
 
 skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry) {
     const cl_int none = INT32_MAX;
+    geometry->projected_state = 0;
     SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->bad.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
     return SKG_OK;
@@ -180,9 +181,8 @@ void skg_geometry_release(skg_geometry *geometry) {
 }
 
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,
-                                const skg_camera *camera, const skg_geometry_part *part, double scale,
                                 skg_stage_log *log) {
-    SKG_TRY(skg_geometry_weigh(context, geometry, camera, part, scale));
+    geometry->projected_state = 0;
     const skg_raster_layout layout = {.parts = (SKG_INT)geometry->parts,
                                       .vertices = (SKG_INT)geometry->vertices};
     const skg_argument arguments[] = {
@@ -196,7 +196,15 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl
     const int on_gpu = context->device->info.gpu;
     const int64_t run = on_gpu ? 1 : SKG_CPU_RUN;
     const skg_work_size work = {1, {(geometry->vertices + run - 1) / run}, {on_gpu ? 64 : 1}};
-    return SKG_LAUNCH(context, kernel, "project", &work, arguments, log);
+    SKG_TRY(SKG_LAUNCH(context, kernel, "project", &work, arguments, log));
+    geometry->projected_state = geometry->state;
+    geometry->projected_by = kernel;
+    return SKG_OK;
+}
+
+int skg_geometry_is_projected(const skg_geometry *geometry, cl_kernel kernel) {
+    return geometry->projected_state != 0 && geometry->projected_state == geometry->state &&
+           geometry->projected_by == kernel;
 }
 
 int64_t skg_geometry_bytes(const skg_geometry *geometry) {

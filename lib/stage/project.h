@@ -41,14 +41,16 @@ skg_status skg_geometry_part_vertices(skg_context *context, skg_geometry *geomet
  * says where merged vertices of a leaky mesh have parted. */
 skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging);
 
-/* Enqueues that no vertex was bad: frames are independent, so each begins with it. */
+/* Enqueues that no vertex was bad: frames are independent, so each begins with it. Whether vertices are bad is found as they are
+ * projected, so that none are projected since then. */
 skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry);
 
-/* Enqueues one frame's part table and projection. kernel: the raster's (skg_raster_projection); part: [parts]; scale: of the
- * accumulators (multiplies weights). */
+/* Enqueues one frame's projection, by its part table (skg_geometry_weigh). kernel: the raster's (skg_raster_projection) */
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,
-                                const skg_camera *camera, const skg_geometry_part *part, double scale,
                                 skg_stage_log *log);
+
+/* Whether what stands projected is of the tables and vertices on the device, by this kernel, since no vertex was bad. */
+int skg_geometry_is_projected(const skg_geometry *geometry, cl_kernel kernel);
 
 /* Bytes on the device. */
 int64_t skg_geometry_bytes(const skg_geometry *geometry);

@@ -14,6 +14,10 @@ typedef struct {
 skg_status skg_staging_take(skg_staging *staging, int64_t count, size_t size, const char *what,
                             void *pointer_address);
 
+/* Enqueues a write of a staged block, for which the buffer is made large enough. what: for the message. */
+skg_status skg_staging_write(skg_staging *staging, skg_buffer *buffer, int64_t bytes, const void *staged,
+                             const char *what);
+
 /* Enqueues a read of a buffer into a staged block. */
 skg_status skg_staging_read(skg_staging *staging, cl_mem buffer, int64_t bytes, void *staged);
 

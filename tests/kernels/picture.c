@@ -210,8 +210,9 @@ static skg_status project(skg_context *context, skg_geometry *geometry, const sk
                                 .contributions = 1,
                                 .contribution = &weights[b]};
     }
-    skg_status status =
-        skg_geometry_project(context, geometry, skg_raster_projection(raster), camera, parts, scale, NULL);
+    skg_status status = skg_geometry_weigh(context, geometry, camera, parts, scale);
+    if (status == SKG_OK)
+        status = skg_geometry_project(context, geometry, skg_raster_projection(raster), NULL);
     free(parts);
     free(weights);
     return status;
