@@ -171,9 +171,10 @@ SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_rea
  * scales    [2][parts] units of a moment for 1; 0: the part has no moments; and the units of the fourth
  * first_around, around   what stands around part p: around[first_around[p]] to around[first_around[p + 1] - 1]; SKG_AROUND.
  *           Weights as of contributions, without SKG_LISTED over that of the part's own contribution
- * moments   [triangles][4] 0 before: the sum of weights of the hits, times t^2 over the square of the part's reference; and the
+ * moments   [triangles + 1][4] 0 before: the sum of weights of the hits, times t^2 over the square of the part's reference; and the
  *           same times column and row from the part's own pixel; SKG_EDGE_ON first of a face that is seen as a line.
- *           Fourth the sum of q times weights by what stands around the part; SKG_AROUND.
+ *           Fourth the sum of q times weights by what stands around the part; SKG_AROUND. Behind those of all faces: 1: some
+ *           are seen as lines
  *           With SKG_SLOPES_ALONE they are added to
  *           With SKG_FORWARD: [rows][columns] the sums over the hits of a pixel of weight times the slope of the hit
  * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY
@@ -197,7 +198,8 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
     if (range.contributions == 0 || (scale == 0 && !SKG_AROUND)) return;
     if (skg_is_edge_on(a, b, c)) {
-        if (!SKG_FORWARD && !SKG_SLOPES_ALONE && get_global_id(1) == 0) moments[4 * (long)triangle] = SKG_EDGE_ON;
+        if (!SKG_FORWARD && !SKG_SLOPES_ALONE && get_global_id(1) == 0)
+            moments[4 * (long)triangle] = SKG_EDGE_ON, moments[4 * (long)args.layout.triangles] = 1;
         return;
     }
 #if SKG_SLOPES_ALONE

@@ -25,6 +25,25 @@ static skg_real skg_around_lane(const skg_target *target, const skg_batch *batch
 }
 #endif
 
+/* Writes the moments of the tiny ones among faces k to k + SKG_WIDE - 1, one a lane. */
+static void skg_put_tiny(const skg_target *target, const skg_batch *batch, int k, skg_realv sum, skg_realv columns, skg_realv rows,
+                         skg_realv around) {
+    const skg_realv scale = SKG_LOAD_V(realv, batch->scale + k);
+    skg_real sums[SKG_WIDE], of_columns[SKG_WIDE], of_rows[SKG_WIDE], arounds[SKG_WIDE];
+    SKG_STORE_V(realv, sum * scale, sums);
+    SKG_STORE_V(realv, columns * scale, of_columns);
+    SKG_STORE_V(realv, rows * scale, of_rows);
+#if SKG_AROUND
+    around *= SKG_LOAD_V(realv, batch->around_scale + k);
+#endif
+    SKG_STORE_V(realv, around, arounds);
+    for (int lane = 0; lane < SKG_WIDE; lane++) {
+        if (batch->class[k + lane] != SKG_TINY) continue;
+        const SKG_REALS(4) all = {sums[lane], of_columns[lane], of_rows[lane], arounds[lane]};
+        skg_put_moments(target, batch, k + lane, convert_long4(all));
+    }
+}
+
 /* Boxes of at most 2 by 2 pixels, one triangle per lane. */
 static void skg_draw_tiny(const skg_target *target, const skg_batch *batch) {
     for (int k = 0; k < batch->count; k += SKG_WIDE) {
@@ -35,10 +54,10 @@ static void skg_draw_tiny(const skg_target *target, const skg_batch *batch) {
         const skg_intv i0 = SKG_LOAD_V(intv, batch->i0 + k), j0 = SKG_LOAD_V(intv, batch->j0 + k);
         const skg_realv right = SKG_TO_REAL_V(SKG_LOAD_V(intv, batch->i1 + k));
         const skg_realv bottom = SKG_TO_REAL_V(tiny ? SKG_LOAD_V(intv, batch->j1 + k) : j0);
-        const skg_realv scale = SKG_LOAD_V(realv, batch->scale + k), limit = SKG_LOAD_V(realv, batch->limit + k);
+        const skg_realv limit = SKG_LOAD_V(realv, batch->limit + k);
         int place[SKG_WIDE];
         SKG_STORE_V(intv, tiny ? SKG_LOAD_V(intv, batch->origin + k) + j0 * target->stride + i0 : 0, place);
-        skg_longv sum = (skg_longv)(0), columns = (skg_longv)(0), rows = (skg_longv)(0), around = (skg_longv)(0);
+        skg_realv sum = (skg_realv)(0), columns = (skg_realv)(0), rows = (skg_realv)(0), around = (skg_realv)(0);
         for (int step = 0; step < 4; step++) {
             const skg_realv i = SKG_TO_REAL_V(i0 + (step & 1)), j = SKG_TO_REAL_V(j0 + (step >> 1));
             skg_line_v line;
@@ -68,24 +87,17 @@ static void skg_draw_tiny(const skg_target *target, const skg_batch *batch) {
 #endif
             value *= factor;
             if (!SKG_PARALLEL) value *= deep * deep;
-            const skg_longv worth = skg_integers_v(inside & (q < limit) ? value * scale : (skg_realv)(0));
+            const skg_realv zero = 0, worth = inside & (q < limit) ? value : zero;
             sum += worth;
-            columns += step & 1 ? worth : (skg_longv)(0);
-            rows += step >> 1 ? worth : (skg_longv)(0);
+            columns += step & 1 ? worth : zero;
+            rows += step >> 1 ? worth : zero;
 #if SKG_AROUND
             for (int lane = 0; lane < SKG_WIDE; lane++)
                 weights[lane] = hits[lane] ? skg_around_lane(target, batch, k + lane, place[lane] + offset) : 0;
-            const skg_realv outer = SKG_LOAD_V(realv, weights) * factor * q * SKG_LOAD_V(realv, batch->around_scale + k);
-            around += skg_integers_v(inside ? outer : (skg_realv)(0));
+            around += inside ? SKG_LOAD_V(realv, weights) * factor * q : zero;
 #endif
         }
-        for (int lane = 0; lane < SKG_WIDE; lane++) {
-            if (batch->class[k + lane] != SKG_TINY) continue;
-            const long all = ((const long *)&sum)[lane];
-            *(__global long4 *)(target->moments + 4 * (long)batch->face[k + lane]) =
-                (long4)(all, ((const long *)&columns)[lane] + all * batch->i0[k + lane],
-                        ((const long *)&rows)[lane] + all * batch->j0[k + lane], ((const long *)&around)[lane]);
-        }
+        skg_put_tiny(target, batch, k, sum, columns, rows, around);
     }
 }
 
@@ -110,6 +122,7 @@ SKG_APART void skg_gather_triangles(const skg_gradient_args *args, __global cons
     target.first_around = first_around;
     target.around = around;
     target.parts_count = args->layout.parts;
+    target.triangles = args->layout.triangles;
     target.moments = moments;
     skg_batch batch;
     skg_begin(&batch);

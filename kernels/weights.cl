@@ -110,7 +110,10 @@ static void skg_add_slopes(const skg_strip *strip, const skg_pixels *pixels, skg
 static void skg_put_weights(const skg_strip *strip, int plane, const skg_realv *values, __global skg_real *weights) {
     __global skg_real *place = weights + (long)plane * strip->args.image.channel_stride +
                                (long)strip->row * strip->args.image.row_stride + strip->column;
-    SKG_EACH_RUN SKG_STORE_GLOBAL_V(realv, values[r], place + r * SKG_WIDE);
+    SKG_EACH_RUN {
+        SKG_PREFETCH_STORE(place + (SKG_RUNS + r) * SKG_WIDE); /* of the next runs: too many planes for the machine's own */
+        SKG_STORE_GLOBAL_V(realv, values[r], place + r * SKG_WIDE);
+    }
 }
 
 /* Whether the runs meet the extent of a plane of accumulators. Elsewhere it has no hits, and its weights are not written. */

@@ -21,7 +21,7 @@ skg_status skg_pixel_weights_create(const skg_pass *pass, skg_pixel_weights *w) 
 }
 
 void skg_pixel_weights_clear(skg_pixel_weights *w) {
-    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) skg_free(&w->planes[k]);
+    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) skg_free(&w->planes[k].memory);
 }
 
 void skg_pixel_weights_release(skg_pixel_weights *w) {
@@ -36,7 +36,7 @@ double skg_pixel_weigh(const void *user, int64_t column, int64_t row) {
     double sum = 0;
     for (int32_t c = 0; c < part->contributions; c++)
         sum += part->contribution[c].weight *
-               w->planes[part->contribution[c].plane][row * w->layout.stride + column];
+               skg_reals_at(&w->planes[part->contribution[c].plane], row * w->layout.stride + column);
     return part->depth > 0 ? sum * w->pass->scale.scale : 0;
 }
 
@@ -44,10 +44,9 @@ skg_status skg_pixel_weights_read(skg_job *job, int64_t number, skg_pixel_weight
     const skg_geometry_part *part = &w->pass->parts[number];
     for (int32_t c = 0; c < part->contributions; c++) {
         const int64_t plane = part->contribution[c].plane;
-        if (w->planes[plane]) continue;
-        SKG_TRY(skg_alloc(w->layout.plane, sizeof **w->planes, "gradient", &w->planes[plane]));
-        SKG_TRY(skg_gradient_read(w->pass, job->machine->gradient.weights.memory, plane * w->layout.plane,
-                                  w->layout.plane, w->planes[plane]));
+        if (w->planes[plane].memory) continue;
+        SKG_TRY(skg_gradient_read_reals(w->pass, job->machine->gradient.weights.memory,
+                                        plane * w->layout.plane, w->layout.plane, &w->planes[plane]));
     }
     return SKG_OK;
 }
@@ -79,7 +78,8 @@ static skg_status list_faces(skg_job *job, const skg_pass *pass, const skg_gathe
         const int64_t *moments = gathered->moments + 4 * first;
         first += triangles;
         if (gathered->units[p] == 0) continue;
-        if (has_edges(moments, triangles)) SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
+        if (gathered->has_edges && has_edges(moments, triangles))
+            SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
         SKG_TRY(skg_gradient_place_faces(job, pass, p, faces));
         skg_camera_part(&pass->camera, part->pose, part->origin, part->reference, part->flipped, &entry);
         SKG_TRY(skg_gradient_find_planes(geometry, faces->mesh, geometry->mesh_of_part[p],

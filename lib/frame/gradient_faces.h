@@ -14,7 +14,7 @@ skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t 
 typedef struct {
     const skg_pass *pass;
     skg_weight_layout layout;
-    double **planes; /* [layout.planes] NULL: not read */
+    skg_reals *planes; /* [layout.planes] without memory: not read */
 } skg_pixel_weights;
 
 /* The same for one part: what `weight_user` of its faces points to. */

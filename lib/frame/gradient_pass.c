@@ -51,7 +51,7 @@ static void add_parallel(const skg_view *view, const skg_camera *camera, const s
 typedef struct {
     const skg_camera *camera;
     const skg_weight_layout *layout;
-    const double *values;
+    skg_reals values;
     double falls;
     double (*rows)[3];
 } ray_sums;
@@ -60,18 +60,18 @@ enum { LANES = 4 }; /* sums that do not wait for each other */
 
 static skg_status add_row(void *user, int64_t row) {
     const ray_sums *s = user;
-    const double *of_paths = s->values + row * s->layout->stride,
-                 *of_intensities = of_paths + s->layout->plane;
+    const int64_t of_paths = row * s->layout->stride, of_intensities = of_paths + s->layout->plane;
     double first[3], sums[3][LANES] = {{0}};
     skg_add_scaled(s->camera->first, (double)row, s->camera->row, first);
     const double square = skg_dot(first, first), twice = 2 * skg_dot(first, s->camera->column),
                  step = skg_dot(s->camera->column, s->camera->column);
     for (int64_t c = 0; c < s->camera->columns; c++) {
-        const double column = (double)c, value = of_paths[c] - s->falls * of_intensities[c];
+        const double column = (double)c, intensity = skg_reals_at(&s->values, of_intensities + c);
+        const double value = skg_reals_at(&s->values, of_paths + c) - s->falls * intensity;
         const double share = value / (square + column * (twice + column * step));
         sums[0][c % LANES] += share;
         sums[1][c % LANES] += share * column;
-        sums[2][c % LANES] += of_intensities[c];
+        sums[2][c % LANES] += intensity;
     }
     for (int k = 0; k < 3; k++) s->rows[row][k] = sums[k][0] + sums[k][1] + sums[k][2] + sums[k][3];
     return SKG_OK;
@@ -157,7 +157,6 @@ static skg_status add_point(skg_job *job, const skg_pass *pass, const skg_force_
     const skg_camera *camera = &pass->camera;
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     const int falls = job->machine->images.falloff;
-    double *values = NULL;
     ray_sums sums = {.camera = camera, .layout = &layout, .falls = falls ? 3 : 0};
     skg_status status = SKG_OK;
     for (int k = 0; k < 3; k++) {
@@ -165,16 +164,14 @@ static skg_status add_point(skg_job *job, const skg_pass *pass, const skg_force_
         e->detector[k] -= all->along[k];
         e->detector[3 + k] -= all->pixel_torque[k];
     }
-    SKG_TRY_CLEANUP(skg_alloc(2 * layout.plane, sizeof *values, "gradient", &values));
     SKG_TRY_CLEANUP(skg_alloc(camera->rows, sizeof *sums.rows, "gradient", &sums.rows));
-    SKG_TRY_CLEANUP(skg_gradient_read(pass, job->machine->gradient.weights.memory,
-                                      layout.planes * layout.plane, 2 * layout.plane, values));
-    sums.values = values;
+    SKG_TRY_CLEANUP(skg_gradient_read_reals(pass, job->machine->gradient.weights.memory,
+                                            layout.planes * layout.plane, 2 * layout.plane, &sums.values));
     SKG_TRY_CLEANUP(skg_parallel(camera->rows, add_row, &sums));
     add_ray_lengths(&sums, e, intensity);
     if (falls) add_distance(camera, camera->origin, camera->first, 3 * *intensity, e);
 cleanup:
-    skg_free(&values);
+    skg_free(&sums.values.memory);
     skg_free(&sums.rows);
     return status;
 }

@@ -188,15 +188,16 @@ static skg_status run_batches(const skg_gather_run *run) {
                            &run->staging->log);
 }
 
-/* Makes sure of the sums, which are 0 if they are added to. */
+/* Makes sure of the sums, which are 0 if they are added to. Batches write all but what stands behind the faces. */
 static skg_status reserve_sums(const skg_gather_run *run) {
     const int64_t pixels = (int64_t)run->raster->layout.rows * run->raster->layout.columns;
-    const int64_t bytes = (run->forward ? pixels : 4 * run->geometry->triangles) * (int64_t)sizeof(int64_t);
+    const int64_t faces = 4 * run->geometry->triangles, first = in_batches(run) ? faces : 0;
+    const int64_t sums = run->forward ? pixels : faces + 4, size = (int64_t)sizeof(int64_t);
     const cl_int none = 0;
-    SKG_TRY(reserve(run, &run->memory->moments, bytes));
-    if (!in_batches(run))
-        SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
-                                       sizeof none, 0, (size_t)bytes, 0, NULL, NULL));
+    SKG_TRY(reserve(run, &run->memory->moments, sums * size));
+    SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
+                                   sizeof none, (size_t)(first * size), (size_t)((sums - first) * size), 0,
+                                   NULL, NULL));
     return SKG_OK;
 }
 
@@ -269,7 +270,8 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     SKG_TRY(skg_staging_take(staging, 2 * parts, sizeof *scales, "gradient", &scales));
     SKG_TRY(skg_staging_take(staging, 2 * parts, sizeof *units, "gradient", &units));
     if (!memory->gathered)
-        SKG_TRY(skg_alloc(4 * geometry->triangles, sizeof *memory->gathered, "gradient", &memory->gathered));
+        SKG_TRY(
+            skg_alloc(4 * geometry->triangles + 4, sizeof *memory->gathered, "gradient", &memory->gathered));
     if (around) SKG_TRY(send_around(&run)); /* while the weights are made, which the next call waits for */
     SKG_TRY(find_max(&run, most));
     skg_gradient_find_scales(&run, most, around, scales, units);
@@ -277,11 +279,12 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     SKG_TRY(run_slopes(&run));
     SKG_TRY(run_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
-                                   4 * (size_t)geometry->triangles * sizeof *memory->gathered,
+                                   4 * (size_t)(geometry->triangles + 1) * sizeof *memory->gathered,
                                    memory->gathered, 0, NULL, NULL));
     *gathered = (skg_gathered){.moments = memory->gathered,
                                .units = units,
                                .around_units = units + parts,
+                               .has_edges = memory->gathered[4 * geometry->triangles] != 0,
                                .layout = layout_of(pass)};
     return SKG_OK;
 }
@@ -315,6 +318,20 @@ skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geomet
 skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
                              double *numbers) {
     return read_reals(pass->main.raster, memory, first, count, numbers);
+}
+
+skg_status skg_gradient_read_reals(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
+                                   skg_reals *reals) {
+    const size_t size = real_size(pass->main.raster);
+    reals->is_double = size == sizeof(double);
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(count, size, "gradient", &reals->memory));
+    SKG_CL_CLEANUP(clEnqueueReadBuffer(pass->main.raster->context->device->queue, memory, CL_TRUE,
+                                       (size_t)first * size, (size_t)count * size, reals->memory, 0, NULL,
+                                       NULL));
+cleanup:
+    if (status != SKG_OK) skg_free(&reals->memory);
+    return status;
 }
 
 /* corners: NULL after a failure, so that the next call reads them again */

@@ -11,7 +11,7 @@
 /* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
     skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces, node, around, first_around;
-    int64_t *gathered; /* [triangles][4] the moments on the host */
+    int64_t *gathered; /* [triangles + 1][4] the moments on the host */
     int32_t *corners;  /* [triangles of all meshes][3] as the device has them */
     double *
         planes; /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
@@ -36,6 +36,8 @@ typedef struct {
     const double
         *around_units; /* [parts] of the fourth moments: sums of length times weight by what stands around */
     skg_weight_layout layout;
+    int32_t has_edges; /* 1: some faces are seen as lines */
+    int32_t reserved;
 } skg_gathered;
 
 /* Makes sure of memory for the derivatives of a pass by its sums, or by the mm of `planes` planes. */
@@ -55,6 +57,21 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
                                 skg_staging *staging, double *slopes, double *values, int64_t *saturated);
+
+/* Reals in the precision of a pass. */
+typedef struct {
+    void *memory;
+    int32_t is_double;
+} skg_reals;
+
+static inline double skg_reals_at(const skg_reals *reals, int64_t index) {
+    return reals->is_double ? ((const double *)reals->memory)[index]
+                            : (double)((const float *)reals->memory)[index];
+}
+
+/* Reads reals, from number `first` on, and waits. The caller frees their memory. */
+skg_status skg_gradient_read_reals(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
+                                   skg_reals *reals);
 
 /* Reads reals in the precision of the pass as doubles, from number `first` on, and waits. */
 skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
