@@ -164,12 +164,13 @@ skg_status skg_adjoint_send(skg_job *job, const double *adjoint) {
     const skg_recipe *recipe = job->recipe;
     skg_machine *machine = job->machine;
     const int64_t count = skg_model_sums(&recipe->model) * recipe->view.rows * recipe->view.columns;
-    float *rounded = NULL;
+    float **rounded = &job->gradient->rounded;
     if (skg_recipe_kernel_precision(recipe) == SKG_PRECISION_DOUBLE)
         return skg_buffer_write(machine->context, &machine->gradient.adjoint,
                                 count * (int64_t)sizeof *adjoint, adjoint, "adjoint");
-    SKG_TRY(skg_staging_take(&job->staging, count, sizeof *rounded, "adjoint", &rounded));
-    for (int64_t i = 0; i < count; i++) rounded[i] = (float)adjoint[i];
-    return skg_staging_write(&job->staging, &machine->gradient.adjoint, count * (int64_t)sizeof *rounded,
-                             rounded, "adjoint");
+    /* What was sent before was waited for: each pass ends with a read. */
+    if (!*rounded) SKG_TRY(skg_staging_take(&job->staging, count, sizeof **rounded, "adjoint", rounded));
+    for (int64_t i = 0; i < count; i++) (*rounded)[i] = (float)adjoint[i];
+    return skg_staging_write(&job->staging, &machine->gradient.adjoint, count * (int64_t)sizeof **rounded,
+                             *rounded, "adjoint");
 }

@@ -61,7 +61,12 @@ static void find_beam(const skg_view *view, const skg_camera *camera, const skg_
     skg_add_scaled(moves, -skg_dot(moves, d) / skg_dot(d, d), d, v->beam);
 }
 
-/* The slopes of the faces of all parts, a part an item; and what faces that are seen as lines add to each channel. */
+/* Consecutive faces of a part. */
+typedef struct {
+    int64_t part, first, end;
+} face_range;
+
+/* The slopes of the faces of the parts that move, and what faces that are seen as lines add to each channel. */
 typedef struct {
     const skg_pass *pass;
     const skg_velocities *of_view;
@@ -69,10 +74,15 @@ typedef struct {
     skg_face_moments *faces;   /* [parts] */
     skg_part_weights *weights; /* [parts] */
     skg_pixel_weights of_pixels;
-    double *slopes;   /* [triangles][3] */
-    uint8_t *edge_on; /* [triangles] */
-    int64_t *first;   /* [parts] the first triangle */
+    double *slopes;     /* [triangles][3] of the parts that move */
+    uint8_t *edge_on;   /* [triangles] of them */
+    int64_t *first;     /* [parts] the first triangle */
+    uint8_t *moves;     /* [parts] */
+    face_range *ranges; /* of the parts that move */
+    int64_t range_count;
 } slopes_work;
+
+enum { FACES = 2048 }; /* of a range */
 
 static skg_velocities velocities_of(const slopes_work *w, int64_t part) {
     const skg_direction *direction = w->direction;
@@ -82,14 +92,34 @@ static skg_velocities velocities_of(const slopes_work *w, int64_t part) {
     return v;
 }
 
-static skg_status find_part(void *user, int64_t part) {
+static skg_status find_range(void *user, int64_t number) {
     const slopes_work *w = user;
+    const face_range *range = &w->ranges[number];
+    const int64_t part = range->part;
     const double reference = w->pass->parts[part].reference;
     const double rounding =
         w->pass->kernels.precision == SKG_PRECISION_DOUBLE ? DBL_EPSILON : (double)FLT_EPSILON;
     const skg_velocities v = velocities_of(w, part);
     skg_slopes_find(&w->faces[part], &v, w->pass->camera.parallel || !(reference > 0) ? 1 : reference,
-                    rounding, w->slopes + 3 * w->first[part], w->edge_on + w->first[part]);
+                    rounding, range->first, range->end, w->slopes + 3 * w->first[part],
+                    w->edge_on + w->first[part]);
+    return SKG_OK;
+}
+
+/* Divides the faces of the parts that move. */
+static skg_status find_ranges(slopes_work *w) {
+    const int64_t parts = w->pass->scene->count;
+    int64_t most = 0;
+    for (int64_t p = 0; p < parts; p++) most += w->faces[p].mesh->triangles / FACES + 1;
+    SKG_TRY(skg_alloc(most, sizeof *w->ranges, "derivative", &w->ranges));
+    for (int64_t p = 0; p < parts; p++) {
+        const skg_velocities v = velocities_of(w, p);
+        const int64_t count = w->faces[p].mesh->triangles;
+        w->moves[p] = (uint8_t)skg_slopes_move(&v);
+        for (int64_t f = 0; w->moves[p] && f < count; f += FACES)
+            w->ranges[w->range_count++] =
+                (face_range){.part = p, .first = f, .end = f + FACES < count ? f + FACES : count};
+    }
     return SKG_OK;
 }
 
@@ -99,6 +129,7 @@ static skg_status find_slopes(skg_job *job, slopes_work *w) {
     SKG_TRY(skg_alloc(parts, sizeof *w->faces, "derivative", &w->faces));
     SKG_TRY(skg_alloc(parts, sizeof *w->weights, "derivative", &w->weights));
     SKG_TRY(skg_alloc(parts, sizeof *w->first, "derivative", &w->first));
+    SKG_TRY(skg_alloc(parts, sizeof *w->moves, "derivative", &w->moves));
     SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *w->slopes, "derivative", &w->slopes));
     SKG_TRY(skg_alloc(geometry->triangles, sizeof *w->edge_on, "derivative", &w->edge_on));
     SKG_TRY(skg_pixel_weights_create(w->pass, &w->of_pixels));
@@ -109,7 +140,8 @@ static skg_status find_slopes(skg_job *job, slopes_work *w) {
         w->faces[p].weight = skg_pixel_weigh;
         w->faces[p].weight_user = &w->weights[p];
     }
-    return skg_parallel(parts, find_part, w);
+    SKG_TRY(find_ranges(w));
+    return skg_parallel(w->range_count, find_range, w);
 }
 
 static void release_slopes(slopes_work *w) {
@@ -117,6 +149,8 @@ static void release_slopes(slopes_work *w) {
     skg_free(&w->faces);
     skg_free(&w->weights);
     skg_free(&w->first);
+    skg_free(&w->moves);
+    skg_free(&w->ranges);
     skg_free(&w->slopes);
     skg_free(&w->edge_on);
 }
@@ -127,7 +161,7 @@ static skg_status add_edges(skg_job *job, slopes_work *w, double *values) {
     for (int64_t p = 0; p < w->pass->scene->count; p++) {
         const skg_velocities v = velocities_of(w, p);
         const skg_face_moments *faces = &w->faces[p];
-        if (w->pass->parts[p].contributions == 0) continue;
+        if (!w->moves[p] || w->pass->parts[p].contributions == 0) continue;
         for (int64_t f = 0; f < faces->mesh->triangles; f++) {
             if (!w->edge_on[w->first[p] + f]) continue;
             SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
@@ -178,13 +212,16 @@ static skg_status add_channel(skg_job *job, const skg_frame_work *work, const sk
     const int64_t columns = pass->camera.columns, rows = pass->camera.rows, fine = pass->fine;
     double *image = gradient->derivative + channel * (rows / fine) * (columns / fine);
     SKG_TRY(skg_gradient_scatter(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
-                                 w->slopes, values, &gradient->saturated));
+                                 w->moves, w->slopes, values, &gradient->saturated));
     SKG_TRY(add_edges(job, w, values));
     if (gradient->direction.source || gradient->direction.detector)
         SKG_TRY(add_rays(job, work, pass, w->of_view, values));
-    for (int64_t r = 0; r < rows; r++)
-        for (int64_t c = 0; c < columns; c++)
-            image[r / fine * (columns / fine) + c / fine] += values[r * columns + c];
+    for (int64_t r = 0; r < rows; r++) {
+        double *to = image + r / fine * (columns / fine);
+        const double *from = values + r * columns;
+        for (int64_t c = 0, pixel = 0; c < columns; pixel++)
+            for (const int64_t end = c + fine; c < end; c++) to[pixel] += from[c];
+    }
     return SKG_OK;
 }
 
@@ -204,7 +241,8 @@ skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int
         skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *values, "derivative", &values));
     SKG_TRY_CLEANUP(find_slopes(job, &w));
     for (int64_t c = 0; c < job->recipe->model.channels; c++) {
-        for (int64_t p = 0; p < job->recipe->model.channels * size; p++) gradient->adjoint[p] = p / size == c;
+        for (int64_t k = 0; k < job->recipe->model.channels; k++)
+            for (int64_t p = 0; p < size; p++) gradient->adjoint[k * size + p] = k == c;
         SKG_TRY_CLEANUP(skg_gradient_weigh(job, pass, sums, factor, 0));
         SKG_TRY_CLEANUP(add_channel(job, work, pass, &w, c, values));
         SKG_TRY_CLEANUP(skg_derivative_add_changes(job, pass, sums, factor, c));

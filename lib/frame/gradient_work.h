@@ -18,6 +18,7 @@ struct skg_gradient_work {
     cl_event ready;         /* `raw` and `image` are read */
     /* [layers][channels][rows][columns] by the intensities that the stage `attenuate` shows */
     double *adjoint;
+    float *rounded;         /* staged: the same on its way to the device, unless that takes doubles */
     double *poses;          /* [parts][6] */
     double *densities;      /* [parts] */
     uint8_t *needs_lengths; /* [parts] 1: its density takes the path lengths through it */

@@ -2,8 +2,6 @@
 
 #include "core/maths.h"
 
-#include <string.h>
-
 /* The velocity of a point that a twist moves. */
 static void turn_point(const double twist[6], const double point[3], double velocity[3]) {
     skg_cross(twist + 3, point, velocity);
@@ -66,20 +64,14 @@ static int any(const double *numbers, int count) {
     return found;
 }
 
-/* Most directions move one part of many. */
-static int is_moving(const skg_velocities *v) {
+int skg_slopes_move(const skg_velocities *v) {
     return v->vertices || any(v->pose, 6) || any(v->source, 3) || any(v->detector, 6) || any(v->beam, 3);
 }
 
 void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
-                     double rounding, double *slopes, uint8_t *edge_on) {
+                     double rounding, int64_t first, int64_t end, double *slopes, uint8_t *edge_on) {
     const skg_camera *camera = faces->camera;
-    if (!is_moving(velocities)) {
-        memset(slopes, 0, (size_t)(3 * faces->mesh->triangles) * sizeof *slopes);
-        memset(edge_on, 0, (size_t)faces->mesh->triangles);
-        return;
-    }
-    for (int64_t face = 0; face < faces->mesh->triangles; face++) {
+    for (int64_t face = first; face < end; face++) {
         placed_face f;
         double normal[3], from[3], relative[3];
         place_face(faces, face, &f);

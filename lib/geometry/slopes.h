@@ -13,14 +13,17 @@ typedef struct {
     double beam[3];         /* of the direction camera->first of a parallel beam, across it */
 } skg_velocities;
 
-/* Fills the slopes at the corners of a part's faces, [triangles][3]: n . (v - ray) / (h t_k) with the velocity v of the corner and
+/* Whether a part moves against the rays: most directions move one part of many. */
+int skg_slopes_move(const skg_velocities *velocities);
+
+/* Fills the slopes at the corners of faces `first` to end - 1 of a part, slopes[triangles][3]: n . (v - ray) / (h t_k) with the velocity v of the corner and
  * that of the ray there; with a parallel beam n . (v - ray) / (n . d). Times `factor`.
  *
  * edge_on   [triangles] result: 1 for faces that are seen as lines, whose slopes are 0: skg_slopes_spread adds them. They are those
- *           of kernels/gradient.cl, and a few that are slightly wider. Of a part that does not move against the rays: 0
+ *           of kernels/gradient.cl, and a few that are slightly wider
  * rounding  of the places of corners on the device, relative */
 void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
-                     double rounding, double *slopes, uint8_t *edge_on);
+                     double rounding, int64_t first, int64_t end, double *slopes, uint8_t *edge_on);
 
 /* Adds the derivatives of the means of pixels by a face that is seen as a line, with the weights of `faces`.
  * values: [camera->rows][camera->columns] */

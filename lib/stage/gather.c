@@ -16,6 +16,7 @@ void skg_gradient_memory_release(skg_gradient_memory *memory) {
                                    &memory->lengths, &memory->faces,   &memory->node};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     skg_free(&memory->gathered);
+    skg_free(&memory->reals);
     skg_free(&memory->corners);
     skg_free(&memory->planes);
     skg_free(&memory->versions);
@@ -131,15 +132,18 @@ static skg_status find_max(const skg_gather_run *run, double *most) {
     return SKG_OK;
 }
 
-/* Uploads doubles in the precision of the pass. */
-static skg_status upload_reals(const skg_gather_run *run, int64_t count, const double *numbers,
-                               skg_buffer *buffer) {
-    float *rounded = NULL;
-    if (run->is_double)
-        return skg_buffer_write(run->context, buffer, count * (int64_t)sizeof *numbers, numbers, "gradient");
-    SKG_TRY(skg_staging_take(run->staging, count, sizeof *rounded, "gradient", &rounded));
-    for (int64_t i = 0; i < count; i++) rounded[i] = (float)numbers[i];
-    return skg_staging_write(run->staging, buffer, count * (int64_t)sizeof *rounded, rounded, "gradient");
+static void round_reals(const skg_gather_run *run, int64_t first, int64_t count, const double *numbers,
+                        void *reals) {
+    if (run->is_double) memcpy((double *)reals + first, numbers, (size_t)count * sizeof *numbers);
+    for (int64_t i = 0; i < count && !run->is_double; i++) ((float *)reals)[first + i] = (float)numbers[i];
+}
+
+static skg_status upload_scales(const skg_gather_run *run, int64_t count, const double *scales) {
+    const size_t size = real_size(run->raster);
+    void *reals = NULL;
+    SKG_TRY(skg_staging_take(run->staging, count, size, "gradient", &reals));
+    round_reals(run, 0, count, scales, reals);
+    return skg_staging_write(run->staging, &run->memory->scales, count * (int64_t)size, reals, "gradient");
 }
 
 /* The hits of competing parts are listed still, by skg_hits_settle of this pass. */
@@ -275,7 +279,7 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     if (around) SKG_TRY(send_around(&run)); /* while the weights are made, which the next call waits for */
     SKG_TRY(find_max(&run, most));
     skg_gradient_find_scales(&run, most, around, scales, units);
-    SKG_TRY(upload_reals(&run, 2 * parts, scales, &memory->scales));
+    SKG_TRY(upload_scales(&run, 2 * parts, scales));
     SKG_TRY(run_slopes(&run));
     SKG_TRY(run_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
@@ -289,11 +293,30 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     return SKG_OK;
 }
 
+/* Enqueues the upload of the slopes of the parts that move, from memory that stays. */
+static skg_status upload_slopes(const skg_gather_run *run, const uint8_t *moves, const double *slopes) {
+    const skg_geometry *geometry = run->geometry;
+    skg_gradient_memory *m = run->memory;
+    const size_t size = real_size(run->raster), row = 3 * size;
+    SKG_TRY(reserve(run, &m->faces, geometry->triangles * (int64_t)row));
+    if (!m->reals) SKG_TRY(skg_alloc(geometry->triangles, row, "derivative", &m->reals));
+    for (int64_t p = 0, first = 0, end; p < geometry->parts; p++, first = end) {
+        end = skg_gradient_part_end(geometry, p, first);
+        if (!moves[p] || end == first) continue;
+        round_reals(run, 3 * first, 3 * (end - first), slopes + 3 * first, m->reals);
+        SKG_CL_TRY(clEnqueueWriteBuffer(run->context->device->queue, m->faces.memory, CL_FALSE,
+                                        (size_t)first * row, (size_t)(end - first) * row,
+                                        (char *)m->reals + (size_t)first * row, 0, NULL, NULL));
+    }
+    return SKG_OK;
+}
+
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, double *slopes, double *values, int64_t *saturated) {
+                                skg_staging *staging, const uint8_t *moves, double *slopes, double *values,
+                                int64_t *saturated) {
     skg_gather_run run = run_of(pass, geometry, hits, memory, staging, 1);
-    const int64_t pixels = pass->camera.rows * pass->camera.columns, count = 3 * geometry->triangles;
+    const int64_t pixels = pass->camera.rows * pass->camera.columns;
     double *most = NULL, *scales = NULL;
     int64_t *sums = NULL;
     SKG_TRY(begin(&run));
@@ -301,12 +324,12 @@ skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geomet
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "derivative", &scales));
     SKG_TRY(skg_staging_take(staging, pixels, sizeof *sums, "derivative", &sums));
     SKG_TRY(find_max(&run, most));
-    const double scale =
-        skg_gradient_find_scale(&run, most, skg_gradient_cut_slopes(count, slopes, saturated), scales);
+    const double slope = skg_gradient_cut_slopes(geometry, moves, slopes, saturated);
+    const double scale = skg_gradient_find_scale(&run, most, moves, slope, scales);
     for (int64_t p = 0; p < pixels; p++) values[p] = 0;
     if (scale == 0) return SKG_OK;
-    SKG_TRY(upload_reals(&run, pass->scene->count, scales, &memory->scales));
-    SKG_TRY(upload_reals(&run, count, slopes, &memory->faces));
+    SKG_TRY(upload_scales(&run, pass->scene->count, scales));
+    SKG_TRY(upload_slopes(&run, moves, slopes));
     SKG_TRY(run_slopes(&run));
     SKG_TRY(run_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,

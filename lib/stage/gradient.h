@@ -12,6 +12,7 @@
 typedef struct {
     skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces, node, around, first_around;
     int64_t *gathered; /* [triangles + 1][4] the moments on the host */
+    void *reals;       /* [triangles][3] slopes on their way to the device */
     int32_t *corners;  /* [triangles of all meshes][3] as the device has them */
     double *
         planes; /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
@@ -50,13 +51,15 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
 
 /* Adds up the derivatives of the rays of a pass, and waits for them.
  *
+ * moves       [parts] 0: the part does not, and its slopes are not looked at
  * slopes      [triangles][3] of the path parameter over the square of t, at the corners, times the part's reference; in the
  *             device's order. Those above 2^24 times their mean are cut off there, because sums are 64-bit integers
  * values      [rows][columns] result
  * saturated   the number of faces that were cut off is added to it */
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, double *slopes, double *values, int64_t *saturated);
+                                skg_staging *staging, const uint8_t *moves, double *slopes, double *values,
+                                int64_t *saturated);
 
 /* Reals in the precision of a pass. */
 typedef struct {

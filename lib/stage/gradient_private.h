@@ -26,11 +26,19 @@ typedef struct {
 void skg_gradient_find_scales(const skg_gather_run *run, const double *most, const skg_surroundings *around,
                               double *scales, double *units);
 
-/* One scale for the hits of all parts, whose slopes are at most `slope`; 0: all derivatives are 0. scales: [parts] */
-double skg_gradient_find_scale(const skg_gather_run *run, const double *most, double slope, double *scales);
+/* One scale for the hits of the parts that move, whose slopes are at most `slope`; 0: all derivatives are 0. scales: [parts], 0 of
+ * those that do not */
+double skg_gradient_find_scale(const skg_gather_run *run, const double *most, const uint8_t *moves,
+                               double slope, double *scales);
 
-/* Cuts slopes off at 2^24 times their mean, and returns the largest that is left. */
-double skg_gradient_cut_slopes(int64_t count, double *slopes, int64_t *saturated);
+/* Cuts the slopes of the parts that move off at 2^24 times their mean, and returns the largest that is left. */
+double skg_gradient_cut_slopes(const skg_geometry *geometry, const uint8_t *moves, double *slopes,
+                               int64_t *saturated);
+
+/* The first triangle of a part, over all parts, and that behind its last: those of the part before end where it begins. */
+static inline int64_t skg_gradient_part_end(const skg_geometry *geometry, int64_t part, int64_t first) {
+    return first + geometry->layouts[geometry->mesh_of_part[part]].triangles;
+}
 
 /* What a unit of the contributions of a part is on the device: they weigh q = r / reference, with a parallel beam r. */
 double skg_gradient_depth_unit(const skg_gather_run *run, int64_t part);

@@ -92,26 +92,38 @@ void skg_gradient_find_scales(const skg_gather_run *run, const double *most, con
     }
 }
 
-double skg_gradient_cut_slopes(int64_t count, double *slopes, int64_t *saturated) {
+double skg_gradient_cut_slopes(const skg_geometry *geometry, const uint8_t *moves, double *slopes,
+                               int64_t *saturated) {
     double sum = 0, largest = 0;
     int64_t used = 0;
-    for (int64_t i = 0; i < count; i++) sum += fabs(slopes[i]), used += slopes[i] != 0;
+    for (int64_t p = 0, i = 0; p < geometry->parts; p++) {
+        const int64_t end = 3 * skg_gradient_part_end(geometry, p, i / 3);
+        for (; moves[p] && i < end; i++) sum += fabs(slopes[i]), used += slopes[i] != 0;
+        i = end;
+    }
     const double most = used ? ldexp(sum / (double)used, 24) : 0;
-    for (int64_t i = 0; i < count; i++) {
-        if (fabs(slopes[i]) > most) slopes[i] = copysign(most, slopes[i]), ++*saturated;
-        largest = fmax(largest, fabs(slopes[i]));
+    for (int64_t p = 0, i = 0; p < geometry->parts; p++) {
+        const int64_t end = 3 * skg_gradient_part_end(geometry, p, i / 3);
+        for (; moves[p] && i < end; i++) {
+            if (fabs(slopes[i]) > most) slopes[i] = copysign(most, slopes[i]), ++*saturated;
+            largest = fmax(largest, fabs(slopes[i]));
+        }
+        i = end;
     }
     return largest;
 }
 
 /* At most 2^10 of the largest hits meet in a pixel. */
-double skg_gradient_find_scale(const skg_gather_run *run, const double *most, double slope, double *scales) {
+double skg_gradient_find_scale(const skg_gather_run *run, const double *most, const uint8_t *moves,
+                               double slope, double *scales) {
     const double competing = competing_of(run, most);
+    const int64_t parts = run->pass->scene->count;
     double bound = 0;
-    for (int64_t p = 0; p < run->pass->scene->count; p++)
-        if (run->pass->parts[p].contributions > 0) bound = fmax(bound, hit_bound(run, p, most, competing));
+    for (int64_t p = 0; p < parts; p++)
+        if (moves[p] && run->pass->parts[p].contributions > 0)
+            bound = fmax(bound, hit_bound(run, p, most, competing));
     if (!(bound * slope > 0)) return 0;
     const double scale = scale_for(ldexp(bound * slope, 10));
-    for (int64_t p = 0; p < run->pass->scene->count; p++) scales[p] = scale;
+    for (int64_t p = 0; p < parts; p++) scales[p] = moves[p] ? scale : 0;
     return scale;
 }
