@@ -135,7 +135,7 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
         const skg_real share1 = clamp(fma(shares->i1, past, first1), (skg_real)0, (skg_real)1);
         const skg_real share2 = clamp(fma(shares->i2, past, first2), (skg_real)0, (skg_real)1);
         const skg_real slope = fma(share1, g->slopes_of_face[1], fma(share2, g->slopes_of_face[2], g->slopes_of_face[0]));
-        const long pixel = (long)(range->pixel_j + row) * g->args->layout.columns + range->pixel_i + column;
+        const long pixel = (long)(range->pixel_j + row) * g->args->stride + range->pixel_i + column;
         skg_add_moment(g->pixels + pixel, convert_long_rte((weight + lost) * deep * scale * slope));
 #else
         const long worth = convert_long_rte(weight * deep * scale) + convert_long_rte(lost * deep * scale);
@@ -176,7 +176,7 @@ SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_rea
  *           Fourth the sum of q times weights by what stands around the part; SKG_AROUND. Behind those of all faces: 1: some
  *           are seen as lines
  *           With SKG_SLOPES_ALONE they are added to
- *           With SKG_FORWARD: [rows][columns] the sums over the hits of a pixel of weight times the slope of the hit
+ *           With SKG_FORWARD: [rows][stride] the sums over the hits of a pixel of weight times the slope of the hit
  * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY
  * face_slopes   [triangles][3] slopes at the corners; SKG_FORWARD */
 __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *corners,

@@ -28,19 +28,6 @@ int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
            memory->node.bytes + memory->around.bytes + memory->first_around.bytes;
 }
 
-static skg_gather_run run_of(const skg_pass *pass, const skg_geometry *geometry, const skg_hits_memory *hits,
-                             skg_gradient_memory *memory, skg_staging *staging, int32_t forward) {
-    return (skg_gather_run){.pass = pass,
-                            .geometry = geometry,
-                            .hits = hits,
-                            .memory = memory,
-                            .staging = staging,
-                            .raster = pass->main.raster,
-                            .context = pass->main.raster->context,
-                            .is_double = geometry->precision == SKG_PRECISION_DOUBLE,
-                            .forward = forward};
-}
-
 static size_t real_size(const skg_raster *raster) {
     return raster->options.kernels.precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
 }
@@ -62,35 +49,30 @@ skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradie
                               CL_MEM_READ_WRITE, "weights of a gradient");
 }
 
-static skg_status reserve(const skg_gather_run *run, skg_buffer *buffer, int64_t bytes) {
+skg_status skg_gather_reserve(const skg_gather_run *run, skg_buffer *buffer, int64_t bytes) {
     return skg_buffer_reserve(run->context, buffer, bytes, CL_MEM_READ_WRITE, "gradient");
 }
 
-/* Whether faces are gathered in batches; what priorities add is then added by itself. */
-static int in_batches(const skg_gather_run *run) {
-    return !run->forward && !run->context->device->info.gpu;
-}
-
 static skg_status get_batches(const skg_gather_run *run, cl_program *program) {
-    static const char *const files[] = {"batch.clh", "gather.clh", "draw.clh", "collect.clh",
-                                        "gradient_batches.cl"};
+    static const char *const files[] = {"batch.clh",   "worth.clh", "gather.clh",         "draw.clh",
+                                        "collect.clh", "tiny.clh",  "gradient_batches.cl"};
     const skg_define defines[] = {{"SKG_GATHER", 1}, {"SKG_AROUND", run->around != NULL}};
-    return skg_kernels_get(run->context, &run->pass->kernels, 5, files, SKG_DEFINES(defines), program);
+    return skg_kernels_get(run->context, &run->pass->kernels, 7, files, SKG_DEFINES(defines), program);
 }
 
 /* What the kernels of gradient.cl are for: all faces, or what priorities add. */
 static int needs_faces(const skg_gather_run *run) {
-    return !in_batches(run) || run->pass->priority.count > 0;
+    return run->workers == 0 || run->pass->priority.count > 0;
 }
 
-static skg_status begin(skg_gather_run *run) {
+skg_status skg_gather_begin(skg_gather_run *run) {
     static const char *const files[] = {"pixel.clh", "hits.cl", "slopes.cl", "gradient.cl"};
     const skg_priority *priority = &run->pass->priority;
     const skg_weight_layout layout = layout_of(run->pass);
     const skg_define defines[] = {{"SKG_SLOTS", priority->count ? skg_priority_slots(priority) : 32},
                                   {"SKG_PRIORITY", priority->count > 0},
-                                  {"SKG_SLOPES_ALONE", in_batches(run)},
-                                  {"SKG_AROUND", run->around && !in_batches(run)},
+                                  {"SKG_SLOPES_ALONE", run->workers > 0},
+                                  {"SKG_AROUND", run->around && run->workers == 0},
                                   {"SKG_FORWARD", run->forward}};
     run->args = (skg_gradient_args){
         .layout = run->raster->layout,
@@ -118,7 +100,7 @@ static skg_status read_reals(const skg_raster *raster, cl_mem memory, int64_t fi
 }
 
 /* The largest weight of each plane. */
-static skg_status find_max(const skg_gather_run *run, double *most) {
+skg_status skg_gather_find_max(const skg_gather_run *run, double *most) {
     const int64_t planes = run->args.planes, items = layout_of(run->pass).items;
     double *of_items = NULL;
     SKG_TRY(skg_staging_take(run->staging, planes * items, sizeof *of_items, "gradient", &of_items));
@@ -132,28 +114,28 @@ static skg_status find_max(const skg_gather_run *run, double *most) {
     return SKG_OK;
 }
 
-static void round_reals(const skg_gather_run *run, int64_t first, int64_t count, const double *numbers,
-                        void *reals) {
+void skg_gather_round(const skg_gather_run *run, int64_t first, int64_t count, const double *numbers,
+                      void *reals) {
     if (run->is_double) memcpy((double *)reals + first, numbers, (size_t)count * sizeof *numbers);
     for (int64_t i = 0; i < count && !run->is_double; i++) ((float *)reals)[first + i] = (float)numbers[i];
 }
 
-static skg_status upload_scales(const skg_gather_run *run, int64_t count, const double *scales) {
+skg_status skg_gather_upload_scales(const skg_gather_run *run, int64_t count, const double *scales) {
     const size_t size = real_size(run->raster);
     void *reals = NULL;
     SKG_TRY(skg_staging_take(run->staging, count, size, "gradient", &reals));
-    round_reals(run, 0, count, scales, reals);
+    skg_gather_round(run, 0, count, scales, reals);
     return skg_staging_write(run->staging, &run->memory->scales, count * (int64_t)size, reals, "gradient");
 }
 
 /* The hits of competing parts are listed still, by skg_hits_settle of this pass. */
-static skg_status run_slopes(const skg_gather_run *run) {
+skg_status skg_gather_slopes(const skg_gather_run *run) {
     const skg_hits_memory *h = run->hits;
     const skg_gradient_args *args = &run->args;
     const skg_work_size work = {
         2, {args->window[2] - args->window[0], args->window[3] - args->window[1]}, {16, 16}};
     if (run->pass->priority.count == 0 || work.items[0] < 1 || work.items[1] < 1) return SKG_OK;
-    SKG_TRY(reserve(run, &run->memory->slopes, h->hits.bytes));
+    SKG_TRY(skg_gather_reserve(run, &run->memory->slopes, h->hits.bytes));
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_SLOPES, args, *args),
         SKG_ARGUMENT(HITS_SLOPES, parts, run->geometry->part_table.memory),
@@ -173,7 +155,7 @@ static skg_status run_slopes(const skg_gather_run *run) {
 static skg_status run_batches(const skg_gather_run *run) {
     const skg_geometry *geometry = run->geometry;
     const skg_gradient_memory *m = run->memory;
-    const skg_work_size work = {1, {(geometry->triangles + CLAIM - 1) / CLAIM}, {1}};
+    const skg_work_size work = {1, {run->workers}, {1}};
     skg_gradient_args args = run->args;
     cl_program program = NULL;
     args.layout.claim = CLAIM;
@@ -192,25 +174,22 @@ static skg_status run_batches(const skg_gather_run *run) {
                            &run->staging->log);
 }
 
-/* Makes sure of the sums, which are 0 if they are added to. Batches write all but what stands behind the faces. */
-static skg_status reserve_sums(const skg_gather_run *run) {
-    const int64_t pixels = (int64_t)run->raster->layout.rows * run->raster->layout.columns;
-    const int64_t faces = 4 * run->geometry->triangles, first = in_batches(run) ? faces : 0;
-    const int64_t sums = run->forward ? pixels : faces + 4, size = (int64_t)sizeof(int64_t);
+/* Makes sure of the moments, which are 0 if they are added to. Batches write all but what stands behind the faces. */
+static skg_status reserve_moments(const skg_gather_run *run) {
+    const int64_t faces = 4 * run->geometry->triangles, first = run->workers > 0 ? faces : 0;
+    const size_t size = sizeof(int64_t);
     const cl_int none = 0;
-    SKG_TRY(reserve(run, &run->memory->moments, sums * size));
+    SKG_TRY(skg_gather_reserve(run, &run->memory->moments, (faces + 4) * (int64_t)size));
     SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
-                                   sizeof none, (size_t)(first * size), (size_t)((sums - first) * size), 0,
+                                   sizeof none, (size_t)first * size, (size_t)(faces + 4 - first) * size, 0,
                                    NULL, NULL));
     return SKG_OK;
 }
 
-static skg_status run_faces(const skg_gather_run *run) {
+skg_status skg_gather_faces(const skg_gather_run *run) {
     const skg_geometry *geometry = run->geometry;
     const skg_hits_memory *h = run->hits;
     const skg_gradient_memory *m = run->memory;
-    SKG_TRY(reserve_sums(run));
-    if (in_batches(run)) SKG_TRY(run_batches(run));
     if (!needs_faces(run)) return SKG_OK;
     const skg_work_size work = {
         2, {geometry->triangles, run->context->device->info.gpu ? SLICES : 1}, {GROUP, 1}};
@@ -265,11 +244,12 @@ static skg_status send_around(const skg_gather_run *run) {
 skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometry,
                                const skg_hits_memory *hits, const skg_surroundings *around,
                                skg_gradient_memory *memory, skg_staging *staging, skg_gathered *gathered) {
-    skg_gather_run run = run_of(pass, geometry, hits, memory, staging, 0);
+    skg_gather_run run = skg_gather_of(pass, geometry, hits, memory, staging);
     const int64_t parts = pass->scene->count;
     double *most = NULL, *scales = NULL, *units = NULL;
     run.around = around;
-    SKG_TRY(begin(&run));
+    run.workers = run.context->device->info.gpu ? 0 : (geometry->triangles + CLAIM - 1) / CLAIM;
+    SKG_TRY(skg_gather_begin(&run));
     SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "gradient", &most));
     SKG_TRY(skg_staging_take(staging, 2 * parts, sizeof *scales, "gradient", &scales));
     SKG_TRY(skg_staging_take(staging, 2 * parts, sizeof *units, "gradient", &units));
@@ -277,11 +257,13 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
         SKG_TRY(
             skg_alloc(4 * geometry->triangles + 4, sizeof *memory->gathered, "gradient", &memory->gathered));
     if (around) SKG_TRY(send_around(&run)); /* while the weights are made, which the next call waits for */
-    SKG_TRY(find_max(&run, most));
+    SKG_TRY(skg_gather_find_max(&run, most));
     skg_gradient_find_scales(&run, most, around, scales, units);
-    SKG_TRY(upload_scales(&run, 2 * parts, scales));
-    SKG_TRY(run_slopes(&run));
-    SKG_TRY(run_faces(&run));
+    SKG_TRY(skg_gather_upload_scales(&run, 2 * parts, scales));
+    SKG_TRY(skg_gather_slopes(&run));
+    SKG_TRY(reserve_moments(&run));
+    if (run.workers > 0) SKG_TRY(run_batches(&run));
+    SKG_TRY(skg_gather_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
                                    4 * (size_t)(geometry->triangles + 1) * sizeof *memory->gathered,
                                    memory->gathered, 0, NULL, NULL));
@@ -290,51 +272,6 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
                                .around_units = units + parts,
                                .has_edges = memory->gathered[4 * geometry->triangles] != 0,
                                .layout = layout_of(pass)};
-    return SKG_OK;
-}
-
-/* Enqueues the upload of the slopes of the parts that move, from memory that stays. */
-static skg_status upload_slopes(const skg_gather_run *run, const uint8_t *moves, const double *slopes) {
-    const skg_geometry *geometry = run->geometry;
-    skg_gradient_memory *m = run->memory;
-    const size_t size = real_size(run->raster), row = 3 * size;
-    SKG_TRY(reserve(run, &m->faces, geometry->triangles * (int64_t)row));
-    if (!m->reals) SKG_TRY(skg_alloc(geometry->triangles, row, "derivative", &m->reals));
-    for (int64_t p = 0, first = 0, end; p < geometry->parts; p++, first = end) {
-        end = skg_gradient_part_end(geometry, p, first);
-        if (!moves[p] || end == first) continue;
-        round_reals(run, 3 * first, 3 * (end - first), slopes + 3 * first, m->reals);
-        SKG_CL_TRY(clEnqueueWriteBuffer(run->context->device->queue, m->faces.memory, CL_FALSE,
-                                        (size_t)first * row, (size_t)(end - first) * row,
-                                        (char *)m->reals + (size_t)first * row, 0, NULL, NULL));
-    }
-    return SKG_OK;
-}
-
-skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
-                                const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, const uint8_t *moves, double *slopes, double *values,
-                                int64_t *saturated) {
-    skg_gather_run run = run_of(pass, geometry, hits, memory, staging, 1);
-    const int64_t pixels = pass->camera.rows * pass->camera.columns;
-    double *most = NULL, *scales = NULL;
-    int64_t *sums = NULL;
-    SKG_TRY(begin(&run));
-    SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "derivative", &most));
-    SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "derivative", &scales));
-    SKG_TRY(skg_staging_take(staging, pixels, sizeof *sums, "derivative", &sums));
-    SKG_TRY(find_max(&run, most));
-    const double slope = skg_gradient_cut_slopes(geometry, moves, slopes, saturated);
-    const double scale = skg_gradient_find_scale(&run, most, moves, slope, scales);
-    for (int64_t p = 0; p < pixels; p++) values[p] = 0;
-    if (scale == 0) return SKG_OK;
-    SKG_TRY(upload_scales(&run, pass->scene->count, scales));
-    SKG_TRY(upload_slopes(&run, moves, slopes));
-    SKG_TRY(run_slopes(&run));
-    SKG_TRY(run_faces(&run));
-    SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
-                                   (size_t)pixels * sizeof *sums, sums, 0, NULL, NULL));
-    for (int64_t p = 0; p < pixels; p++) values[p] = (double)sums[p] / scale;
     return SKG_OK;
 }
 

@@ -17,9 +17,44 @@ typedef struct {
     cl_program program;
     skg_gradient_args args;
     int32_t is_double;
-    int32_t forward;                /* 1: derivatives of pixels */
+    int32_t forward; /* 1: derivatives of pixels */
+    /* Work-items of a processor that draw batches of faces, each with its own sums of pixels if `forward`; what priorities add is added
+     * by itself. 0: gradient.cl draws all */
+    int64_t workers;
     const skg_surroundings *around; /* NULL: lengths are not weighed by it */
 } skg_gather_run;
+
+/* A gather of these. */
+static inline skg_gather_run skg_gather_of(const skg_pass *pass, const skg_geometry *geometry,
+                                           const skg_hits_memory *hits, skg_gradient_memory *memory,
+                                           skg_staging *staging) {
+    return (skg_gather_run){.pass = pass,
+                            .geometry = geometry,
+                            .hits = hits,
+                            .memory = memory,
+                            .staging = staging,
+                            .raster = pass->main.raster,
+                            .context = pass->main.raster->context,
+                            .is_double = geometry->precision == SKG_PRECISION_DOUBLE};
+}
+
+/* Begins a gather: its program and arguments. */
+skg_status skg_gather_begin(skg_gather_run *run);
+
+/* Waits for the weights. most: [planes] result: the largest of each plane. */
+skg_status skg_gather_find_max(const skg_gather_run *run, double *most);
+
+/* The same number of reals in the precision of the pass. reals: filled from number `first` on */
+void skg_gather_round(const skg_gather_run *run, int64_t first, int64_t count, const double *numbers,
+                      void *reals);
+skg_status skg_gather_upload_scales(const skg_gather_run *run, int64_t count, const double *scales);
+skg_status skg_gather_reserve(const skg_gather_run *run, skg_buffer *buffer, int64_t bytes);
+
+/* What priorities add to the weights of hits; the hits of competing parts are listed still, by skg_hits_settle of this pass. */
+skg_status skg_gather_slopes(const skg_gather_run *run);
+
+/* Adds what batches have not, by gradient.cl: all faces, or what priorities add. */
+skg_status skg_gather_faces(const skg_gather_run *run);
 
 /* Powers of two by which weights become integers, and what a moment of 1 is worth. most: [planes] the largest weights. around: NULL, or what
  * stands around the parts. scales: [2][parts]; units: [2][parts] */

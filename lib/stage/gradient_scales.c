@@ -113,7 +113,7 @@ double skg_gradient_cut_slopes(const skg_geometry *geometry, const uint8_t *move
     return largest;
 }
 
-/* At most 2^10 of the largest hits meet in a pixel. */
+/* At most 2^12 of the largest hits meet in a pixel: a hit stays below 2^50. */
 double skg_gradient_find_scale(const skg_gather_run *run, const double *most, const uint8_t *moves,
                                double slope, double *scales) {
     const double competing = competing_of(run, most);
@@ -123,7 +123,7 @@ double skg_gradient_find_scale(const skg_gather_run *run, const double *most, co
         if (moves[p] && run->pass->parts[p].contributions > 0)
             bound = fmax(bound, hit_bound(run, p, most, competing));
     if (!(bound * slope > 0)) return 0;
-    const double scale = scale_for(ldexp(bound * slope, 10));
+    const double scale = scale_for(ldexp(bound * slope, 12));
     for (int64_t p = 0; p < parts; p++) scales[p] = moves[p] ? scale : 0;
     return scale;
 }

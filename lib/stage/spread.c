@@ -1,0 +1,128 @@
+/* The derivatives of pixels along a direction: the forward counterpart of gather.c. */
+#include "stage/gradient_private.h"
+
+#include "core/maths.h"
+
+#include <skiagraph/plan.h>
+
+enum { CLAIM = 1024 };                        /* triangles that a work-item of a processor takes in a row */
+static const int64_t COPIES_BYTES = 64 << 20; /* that sums of pixels may take */
+
+/* Sums of pixels are rows as long as those of weights, and what lanes without a hit touch behind them. */
+static int64_t sums_of(const skg_gather_run *run) {
+    return run->args.plane + SKG_SPARE_ROWS * (int64_t)run->args.stride + SKG_SPARE_COLUMNS;
+}
+
+/* Processors have sums for each of their cores, unless these are many and the image is large. */
+static int64_t count_workers(const skg_gather_run *run, const skg_weight_layout *layout) {
+    const skg_device_info *info = &run->context->device->info;
+    const int64_t bytes = (int64_t)sizeof(int64_t) * layout->plane, most = COPIES_BYTES / bytes;
+    const int64_t units = info->compute_units < most ? info->compute_units : most;
+    return info->gpu || 4 * units < info->compute_units ? 0 : units;
+}
+
+/* Enqueues the upload of the slopes of the parts that move, from memory that stays. */
+static skg_status upload_slopes(const skg_gather_run *run, const uint8_t *moves, const double *slopes) {
+    const skg_geometry *geometry = run->geometry;
+    skg_gradient_memory *m = run->memory;
+    const size_t row = 3 * (run->is_double ? sizeof(double) : sizeof(float));
+    SKG_TRY(skg_gather_reserve(run, &m->faces, geometry->triangles * (int64_t)row));
+    if (!m->reals) SKG_TRY(skg_alloc(geometry->triangles, row, "derivative", &m->reals));
+    for (int64_t p = 0, first = 0, end; p < geometry->parts; p++, first = end) {
+        end = skg_gradient_part_end(geometry, p, first);
+        if (!moves[p] || end == first) continue;
+        skg_gather_round(run, 3 * first, 3 * (end - first), slopes + 3 * first, m->reals);
+        SKG_CL_TRY(clEnqueueWriteBuffer(run->context->device->queue, m->faces.memory, CL_FALSE,
+                                        (size_t)first * row, (size_t)(end - first) * row,
+                                        (char *)m->reals + (size_t)first * row, 0, NULL, NULL));
+    }
+    return SKG_OK;
+}
+
+static skg_status get_batches(const skg_gather_run *run, cl_program *program) {
+    static const char *const files[] = {"batch.clh",   "worth.clh", "spread.clh",           "draw.clh",
+                                        "collect.clh", "tiny.clh",  "derivative_batches.cl"};
+    static const skg_define defines[] = {{"SKG_GATHER", 1}, {"SKG_FORWARD", 1}};
+    return skg_kernels_get(run->context, &run->pass->kernels, 7, files, SKG_DEFINES(defines), program);
+}
+
+/* On a processor: the sums but for what priorities add. */
+static skg_status run_batches(const skg_gather_run *run) {
+    const skg_geometry *geometry = run->geometry;
+    const skg_gradient_memory *m = run->memory;
+    const skg_work_size work = {1, {run->workers}, {1}};
+    skg_gradient_args args = run->args;
+    cl_program program = NULL;
+    args.layout.claim = CLAIM;
+    SKG_TRY(get_batches(run, &program));
+    const skg_argument arguments[] = {
+        SKG_ARGUMENT(DERIVATIVE_BATCHES, args, args),
+        SKG_TRIANGLE_BUFFERS(DERIVATIVE_BATCHES, geometry),
+        SKG_ARGUMENT(DERIVATIVE_BATCHES, contributions, geometry->contribution_table.memory),
+        SKG_ARGUMENT(DERIVATIVE_BATCHES, weights, m->weights.memory),
+        SKG_ARGUMENT(DERIVATIVE_BATCHES, scales, m->scales.memory),
+        SKG_ARGUMENT(DERIVATIVE_BATCHES, face_slopes, m->faces.memory),
+        SKG_ARGUMENT(DERIVATIVE_BATCHES, sums, m->moments.memory),
+    };
+    return SKG_LAUNCH_ONCE(run->context, program, "skg_derivative_batches", "gradient", &work, arguments,
+                           &run->staging->log);
+}
+
+/* Adds up the hits of every pixel: in batches, which zero their own sums, or by atomic operations. */
+static skg_status run_hits(const skg_gather_run *run, int64_t copies) {
+    const int64_t bytes = copies * sums_of(run) * (int64_t)sizeof(int64_t);
+    const cl_int none = 0;
+    SKG_TRY(skg_gather_reserve(run, &run->memory->moments, bytes));
+    SKG_TRY(skg_gather_slopes(run));
+    if (run->workers > 0)
+        SKG_TRY(run_batches(run));
+    else
+        SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
+                                       sizeof none, 0, (size_t)bytes, 0, NULL, NULL));
+    return skg_gather_faces(run);
+}
+
+/* Reads the sums of all copies as derivatives. */
+static skg_status read_pixels(const skg_gather_run *run, int64_t copies, double scale, double *values) {
+    const int64_t columns = run->pass->camera.columns, rows = run->pass->camera.rows, size = sums_of(run);
+    const double unit = 1 / scale; /* a power of two */
+    int64_t *sums = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(copies * size, sizeof *sums, "derivative", &sums));
+    SKG_CL_CLEANUP(clEnqueueReadBuffer(run->context->device->queue, run->memory->moments.memory, CL_TRUE, 0,
+                                       (size_t)(copies * size) * sizeof *sums, sums, 0, NULL, NULL));
+    for (int64_t r = 0; r < rows; r++) {
+        int64_t *row = sums + r * run->args.stride;
+        for (int64_t k = 1; k < copies; k++)
+            for (int64_t c = 0; c < columns; c++) row[c] += row[k * size + c];
+        for (int64_t c = 0; c < columns; c++) values[r * columns + c] = (double)row[c] * unit;
+    }
+cleanup:
+    skg_free(&sums);
+    return status;
+}
+
+skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
+                                const skg_hits_memory *hits, skg_gradient_memory *memory,
+                                skg_staging *staging, const uint8_t *moves, double *slopes, double *values,
+                                int64_t *saturated) {
+    skg_gather_run run = skg_gather_of(pass, geometry, hits, memory, staging);
+    const int64_t pixels = pass->camera.rows * pass->camera.columns;
+    const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
+    double *most = NULL, *scales = NULL;
+    run.forward = 1;
+    run.workers = count_workers(&run, &layout);
+    SKG_TRY(skg_gather_begin(&run));
+    SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "derivative", &most));
+    SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "derivative", &scales));
+    SKG_TRY(skg_gather_find_max(&run, most));
+    const double slope = skg_gradient_cut_slopes(geometry, moves, slopes, saturated);
+    const double scale = skg_gradient_find_scale(&run, most, moves, slope, scales);
+    for (int64_t p = 0; p < pixels; p++) values[p] = 0;
+    if (scale == 0) return SKG_OK;
+    const int64_t copies = run.workers > 0 ? run.workers : 1;
+    SKG_TRY(skg_gather_upload_scales(&run, pass->scene->count, scales));
+    SKG_TRY(upload_slopes(&run, moves, slopes));
+    SKG_TRY(run_hits(&run, copies));
+    return read_pixels(&run, copies, scale, values);
+}
