@@ -3,6 +3,7 @@
 #include "core/maths.h"
 #include "core/threads.h"
 #include "frame/derivative_density.h"
+#include "frame/gradient_edges.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
 #include "geometry/slopes.h"
@@ -66,9 +67,9 @@ typedef struct {
     const skg_pass *pass;
     const skg_velocities *of_view;
     const skg_direction *direction;
-    skg_face_moments *faces;   /* [parts] */
-    skg_part_weights *weights; /* [parts] */
-    skg_pixel_weights of_pixels;
+    skg_face_moments *faces; /* [parts] */
+    skg_part_edges *edges;   /* [parts] */
+    skg_edge_weights of_edges;
     double *slopes;   /* [triangles][3] */
     uint8_t *edge_on; /* [triangles] */
     int64_t *first;   /* [parts] the first triangle */
@@ -97,25 +98,25 @@ static skg_status find_slopes(skg_job *job, slopes_work *w) {
     const skg_geometry *geometry = &job->machine->geometry;
     const int64_t parts = w->pass->scene->count;
     SKG_TRY(skg_alloc(parts, sizeof *w->faces, "derivative", &w->faces));
-    SKG_TRY(skg_alloc(parts, sizeof *w->weights, "derivative", &w->weights));
+    SKG_TRY(skg_alloc(parts, sizeof *w->edges, "derivative", &w->edges));
     SKG_TRY(skg_alloc(parts, sizeof *w->first, "derivative", &w->first));
     SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *w->slopes, "derivative", &w->slopes));
     SKG_TRY(skg_alloc(geometry->triangles, sizeof *w->edge_on, "derivative", &w->edge_on));
-    SKG_TRY(skg_pixel_weights_create(w->pass, &w->of_pixels));
+    SKG_TRY(skg_edge_weights_create(w->pass, &w->of_edges));
     for (int64_t p = 0; p < parts; p++) {
         if (p > 0) w->first[p] = w->first[p - 1] + w->faces[p - 1].mesh->triangles;
         SKG_TRY(skg_gradient_place_faces(job, w->pass, p, &w->faces[p]));
-        w->weights[p] = (skg_part_weights){.all = &w->of_pixels, .part = p};
-        w->faces[p].weight = skg_pixel_weigh;
-        w->faces[p].weight_user = &w->weights[p];
+        w->edges[p] = (skg_part_edges){.all = &w->of_edges, .part = p};
+        w->faces[p].weigh = skg_edge_weigh;
+        w->faces[p].weigh_user = &w->edges[p];
     }
     return skg_parallel(parts, find_part, w);
 }
 
 static void release_slopes(slopes_work *w) {
-    skg_pixel_weights_release(&w->of_pixels);
+    skg_edge_weights_release(&w->of_edges);
     skg_free(&w->faces);
-    skg_free(&w->weights);
+    skg_free(&w->edges);
     skg_free(&w->first);
     skg_free(&w->slopes);
     skg_free(&w->edge_on);
@@ -123,15 +124,15 @@ static void release_slopes(slopes_work *w) {
 
 /* Adds the faces that are seen as lines, with the weights that stand on the device. */
 static skg_status add_edges(skg_job *job, slopes_work *w, double *values) {
-    skg_pixel_weights_clear(&w->of_pixels);
+    skg_edge_weights_clear(&w->of_edges);
     for (int64_t p = 0; p < w->pass->scene->count; p++) {
         const skg_velocities v = velocities_of(w, p);
         const skg_face_moments *faces = &w->faces[p];
         if (w->pass->parts[p].contributions == 0) continue;
         for (int64_t f = 0; f < faces->mesh->triangles; f++) {
             if (!w->edge_on[w->first[p] + f]) continue;
-            SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
-            skg_slopes_spread(faces, &v, f, values);
+            SKG_TRY(skg_edge_weights_read(job, p, &w->of_edges));
+            SKG_TRY(skg_slopes_spread(faces, &v, f, values));
         }
     }
     return SKG_OK;
