@@ -70,9 +70,10 @@ typedef struct {
     skg_face_moments *faces; /* [parts] */
     skg_part_edges *edges;   /* [parts] */
     skg_edge_weights of_edges;
-    double *slopes;   /* [triangles][3] */
-    uint8_t *edge_on; /* [triangles] */
-    int64_t *first;   /* [parts] the first triangle */
+    double *slopes;           /* [triangles][3] */
+    uint8_t *edge_on;         /* [triangles] */
+    int64_t *first;           /* [parts] the first triangle */
+    skg_geometry_part *drawn; /* [parts] as the kernels gather them */
 } slopes_work;
 
 static skg_velocities velocities_of(const slopes_work *w, int64_t part) {
@@ -103,6 +104,8 @@ static skg_status find_slopes(skg_job *job, slopes_work *w) {
     SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *w->slopes, "derivative", &w->slopes));
     SKG_TRY(skg_alloc(geometry->triangles, sizeof *w->edge_on, "derivative", &w->edge_on));
     SKG_TRY(skg_edge_weights_create(w->pass, &w->of_edges));
+    w->drawn = w->pass->parts;
+    SKG_TRY(skg_gradient_draw_competitors(job, w->pass, &w->drawn));
     for (int64_t p = 0; p < parts; p++) {
         if (p > 0) w->first[p] = w->first[p - 1] + w->faces[p - 1].mesh->triangles;
         SKG_TRY(skg_gradient_place_faces(job, w->pass, p, &w->faces[p]));
@@ -128,7 +131,7 @@ static skg_status add_edges(skg_job *job, slopes_work *w, double *values) {
     for (int64_t p = 0; p < w->pass->scene->count; p++) {
         const skg_velocities v = velocities_of(w, p);
         const skg_face_moments *faces = &w->faces[p];
-        if (w->pass->parts[p].contributions == 0) continue;
+        if (w->drawn[p].contributions == 0) continue;
         for (int64_t f = 0; f < faces->mesh->triangles; f++) {
             if (!w->edge_on[w->first[p] + f]) continue;
             SKG_TRY(skg_edge_weights_read(job, p, &w->of_edges));
@@ -171,15 +174,32 @@ static skg_status add_rays(skg_job *job, const skg_frame_work *work, const skg_p
     return status;
 }
 
+/* Adds up the slopes of hits with the parts as `drawn` has them. The tables of the pass are put back. */
+static skg_status scatter(skg_job *job, slopes_work *w, double *values) {
+    const skg_pass *pass = w->pass;
+    skg_machine *machine = job->machine;
+    skg_geometry *geometry = &machine->geometry;
+    const int64_t state = geometry->state;
+    const double scale = pass->scale.scale;
+    skg_pass other = *pass;
+    other.parts = w->drawn;
+    if (w->drawn != pass->parts)
+        SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, w->drawn, scale));
+    SKG_TRY(skg_gradient_scatter(&other, geometry, &machine->hits, &machine->gradient, &job->staging,
+                                 w->slopes, values, &job->gradient->saturated));
+    if (w->drawn != pass->parts)
+        SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, scale));
+    geometry->state = state; /* the sums of the pass stand as before */
+    return SKG_OK;
+}
+
 /* One channel of the intensities: the adjoint is 1 there, so that the weights of a ray are its own slopes. */
 static skg_status add_channel(skg_job *job, const skg_frame_work *work, const skg_pass *pass, slopes_work *w,
                               int64_t channel, double *values) {
     struct skg_gradient_work *gradient = job->gradient;
-    skg_machine *machine = job->machine;
     const int64_t columns = pass->camera.columns, rows = pass->camera.rows, fine = pass->fine;
     double *image = gradient->derivative + channel * (rows / fine) * (columns / fine);
-    SKG_TRY(skg_gradient_scatter(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
-                                 w->slopes, values, &gradient->saturated));
+    SKG_TRY(scatter(job, w, values));
     SKG_TRY(add_edges(job, w, values));
     if (gradient->direction.source || gradient->direction.detector)
         SKG_TRY(add_rays(job, work, pass, w->of_view, values));

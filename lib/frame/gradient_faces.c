@@ -14,6 +14,22 @@ skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t 
     return skg_gradient_find_corners(machine->context, geometry, mesh, &machine->gradient, &faces->corners);
 }
 
+skg_status skg_gradient_draw_competitors(skg_job *job, const skg_pass *pass, skg_geometry_part **drawn) {
+    static const skg_contribution nothing = {.plane = 0, .weight = 0};
+    const int64_t parts = pass->scene->count;
+    for (int64_t s = 0; s < pass->priority.count; s++) {
+        const int64_t p = pass->priority.parts[s];
+        if (pass->parts[p].contributions > 0) continue;
+        if (*drawn == pass->parts) {
+            SKG_TRY(skg_staging_take(&job->staging, parts, sizeof **drawn, "gradient", drawn));
+            for (int64_t k = 0; k < parts; k++) (*drawn)[k] = pass->parts[k];
+        }
+        (*drawn)[p].contributions = 1;
+        (*drawn)[p].contribution = &nothing;
+    }
+    return SKG_OK;
+}
+
 /* Whether any face of a part is seen as a line. */
 static int has_edges(const int64_t *moments, int64_t triangles) {
     for (int64_t t = 0; t < triangles; t++)

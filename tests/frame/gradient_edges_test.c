@@ -55,6 +55,10 @@ static const edge_case cases[] = {
           {.size = {91, 97, 10}, .at = {1, 0, 2}, .turn_x = 0.3, .mu = 0.3, .inside = -1, .priority = 1}},
      .moving = BODY,
      .change = 17.9 * (33 - 10 / 0.955336489125606) * 0.1}, /* cos 0.3 */
+    {.name = "the plate is a hole",
+     .boxes = {BODY_BOX, {.size = {9, 11.3, 10}, .at = {0, 0, 3}, .mu = 0, .inside = -1, .priority = 1}},
+     .moving = PLATE,
+     .change = 11.3 * 10 * -0.1},
     {.name = "what is inside the body falls with it",
      .boxes = {BODY_BOX,
                {.size = {9, 11.3, 10}, .at = {0, 0, 3}, .mu = 0.3, .inside = -1, .priority = 1},
