@@ -36,6 +36,7 @@ const char *skg_self_test_name(skg_self_test number) {
         [SKG_SELF_TEST_SCATTER] = "scatter",
         [SKG_SELF_TEST_GRADIENT] = "gradients",
         [SKG_SELF_TEST_VARIANCE] = "variance",
+        [SKG_SELF_TEST_DENSITIES] = "density gradients",
     };
     return names[number];
 }

@@ -25,19 +25,20 @@ typedef enum {
     SKG_SELF_TEST_BLUR,
     SKG_SELF_TEST_PARALLEL, /* all strategies, with exact sums */
     SKG_SELF_TEST_LENGTHS,
-    SKG_SELF_TEST_DETECTOR, /* electronic noise, steps, flat field */
-    SKG_SELF_TEST_SHADES,   /* bow-tie filter, grid, oblique scintillator, jaws */
-    SKG_SELF_TEST_PLACE,    /* positions in memory of the device */
-    SKG_SELF_TEST_PICTURE,  /* the 3D view */
-    SKG_SELF_TEST_RAYS,     /* several rays of a pixel in one pass */
-    SKG_SELF_TEST_HEEL,     /* heel effect */
-    SKG_SELF_TEST_DEPTHS,   /* several blurs, added */
-    SKG_SELF_TEST_APART,    /* noise with a blur of its own, added */
-    SKG_SELF_TEST_PASSES,   /* passes of a frame, each by a worker */
-    SKG_SELF_TEST_SIDE,     /* the same, several side by side */
-    SKG_SELF_TEST_SCATTER,  /* scattered photons */
-    SKG_SELF_TEST_GRADIENT, /* derivatives of an image */
-    SKG_SELF_TEST_VARIANCE, /* of noise, behind a blur and a logarithm */
+    SKG_SELF_TEST_DETECTOR,  /* electronic noise, steps, flat field */
+    SKG_SELF_TEST_SHADES,    /* bow-tie filter, grid, oblique scintillator, jaws */
+    SKG_SELF_TEST_PLACE,     /* positions in memory of the device */
+    SKG_SELF_TEST_PICTURE,   /* the 3D view */
+    SKG_SELF_TEST_RAYS,      /* several rays of a pixel in one pass */
+    SKG_SELF_TEST_HEEL,      /* heel effect */
+    SKG_SELF_TEST_DEPTHS,    /* several blurs, added */
+    SKG_SELF_TEST_APART,     /* noise with a blur of its own, added */
+    SKG_SELF_TEST_PASSES,    /* passes of a frame, each by a worker */
+    SKG_SELF_TEST_SIDE,      /* the same, several side by side */
+    SKG_SELF_TEST_SCATTER,   /* scattered photons */
+    SKG_SELF_TEST_GRADIENT,  /* derivatives of an image */
+    SKG_SELF_TEST_VARIANCE,  /* of noise, behind a blur and a logarithm */
+    SKG_SELF_TEST_DENSITIES, /* derivatives of an image by the densities of parts inside each other */
     SKG_SELF_TESTS
 } skg_self_test;
 

@@ -3,6 +3,7 @@
 #include "core/maths.h"
 #include "core/threads.h"
 #include "frame/derivative_density.h"
+#include "frame/gradient_edges.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
 #include "geometry/slopes.h"
@@ -71,15 +72,16 @@ typedef struct {
     const skg_pass *pass;
     const skg_velocities *of_view;
     const skg_direction *direction;
-    skg_face_moments *faces;   /* [parts] */
-    skg_part_weights *weights; /* [parts] */
-    skg_pixel_weights of_pixels;
+    skg_face_moments *faces; /* [parts] */
+    skg_part_edges *edges;   /* [parts] */
+    skg_edge_weights of_edges;
     double *slopes;     /* [triangles][3] of the parts that move */
     uint8_t *edge_on;   /* [triangles] of them */
     int64_t *first;     /* [parts] the first triangle */
     uint8_t *moves;     /* [parts] */
     face_range *ranges; /* of the parts that move */
     int64_t range_count;
+    skg_geometry_part *drawn; /* [parts] as the kernels gather them */
 } slopes_work;
 
 enum { FACES = 2048 }; /* of a range */
@@ -127,27 +129,29 @@ static skg_status find_slopes(skg_job *job, slopes_work *w) {
     const skg_geometry *geometry = &job->machine->geometry;
     const int64_t parts = w->pass->scene->count;
     SKG_TRY(skg_alloc(parts, sizeof *w->faces, "derivative", &w->faces));
-    SKG_TRY(skg_alloc(parts, sizeof *w->weights, "derivative", &w->weights));
+    SKG_TRY(skg_alloc(parts, sizeof *w->edges, "derivative", &w->edges));
     SKG_TRY(skg_alloc(parts, sizeof *w->first, "derivative", &w->first));
     SKG_TRY(skg_alloc(parts, sizeof *w->moves, "derivative", &w->moves));
     SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *w->slopes, "derivative", &w->slopes));
     SKG_TRY(skg_alloc(geometry->triangles, sizeof *w->edge_on, "derivative", &w->edge_on));
-    SKG_TRY(skg_pixel_weights_create(w->pass, &w->of_pixels));
+    SKG_TRY(skg_edge_weights_create(w->pass, &w->of_edges));
+    w->drawn = w->pass->parts;
+    SKG_TRY(skg_gradient_draw_competitors(job, w->pass, &w->drawn));
     for (int64_t p = 0; p < parts; p++) {
         if (p > 0) w->first[p] = w->first[p - 1] + w->faces[p - 1].mesh->triangles;
         SKG_TRY(skg_gradient_place_faces(job, w->pass, p, &w->faces[p]));
-        w->weights[p] = (skg_part_weights){.all = &w->of_pixels, .part = p};
-        w->faces[p].weight = skg_pixel_weigh;
-        w->faces[p].weight_user = &w->weights[p];
+        w->edges[p] = (skg_part_edges){.all = &w->of_edges, .part = p};
+        w->faces[p].weigh = skg_edge_weigh;
+        w->faces[p].weigh_user = &w->edges[p];
     }
     SKG_TRY(find_ranges(w));
     return skg_parallel(w->range_count, find_range, w);
 }
 
 static void release_slopes(slopes_work *w) {
-    skg_pixel_weights_release(&w->of_pixels);
+    skg_edge_weights_release(&w->of_edges);
     skg_free(&w->faces);
-    skg_free(&w->weights);
+    skg_free(&w->edges);
     skg_free(&w->first);
     skg_free(&w->moves);
     skg_free(&w->ranges);
@@ -157,15 +161,15 @@ static void release_slopes(slopes_work *w) {
 
 /* Adds the faces that are seen as lines, with the weights that stand on the device. */
 static skg_status add_edges(skg_job *job, slopes_work *w, double *values) {
-    skg_pixel_weights_clear(&w->of_pixels);
+    skg_edge_weights_clear(&w->of_edges);
     for (int64_t p = 0; p < w->pass->scene->count; p++) {
         const skg_velocities v = velocities_of(w, p);
         const skg_face_moments *faces = &w->faces[p];
-        if (!w->moves[p] || w->pass->parts[p].contributions == 0) continue;
+        if (!w->moves[p] || w->drawn[p].contributions == 0) continue;
         for (int64_t f = 0; f < faces->mesh->triangles; f++) {
             if (!w->edge_on[w->first[p] + f]) continue;
-            SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
-            skg_slopes_spread(faces, &v, f, values);
+            SKG_TRY(skg_edge_weights_read(job, p, &w->of_edges));
+            SKG_TRY(skg_slopes_spread(faces, &v, f, values));
         }
     }
     return SKG_OK;
@@ -204,15 +208,32 @@ static skg_status add_rays(skg_job *job, const skg_frame_work *work, const skg_p
     return status;
 }
 
+/* Adds up the slopes of hits with the parts as `drawn` has them. The tables of the pass are put back. */
+static skg_status scatter(skg_job *job, slopes_work *w, double *values) {
+    const skg_pass *pass = w->pass;
+    skg_machine *machine = job->machine;
+    skg_geometry *geometry = &machine->geometry;
+    const int64_t state = geometry->state;
+    const double scale = pass->scale.scale;
+    skg_pass other = *pass;
+    other.parts = w->drawn;
+    if (w->drawn != pass->parts)
+        SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, w->drawn, scale));
+    SKG_TRY(skg_gradient_scatter(&other, geometry, &machine->hits, &machine->gradient, &job->staging,
+                                 w->moves, w->slopes, values, &job->gradient->saturated));
+    if (w->drawn != pass->parts)
+        SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, scale));
+    geometry->state = state; /* the sums of the pass stand as before */
+    return SKG_OK;
+}
+
 /* One channel of the intensities: the adjoint is 1 there, so that the weights of a ray are its own slopes. */
 static skg_status add_channel(skg_job *job, const skg_frame_work *work, const skg_pass *pass, slopes_work *w,
                               int64_t channel, double *values) {
     struct skg_gradient_work *gradient = job->gradient;
-    skg_machine *machine = job->machine;
     const int64_t columns = pass->camera.columns, rows = pass->camera.rows, fine = pass->fine;
     double *image = gradient->derivative + channel * (rows / fine) * (columns / fine);
-    SKG_TRY(skg_gradient_scatter(pass, &machine->geometry, &machine->hits, &machine->gradient, &job->staging,
-                                 w->moves, w->slopes, values, &gradient->saturated));
+    SKG_TRY(scatter(job, w, values));
     SKG_TRY(add_edges(job, w, values));
     if (gradient->direction.source || gradient->direction.detector)
         SKG_TRY(add_rays(job, work, pass, w->of_view, values));

@@ -322,6 +322,7 @@ static skg_status submit_gradient(const char *call, skg_plan *plan, const skg_fr
         check_nodes(call, plan->recipe->model.nodes, work->wanted.attenuations, work->wanted.nodes));
     SKG_TRY_CLEANUP(check_frame(call, frame, &work->wanted));
     SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
+    if (work->wanted.densities) SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_DENSITIES));
     SKG_TRY_CLEANUP(allocate_results(plan->recipe, work));
     SKG_TRY_CLEANUP(make_job(plan, &work, &made));
     SKG_TRY_CLEANUP(copy_targets(made));

@@ -1,5 +1,7 @@
 #include "frame/gradient_faces.h"
 
+#include "frame/gradient_edges.h"
+
 skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t part,
                                     skg_face_moments *faces) {
     skg_machine *machine = job->machine;
@@ -12,46 +14,21 @@ skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t 
     return skg_gradient_find_corners(machine->context, geometry, mesh, &machine->gradient, &faces->corners);
 }
 
-/* --- weights on the host */
-
-skg_status skg_pixel_weights_create(const skg_pass *pass, skg_pixel_weights *w) {
-    *w = (skg_pixel_weights){.pass = pass,
-                             .layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine)};
-    return skg_alloc(w->layout.planes, sizeof *w->planes, "gradient", &w->planes);
-}
-
-void skg_pixel_weights_clear(skg_pixel_weights *w) {
-    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) skg_free(&w->planes[k].memory);
-}
-
-void skg_pixel_weights_release(skg_pixel_weights *w) {
-    skg_pixel_weights_clear(w);
-    skg_free(&w->planes);
-}
-
-double skg_pixel_weigh(const void *user, int64_t column, int64_t row) {
-    const skg_part_weights *of_part = user;
-    const skg_pixel_weights *w = of_part->all;
-    const skg_geometry_part *part = &w->pass->parts[of_part->part];
-    double sum = 0;
-    for (int32_t c = 0; c < part->contributions; c++)
-        sum += part->contribution[c].weight *
-               skg_reals_at(&w->planes[part->contribution[c].plane], row * w->layout.stride + column);
-    return part->depth > 0 ? sum * w->pass->scale.scale : 0;
-}
-
-skg_status skg_pixel_weights_read(skg_job *job, int64_t number, skg_pixel_weights *w) {
-    const skg_geometry_part *part = &w->pass->parts[number];
-    for (int32_t c = 0; c < part->contributions; c++) {
-        const int64_t plane = part->contribution[c].plane;
-        if (w->planes[plane].memory) continue;
-        SKG_TRY(skg_gradient_read_reals(w->pass, job->machine->gradient.weights.memory,
-                                        plane * w->layout.plane, w->layout.plane, &w->planes[plane]));
+skg_status skg_gradient_draw_competitors(skg_job *job, const skg_pass *pass, skg_geometry_part **drawn) {
+    static const skg_contribution nothing = {.plane = 0, .weight = 0};
+    const int64_t parts = pass->scene->count;
+    for (int64_t s = 0; s < pass->priority.count; s++) {
+        const int64_t p = pass->priority.parts[s];
+        if (pass->parts[p].contributions > 0) continue;
+        if (*drawn == pass->parts) {
+            SKG_TRY(skg_staging_take(&job->staging, parts, sizeof **drawn, "gradient", drawn));
+            for (int64_t k = 0; k < parts; k++) (*drawn)[k] = pass->parts[k];
+        }
+        (*drawn)[p].contributions = 1;
+        (*drawn)[p].contribution = &nothing;
     }
     return SKG_OK;
 }
-
-/* --- all faces */
 
 /* Whether any face of a part is seen as a line. */
 static int has_edges(const int64_t *moments, int64_t triangles) {
@@ -62,9 +39,9 @@ static int has_edges(const int64_t *moments, int64_t triangles) {
 
 /* The faces of the parts, with their moments. */
 typedef struct {
-    skg_face_moments *faces;   /* [parts] */
-    skg_part_weights *weights; /* [parts] */
-    skg_pixel_weights of_pixels;
+    skg_face_moments *faces; /* [parts] */
+    skg_part_edges *edges;   /* [parts] */
+    skg_edge_weights of_edges;
 } faces_work;
 
 static skg_status list_faces(skg_job *job, const skg_pass *pass, const skg_gathered *gathered,
@@ -79,17 +56,17 @@ static skg_status list_faces(skg_job *job, const skg_pass *pass, const skg_gathe
         first += triangles;
         if (gathered->units[p] == 0) continue;
         if (gathered->has_edges && has_edges(moments, triangles))
-            SKG_TRY(skg_pixel_weights_read(job, p, &w->of_pixels));
+            SKG_TRY(skg_edge_weights_read(job, p, &w->of_edges));
         SKG_TRY(skg_gradient_place_faces(job, pass, p, faces));
         skg_camera_part(&pass->camera, part->pose, part->origin, part->reference, part->flipped, &entry);
         SKG_TRY(skg_gradient_find_planes(geometry, faces->mesh, geometry->mesh_of_part[p],
                                          &job->machine->gradient, &faces->planes));
-        w->weights[p] = (skg_part_weights){.all = &w->of_pixels, .part = p};
+        w->edges[p] = (skg_part_edges){.all = &w->of_edges, .part = p};
         faces->moments = moments;
         faces->unit = gathered->units[p];
         faces->pixel[0] = entry.pixel_i, faces->pixel[1] = entry.pixel_j;
-        faces->weight = skg_pixel_weigh;
-        faces->weight_user = &w->weights[p];
+        faces->weigh = skg_edge_weigh;
+        faces->weigh_user = &w->edges[p];
     }
     return SKG_OK;
 }
@@ -100,13 +77,13 @@ skg_status skg_gradient_add_faces(skg_job *job, const skg_pass *pass, const skg_
     faces_work w = {.faces = NULL};
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.faces, "gradient", &w.faces));
-    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.weights, "gradient", &w.weights));
-    SKG_TRY_CLEANUP(skg_pixel_weights_create(pass, &w.of_pixels));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.edges, "gradient", &w.edges));
+    SKG_TRY_CLEANUP(skg_edge_weights_create(pass, &w.of_edges));
     SKG_TRY_CLEANUP(list_faces(job, pass, gathered, &w));
     status = skg_forces_find(parts, w.faces, vertices, sums);
 cleanup:
-    skg_pixel_weights_release(&w.of_pixels);
+    skg_edge_weights_release(&w.of_edges);
     skg_free(&w.faces);
-    skg_free(&w.weights);
+    skg_free(&w.edges);
     return status;
 }

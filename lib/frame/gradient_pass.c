@@ -265,6 +265,7 @@ skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64
     skg_surroundings around;
     SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 0));
     if (gradient->wanted.densities) SKG_TRY(skg_gradient_find_surroundings(job, pass, &around, &drawn));
+    SKG_TRY(skg_gradient_draw_competitors(job, pass, &drawn));
     SKG_TRY(skg_alloc(pass->scene->count, sizeof *of_parts, "gradient", &of_parts));
     const skg_status status =
         add_gathered(job, work, number, pass, gradient->wanted.densities ? &around : NULL, drawn, of_parts);

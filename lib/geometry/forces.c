@@ -85,7 +85,8 @@ void skg_face_outward(const skg_face_moments *faces, double at[3][3], double nor
 }
 
 /* A face that contains rays. */
-static void add_edge_on(const skg_face_moments *faces, int64_t face, skg_force_sums *sums, double *vertices) {
+static skg_status add_edge_on(const skg_face_moments *faces, int64_t face, skg_force_sums *sums,
+                              double *vertices) {
     face_corner corners[3];
     double at[3][3], seen[3][3], moments[3] = {0}, force[3], normal[3];
     for (int k = 0; k < 3; k++) {
@@ -94,11 +95,12 @@ static void add_edge_on(const skg_face_moments *faces, int64_t face, skg_force_s
         memcpy(seen[k], corners[k].seen, sizeof seen[k]);
     }
     skg_face_outward(faces, at, normal);
-    skg_steep_add(faces->camera, seen, faces->weight, faces->weight_user, moments);
+    SKG_TRY(skg_steep_add(faces->camera, seen, faces->weigh, faces->weigh_user, moments));
     for (int k = 0; k < 3; k++) {
         skg_scale_vector(moments[k], normal, force);
         if (moments[k] != 0) add_force(faces, &corners[k], force, sums, vertices);
     }
+    return SKG_OK;
 }
 
 /* --- all others */
@@ -192,17 +194,14 @@ static void add_vertices(const skg_face_moments *faces, const local_camera *came
     }
 }
 
-static void add_face(const skg_face_moments *faces, const local_camera *camera, int64_t face,
-                     local_sums *sums, double *vertices) {
+static skg_status add_face(const skg_face_moments *faces, const local_camera *camera, int64_t face,
+                           local_sums *sums, double *vertices) {
     const int64_t *moments = faces->moments + 4 * face;
     const int parallel = faces->camera->parallel;
     seen_face f;
-    if (!(moments[0] | moments[1] | moments[2])) return;
-    if (moments[0] == SKG_EDGE_ON) {
-        add_edge_on(faces, face, &sums->of_edge_on, vertices);
-        return;
-    }
-    if (!see_face(faces, camera, face, &f)) return;
+    if (!(moments[0] | moments[1] | moments[2])) return SKG_OK;
+    if (moments[0] == SKG_EDGE_ON) return add_edge_on(faces, face, &sums->of_edge_on, vertices);
+    if (!see_face(faces, camera, face, &f)) return SKG_OK;
     if (vertices) add_vertices(faces, camera, face, &f, vertices);
     /* 1 / t = n . D / h; with a parallel beam t - 1 = n . (v_0 - p) / h, and hits lie behind their pixels by as much. */
     const double depth = skg_dot(f.normal, f.place) * f.inverse;
@@ -217,6 +216,7 @@ static void add_face(const skg_face_moments *faces, const local_camera *camera, 
         sums->along[c] += along * f.normal[c];
         for (int r = 0; r < 3; r++) sums->turn[r][c] += f.place[r] * f.normal[c];
     }
+    return SKG_OK;
 }
 
 static skg_status add_chunk(void *user, int64_t number) {
@@ -224,7 +224,7 @@ static skg_status add_chunk(void *user, int64_t number) {
     face_chunk *chunk = &run->chunks[number];
     double *vertices = run->vertices ? run->vertices[chunk->part] : NULL;
     for (int64_t f = chunk->first; f < chunk->end; f++)
-        add_face(&run->parts[chunk->part], &run->cameras[chunk->part], f, &chunk->sums, vertices);
+        SKG_TRY(add_face(&run->parts[chunk->part], &run->cameras[chunk->part], f, &chunk->sums, vertices));
     return SKG_OK;
 }
 

@@ -19,10 +19,10 @@ typedef struct {
     const double *planes;   /* [triangles][4] of skg_face_planes_find; slopes do not use them */
     /* [triangles][4] sums over hits of weight t^2, of that times the column, and times the row; NULL: none are added */
     const int64_t *moments;
-    double unit;             /* of a moment */
-    int32_t pixel[2];        /* from which columns and rows count */
-    skg_steep_weight weight; /* of faces whose first moment is SKG_EDGE_ON; may be NULL if there are none */
-    const void *weight_user;
+    double unit;           /* of a moment */
+    int32_t pixel[2];      /* from which columns and rows count */
+    skg_steep_weigh weigh; /* of faces whose first moment is SKG_EDGE_ON; may be NULL if there are none */
+    const void *weigh_user;
 } skg_face_moments;
 
 /* Sums over faces, about the world's origin. t: the path parameter of a corner. */

@@ -89,8 +89,8 @@ void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *veloci
     }
 }
 
-void skg_slopes_spread(const skg_face_moments *faces, const skg_velocities *velocities, int64_t face,
-                       double *values) {
+skg_status skg_slopes_spread(const skg_face_moments *faces, const skg_velocities *velocities, int64_t face,
+                             double *values) {
     placed_face f;
     double normal[3], relative[3], slopes[3];
     place_face(faces, face, &f);
@@ -99,7 +99,7 @@ void skg_slopes_spread(const skg_face_moments *faces, const skg_velocities *velo
         find_velocity(faces, velocities, f.vertices[k], f.at[k], f.seen[k][2], relative);
         slopes[k] = skg_dot(normal, relative);
     }
-    skg_steep_spread(faces->camera, f.seen, faces->weight, faces->weight_user, slopes, values);
+    return skg_steep_spread(faces->camera, f.seen, faces->weigh, faces->weigh_user, slopes, values);
 }
 
 double skg_slope_of_ray(const skg_camera *camera, const skg_velocities *velocities, const double ray[3]) {

@@ -27,8 +27,8 @@ void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *veloci
 
 /* Adds the derivatives of the means of pixels by a face that is seen as a line, with the weights of `faces`.
  * values: [camera->rows][camera->columns] */
-void skg_slopes_spread(const skg_face_moments *faces, const skg_velocities *velocities, int64_t face,
-                       double *values);
+skg_status skg_slopes_spread(const skg_face_moments *faces, const skg_velocities *velocities, int64_t face,
+                             double *values);
 
 /* The derivative of |D| over |D|, where D goes from the source to a pixel. */
 double skg_slope_of_ray(const skg_camera *camera, const skg_velocities *velocities, const double ray[3]);

@@ -7,18 +7,27 @@
 #ifndef SKG_STEEP_H
 #define SKG_STEEP_H
 
-#include "geometry/optics.h"
+#include "geometry/crossings.h"
 
-/* A part's d loss / d t of the ray of a pixel; 0 outside of the detector. */
-typedef double (*skg_steep_weight)(const void *user, int64_t column, int64_t row);
+/* d loss / d t of the part along a ray: weights[k] in front of planes.at[k].plane, as far as the plane before; `rest` behind all. */
+typedef struct {
+    skg_crossing_list planes;
+    double *weights; /* [planes.capacity] */
+    int64_t capacity;
+    double rest;
+} skg_steep_weights;
+
+/* Fills the weights of a pixel. middle: column and row of the middle of what the pixel sees of the face. */
+typedef skg_status (*skg_steep_weigh)(const void *user, int64_t column, int64_t row, const double middle[2],
+                                      skg_steep_weights *weights);
 
 /* Adds, for each corner of a face, h of which is `seen` (skg_camera_see), the sum over pixels of weight times the integral of b_k / t^2 db, over det; with a parallel beam that
  * of b_k. */
-void skg_steep_add(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
-                   double moments[3]);
+skg_status skg_steep_add(const skg_camera *camera, double seen[3][3], skg_steep_weigh weigh, const void *user,
+                         double moments[3]);
 
 /* Adds to every pixel of [camera->rows][camera->columns] its own weight times the same integrals, times slopes[k] at corner k. */
-void skg_steep_spread(const skg_camera *camera, double seen[3][3], skg_steep_weight weight, const void *user,
-                      const double slopes[3], double *values);
+skg_status skg_steep_spread(const skg_camera *camera, double seen[3][3], skg_steep_weigh weigh,
+                            const void *user, const double slopes[3], double *values);
 
 #endif

@@ -86,28 +86,70 @@ static skg_status compare(gradient_run *run, skg_verdict *verdict) {
     return SKG_OK;
 }
 
-static skg_status find_gradient(skg_context *context, gradient_run *run) {
+/* Makes the plan of a self-test, and the gradient that is wanted of it. */
+static skg_status find_gradient(skg_context *context, skg_self_test number, const skg_gradient *gradient,
+                                gradient_run *run) {
     skg_self_test_scene *scene = &run->scene;
     skg_adjoint adjoint;
-    skg_gradient gradient;
     skg_adjoint_init(&adjoint);
-    skg_gradient_init(&gradient);
     for (int p = 0; p < PIXELS; p++) run->adjoint[p] = (double)(p * 7 % 13) - 6;
     adjoint.channels = 1, adjoint.rows = adjoint.columns = N, adjoint.data = run->adjoint;
-    gradient.poses = run->poses[0], gradient.source = run->source;
-    SKG_TRY(skg_self_test_scene_create(context, SKG_SELF_TEST_GRADIENT, N, scene));
+    SKG_TRY(skg_self_test_scene_create(context, number, N, scene));
     SKG_TRY(skg_plan_create(context, scene->scene, &scene->view, scene->beam, &scene->options, &run->plan));
-    return skg_plan_gradient(run->plan, NULL, &adjoint, &gradient);
+    return skg_plan_gradient(run->plan, NULL, &adjoint, gradient);
+}
+
+static void release_run(gradient_run **run) {
+    skg_plan_release(&(*run)->plan);
+    skg_self_test_scene_release(&(*run)->scene);
+    skg_free(run);
 }
 
 skg_status skg_self_test_gradient(skg_context *context, skg_verdict *verdict) {
     gradient_run *run = NULL;
+    skg_gradient gradient;
     *verdict = (skg_verdict){.good = 1};
     SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
-    skg_status status = find_gradient(context, run);
+    skg_gradient_init(&gradient);
+    gradient.poses = run->poses[0], gradient.source = run->source;
+    skg_status status = find_gradient(context, SKG_SELF_TEST_GRADIENT, &gradient, run);
     if (status == SKG_OK) status = compare(run, verdict);
-    skg_plan_release(&run->plan);
-    skg_self_test_scene_release(&run->scene);
-    skg_free(&run);
+    release_run(&run);
+    return status;
+}
+
+/* --- by densities */
+
+/* What a pixel shows changes with the density of a part by what the part itself adds to the attenuation. */
+static void compare_density(const gradient_run *run, int part, double got, skg_verdict *verdict) {
+    const double shares[SKG_SELF_TEST_ENERGIES_MAX] = {1, 1, 1};
+    double wanted = 0, size = 0;
+    for (int p = 0; p < PIXELS; p++) {
+        double surface, net[2], open;
+        skg_self_test_lengths(&run->scene, p / N, p % N, &surface, net);
+        net[1 - part] = 0;
+        const double shown = skg_self_test_intensity(&run->scene, shares, net, &open);
+        wanted -= run->adjoint[p] * log(shown / open);
+        size += fabs(run->adjoint[p] * log(shown / open));
+    }
+    if (!verdict->good || fabs(got - wanted) <= TOLERANCE * size) return;
+    verdict->good = 0;
+    snprintf(verdict->reason, sizeof verdict->reason,
+             "the gradient of %d x %d pixels by the density of the %s is %.7g instead of %.7g", N, N,
+             part == 0 ? "boxes" : "box", got, wanted);
+}
+
+skg_status skg_self_test_densities(skg_context *context, skg_verdict *verdict) {
+    gradient_run *run = NULL;
+    skg_gradient gradient;
+    double densities[2] = {0};
+    *verdict = (skg_verdict){.good = 1};
+    SKG_TRY(skg_alloc(1, sizeof *run, "device test", &run));
+    skg_gradient_init(&gradient);
+    gradient.densities = densities;
+    const skg_status status = find_gradient(context, SKG_SELF_TEST_DENSITIES, &gradient, run);
+    for (int part = 0; part < 2 && status == SKG_OK; part++)
+        compare_density(run, part, densities[part], verdict);
+    release_run(&run);
     return status;
 }

@@ -29,8 +29,13 @@ static int has_priority(const skg_self_test_scene *scene) {
     return scene->number == SKG_SELF_TEST_PRIORITY || scene->number == SKG_SELF_TEST_GRADIENT;
 }
 
+/* Whether part 1 is inside part 0. */
+static int is_nested(const skg_self_test_scene *scene) {
+    return scene->number == SKG_SELF_TEST_DENSITIES;
+}
+
 static int has_two_parts(const skg_self_test_scene *scene) {
-    return scene->number == SKG_SELF_TEST_ENERGIES || has_priority(scene);
+    return scene->number == SKG_SELF_TEST_ENERGIES || has_priority(scene) || is_nested(scene);
 }
 
 static int has_energies(const skg_self_test_scene *scene) {
@@ -83,6 +88,7 @@ static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int
     }
     given.label = part == 0 ? "boxes" : "box";
     given.priority = has_priority(scene) ? part : 0;
+    if (part == 1 && is_nested(scene)) given.inside = 0;
     skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_SELF_TEST_BOXES : 1,
                                        part == 0 && scene->number == SKG_SELF_TEST_LEAKY, &given.mesh);
     if (status == SKG_OK)
@@ -118,6 +124,7 @@ static void choose_options(skg_self_test_scene *scene) {
         options->repair = SKG_REPAIR_NEIGHBOURS;
         break;
     case SKG_SELF_TEST_GRADIENT:
+    case SKG_SELF_TEST_DENSITIES:
         options->quantity = SKG_QUANTITY_ATTENUATION;
         break;
     case SKG_SELF_TEST_NOISE:
@@ -194,6 +201,7 @@ void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double 
         if (other && has_priority(scene)) /* part 1 displaces part 0 */
             net[0] -= fmax(0, fmin(leaves, to) - fmax(enters, from)) * distance;
     }
+    if (is_nested(scene)) net[0] -= net[1]; /* part 1 is in place of part 0 */
 }
 
 double skg_self_test_intensity(const skg_self_test_scene *scene, const double *shares, const double *net,

@@ -159,4 +159,8 @@ skg_status skg_self_test_scatter(skg_context *context, skg_verdict *verdict);
  * of the formula, and the derivative along a direction with the gradient (gradient.c). */
 skg_status skg_self_test_gradient(skg_context *context, skg_verdict *verdict);
 
+/* Compares the gradient of a sum of attenuations by the densities of two parts, of which one is inside the other, with the formula
+ * (gradient.c). */
+skg_status skg_self_test_densities(skg_context *context, skg_verdict *verdict);
+
 #endif

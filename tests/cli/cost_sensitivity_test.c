@@ -103,11 +103,31 @@ START_TEST(what_has_no_derivative_says_why) {
 }
 END_TEST
 
+/* `view` has the same numbers as `cost`, and refuses the flag where there is no page. */
+START_TEST(view_has_the_same) {
+    write_text("rods.json", rods);
+    json_t *found = sensitivity_of("--sensitivity");
+    ck_run(0, "view rods.json --sensitivity -o v.html --json");
+    json_t *seen = said_json();
+    ck_assert(json_equal(member(member(seen, "sensitivity"), "parts"), member(found, "parts")));
+    json_decref(seen);
+    json_decref(found);
+    char *page = read_page("v.html");
+    ck_assert_ptr_nonnull(strstr(page, "\"sensitivity\":{"));
+    free(page);
+    ck_run(0, "view rods.json -o v.html --json");
+    ck_assert_ptr_null(strstr(said, "sensitivity"));
+    ck_run(2, "view rods.json --sensitivity -o v.png");
+    ck_assert_ptr_nonnull(strstr(complained, "--sensitivity colours the parts of a page; add -o FILE.html"));
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, changes_are_those_of_formulas);
     tcase_add_test(tests, it_is_told_where_it_is_asked_for);
     tcase_add_test(tests, what_has_no_derivative_says_why);
+    tcase_add_test(tests, view_has_the_same);
 }
 
 SKG_SUITE_MAIN("cost_sensitivity", add_tests)

@@ -102,6 +102,31 @@ static const char moving_script[] =
     "const mean = f => ofFrame(f).reduce((s, x) => s + x, 0) / liver.vertices * liver.step[2];\n"
     "check('the liver goes down', mean(10) - mean(0) > 8);\n"; /* mm, from inspiration to expiration; breathe_test */
 
+/* Colours by sensitivity: the tissue changes the image more than the bone in it, and comes first. */
+static const char sensitive_script[] =
+    "const swatch = i => rows[i].querySelector('.swatch').style.background, button = byId('sensitive');\n"
+    "check('shown', !byId('legend').hidden && !byId('scale').hidden && !button.hidden && isColoured());\n"
+    "check('order', byId('list').firstChild === rows[0] && rows[0].nextSibling === rows[1]);\n"
+    "const its = scene.sensitivity.parts; check('largest first', its[0].part === 'tissue' && its[0].largest > its[1].largest);\n"
+    "rows.forEach((row, i) => check('number ' + i, row.querySelector('.change').textContent === percent(changeOf(i).largest)));\n"
+    "check('ends', byId('ends').firstChild.textContent === percent(its[1].largest) && byId('ends').lastChild.textContent === percent(its[0].largest));\n"
+    "check('middle', Math.abs(levelOf(Math.sqrt(its[0].largest * its[1].largest)) - 0.5) < 1e-9);\n"
+    "check('colours', String(meshes.map(m => m.colour.slice(0, 3).map(x => Math.round(255 * x)))) === '253,231,37,59,82,139');\n"
+    "check('swatch', swatch(0) === 'rgb(253, 231, 37)' && swatch(1) === 'rgb(59, 82, 139)');\n"
+    "const opacity = meshes.map(m => m.colour[3]);\n"
+    "differs('by density', () => button.click()); check('off', !isColoured() && byId('scale').hidden);\n"
+    "check('own colours', meshes.every((m, i) => m.colour.every((x, k) => Math.abs(255 * x - scene.parts[i].colour[k]) < 1e-9)));\n"
+    "key('s'); check('on again', sum() === first && String(meshes.map(m => m.colour[3])) === String(opacity));\n"
+    "setChosen(1); check('chosen', byId('about').textContent.includes('for a mm' + percent(changeOf(1).largest))); setChosen(-1);\n"
+    "setDark(true); check('dark', sum() !== first && meshes[0].colour[0] === 253 / 255);\n";
+
+/* A part that has no derivative: the reason, and the colours of other pages. */
+static const char insensitive_script[] =
+    "check('reason', !byId('legend').hidden && byId('notes').textContent.includes('the mesh of part open is not closed'));\n"
+    "check('no scale', byId('scale').hidden && byId('sensitive').hidden && !isColoured());\n"
+    "check('own colours', meshes.every((m, i) => m.colour.every((x, k) => Math.abs(255 * x - scene.parts[i].colour[k]) < 1e-9)));\n"
+    "check('no numbers', !document.querySelector('.change')); key('s'); check('no key', sum() === first);\n";
+
 /* Adds the script to a.html and lets the browser work on it. Returns 0 if the browser has no WebGL 2. */
 static int work(const char *script) {
     const char *const texts[] = {begin_script, script, end_script};
@@ -122,6 +147,32 @@ START_TEST(a_page_can_be_turned) {
 }
 END_TEST
 
+START_TEST(a_page_shows_sensitivity) {
+    need_browser();
+    write_text("s.json", scene);
+    ck_run(0, "view s.json --sensitivity -o a.html --quiet");
+    if (!work(sensitive_script)) skip_test("the browser has no WebGL 2");
+    write_text("open.obj", "v -9 -9 -9\nv 9 -9 -9\nv 0 9 -9\nv 0 0 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\n");
+    ck_run(
+        0,
+        "view s.json --sensitivity -o a.html --quiet --set 'Samples.bone={\"Label\":\"open\",\"Path\":\"open.obj\","
+        "\"Unit\":\"mm\",\"Material\":[\"mu\",0.3]}'");
+    if (!work(insensitive_script)) skip_test("the browser has no WebGL 2");
+}
+END_TEST
+
+/* Who does not ask has no legend, and the list in the order of the scene. */
+START_TEST(a_page_without_sensitivity) {
+    need_browser();
+    write_text("s.json", scene);
+    ck_run(0, "view s.json -o a.html --quiet");
+    if (!work(
+            "check('none', byId('legend').hidden && byId('sensitive').hidden && !isColoured() && !('sensitivity' in scene));\n"
+            "check('order', byId('list').firstChild === rows[0]);\n"))
+        skip_test("the browser has no WebGL 2");
+}
+END_TEST
+
 START_TEST(a_page_breathes) {
     need_browser();
     ck_run(0, "thorax -o . --simple --triangles 10000 --quiet");
@@ -135,6 +186,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, a_page_can_be_turned);
+    tcase_add_test(tests, a_page_shows_sensitivity);
+    tcase_add_test(tests, a_page_without_sensitivity);
     tcase_add_test(tests, a_page_breathes);
 }
 

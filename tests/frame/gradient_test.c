@@ -11,6 +11,7 @@ static const setting settings[] = {
     {.name = "attenuation", .quantity = SKG_QUANTITY_ATTENUATION, .colours = 1, .nested = 1},
     {.name = "nested", .nested = 1, .colours = 1},
     {.name = "priority", .priority = 1, .colours = 1},
+    {.name = "a hole by priority", .priority = 1, .hole = 1, .world = 1, .colours = 1},
     {.name = "parallel", .parallel = 1, .nested = 1},
     {.name = "parallel from infinity", .parallel = 1, .infinity = 1, .colours = 1},
     {.name = "parallel, priority", .parallel = 1, .priority = 1},

@@ -34,7 +34,8 @@ void make_scene(const setting *set) {
     } else {
         add_part("bone", solid_blob(17, 12, 7, 3), "Bone, Cortical (ICRU-44)", 1.1, aside, -1, set->priority);
     }
-    if (set->priority) add_part("rod", solid_blob(9, 9, 6, 11), "Al", 0.7, left, -1, 2);
+    /* A hole has the world's matter, so that it contributes nothing but displaces the body. */
+    if (set->priority) add_part("rod", solid_blob(9, 9, 6, 11), set->hole ? "Water" : "Al", 0.7, left, -1, 2);
 }
 
 skg_view make_view(const setting *set) {

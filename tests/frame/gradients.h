@@ -11,8 +11,8 @@ enum { SIDE = 24, PIXELS = SIDE * SIDE, CHANNELS_MAX = 2, PARTS = 4, WAYS = 6 * 
 /* What a case sets; 0: not used. */
 typedef struct {
     const char *name;
-    int32_t quantity, colours, parallel, infinity, nested, priority, world, falloff, supersampling, spot,
-        blur, bands, noise, heel, parts_only;
+    int32_t quantity, colours, parallel, infinity, nested, priority, hole, world, falloff, supersampling,
+        spot, blur, bands, noise, heel, parts_only;
     double tolerance;
 } setting;
 

@@ -113,6 +113,14 @@ const effects failing_runs[] = {
      .shared = 1,
      .ratio = 1,
      .derives = 1},
+    /* the same faces of a hole that displaces a part by priority */
+    {.file = "scene.json",
+     .settings =
+         {"Samples.sheet={\"Label\":\"sheet\",\"Cube\":[9,\"mm\"],\"Material\":[\"mu\",0],\"Priority\":2}",
+          "World=Vacuum", "Source.Shape=ParallelBeam"},
+     .strategy = SKG_STRATEGY_COPIES,
+     .shared = 1,
+     .derives = 1},
     {.file = "body.json", .breathes = 1},
     {.file = "scene.json",
      .settings = {"Tolerance=0", "World=Vacuum"},

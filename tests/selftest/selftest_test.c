@@ -99,10 +99,11 @@ START_TEST(a_right_device_passes) {
         ck_assert_msg(verdict.good, "%s: %s", skg_self_test_name((skg_self_test)test), verdict.reason);
         ck_assert_int_eq(context->device->self_testing, 0); /* calls of the caller are tested again */
         ck_assert(test == SKG_SELF_TEST_CORE ? verdict.score > 0 : verdict.score == 0);
-        if (test != SKG_SELF_TEST_TILES) continue;
+        if (test != SKG_SELF_TEST_TILES && test != SKG_SELF_TEST_DENSITIES) continue;
         context->device->info.gpu = 1;
-        ck_skg(skg_self_test_repeat(context, SKG_SELF_TEST_TILES, &verdict));
-        ck_assert_msg(verdict.good, "squares: %s", verdict.reason);
+        ck_skg(skg_self_test_repeat(context, (skg_self_test)test, &verdict));
+        ck_assert_msg(verdict.good, "%s of GPUs: %s", skg_self_test_name((skg_self_test)test),
+                      verdict.reason);
         context->device->info.gpu = 0;
     }
     skg_context_release(&context);
@@ -240,11 +241,18 @@ static const struct {
     {"scatter.cl", "*left = kev * ratio", "*left = kev", SKG_SELF_TEST_SCATTER},
     {"scatter.cl", "p->changed |= changes;", "p->weight *= (skg_fv)(0.8f);", SKG_SELF_TEST_SCATTER},
     {"sight.clh", "s->sr = g0 + g1 - s->k", "s->sr = g0 + g1", SKG_SELF_TEST_SCATTER},
-    {"gather.clh", "own.behind += own.sum;", "", SKG_SELF_TEST_GRADIENT},
-    {"gather.clh", "value *= deep * deep", "value *= deep", SKG_SELF_TEST_GRADIENT},
+    {"gather.clh", "fma(value, (skg_realv)((skg_real)row), own->rows)", "own->rows", SKG_SELF_TEST_GRADIENT},
+    {"gather.clh", "skg_real scale = batch->scale[k]", "skg_real scale = batch->scale[k] * 2",
+     SKG_SELF_TEST_GRADIENT},
+    {"worth.clh", "value *= deep * deep", "value *= deep", SKG_SELF_TEST_GRADIENT},
+    {"spread.clh", "* (skg_realv)(batch->scale[k]) * slope", "* (skg_realv)(batch->scale[k])",
+     SKG_SELF_TEST_GRADIENT},
+    {"tiny.clh", "(step >> 1) * target->stride", "(step >> 1)", SKG_SELF_TEST_GRADIENT},
     {"weights.cl", "values[r] * unit[r]", "values[r]", SKG_SELF_TEST_GRADIENT},
     {"slopes.cl", "off - before", "off", SKG_SELF_TEST_GRADIENT},
     {"gradient.cl", "(weight + lost) * deep", "weight * deep", SKG_SELF_TEST_GRADIENT},
+    {"gather.clh", "around * factor * q", "around * factor", SKG_SELF_TEST_DENSITIES},
+    {"gradient.cl", "skg_around_of(g, range,", "0 * skg_around_of(g, range,", SKG_SELF_TEST_DENSITIES},
     {"blur_variance.cl", "weight += weights[y * args.across + x]", "weight = weights[y * args.across + x]",
      SKG_SELF_TEST_VARIANCE},
     {"blur_variance.cl", "weights += args.first;", "", SKG_SELF_TEST_VARIANCE},
@@ -263,14 +271,20 @@ static int is_reached(int number, const skg_device_info *device) {
            SKG_CPU_RUNS * device->float_width > SKG_EXTENT_COLUMNS;
 }
 
+/* Squares are the tiles of GPUs, and these gather faces one by one. */
+static int is_of_gpus(int number) {
+    const int gathers =
+        strcmp(errors[number].file, "gradient.cl") == 0 && errors[number].test == SKG_SELF_TEST_DENSITIES;
+    return gathers || strstr("raster_squares.cl tiles.cl", errors[number].file) != NULL;
+}
+
 START_TEST(wrong_kernels_are_found) {
     char more[96];
     skg_verdict verdict;
     copy_kernels(errors[_i].file, errors[_i].old, errors[_i].new);
     snprintf(more, sizeof more, "kernels=%s", kernels);
     skg_context *context = open_first(more);
-    /* Squares are the tiles of GPUs. */
-    context->device->info.gpu |= strstr("raster_squares.cl tiles.cl", errors[_i].file) != NULL;
+    context->device->info.gpu |= is_of_gpus(_i);
     ck_skg(skg_self_test_repeat(context, errors[_i].test, &verdict));
     if (is_reached(_i, &context->device->info)) {
         ck_assert_int_eq(verdict.good, 0);

@@ -90,7 +90,7 @@ static int read_flags(cost_study *study) {
     const cli_arguments *arguments = study->arguments;
     double within = 60;
     study->quick = cli_given(arguments, &cli_flag_cost_quick);
-    study->sensitivity.wanted = cli_given(arguments, &cli_flag_cost_sensitivity);
+    study->sensitive = cli_given(arguments, &cli_flag_cost_sensitivity);
     study->frames = 1;
     int exit_status = cli_number(arguments, &cli_flag_cost_within, 1, 86400, &within);
     if (exit_status == CLI_DONE)

@@ -73,7 +73,7 @@ void cost_predict_scatter(cost_study *study, skg_plan *plan);
 /* Measures what it costs, as far as a share of the given time allows, and what images lack without it. */
 int cost_measure_scatter(cost_study *study);
 
-/* Fills in study->sensitivity if it is wanted. */
+/* Fills in study->sensitivity if study->sensitive is 1. */
 int cost_measure_sensitivity(cost_study *study);
 
 /* Points: settings, each compared with a reference. */

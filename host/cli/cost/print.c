@@ -89,13 +89,13 @@ static double steady(double value) {
 
 /* How much the image changes when a part moves. */
 static void print_sensitivity(const cost_study *study) {
-    const cost_sensitivity *s = &study->sensitivity;
+    const cli_sensitivity *s = &study->sensitivity;
     char text[4][48];
-    if (!s->wanted) return;
+    if (!study->sensitive) return;
     printf("\n  %-21s %13s %13s %13s %13s  %s\n", "rms change for a mm", "along x", "along y", "along z",
            "at most", "along");
     for (int64_t i = 0; i < s->count && s->parts[i].is_known; i++) {
-        const cost_part_sensitivity *its = &s->parts[i];
+        const cli_part_sensitivity *its = &s->parts[i];
         const char *label = "";
         skg_scene_part_label_get(study->session.scene, its->part, &label);
         for (int k = 0; k < 4; k++)

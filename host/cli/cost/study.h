@@ -4,6 +4,7 @@
 #define SKG_CLI_COST_STUDY_H
 
 #include "session/prediction.h"
+#include "session/sensitivity.h"
 #include "session/session.h"
 
 enum {
@@ -191,25 +192,6 @@ typedef struct {
     char refusal[320]; /* why the scene's images cannot have scatter; empty: they can */
 } cost_scattering;
 
-/* How much the image changes when a part moves: the root mean square over all pixels of its derivative, as a fraction of the open
- * beam per mm. */
-typedef struct {
-    int64_t part; /* number in the scene */
-    int is_known;
-    double along[3];     /* x, y and z of the world */
-    double direction[3]; /* the one that changes the image most */
-    double largest;      /* along it */
-} cost_part_sensitivity;
-
-typedef struct {
-    int wanted;
-    cost_part_sensitivity *parts; /* [count] the largest first, those that are not known last */
-    int64_t count;
-    int64_t saturated; /* slopes of faces that were cut off (skg_plan_derivative) */
-    double begun_ms, seconds;
-    char refusal[512]; /* why it is not known; empty: it is */
-} cost_sensitivity;
-
 typedef struct {
     const cli_arguments *arguments;
     cli_session session;
@@ -230,7 +212,8 @@ typedef struct {
     int has_tube, has_energies, has_spot, has_leaky, has_breath;
     const skg_scatter *own_scatter; /* of the scene, whose images are computed without; NULL: it has none */
     cost_scattering scattering;
-    cost_sensitivity sensitivity;
+    int sensitive; /* 1: sensitivity is wanted */
+    cli_sensitivity sensitivity;
     int64_t triangles;     /* of the scene */
     skg_body_options body; /* if has_breath */
     struct {

@@ -26,6 +26,12 @@ const cli_flag cli_flag_view_seconds = {
     "Shows the breath for T seconds: in a page, or as a film, which lasts one breath otherwise.", NULL,
     CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_view_sensitivity = {
+    "--sensitivity", NULL,
+    "In a page, colours each part by how much the image changes when it moves by a mm, and writes the number beside its name: what "
+    "`cost --sensitivity` prints. Takes three derivatives for each part.",
+    NULL, CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Draws a scene as it stands in the room: source, beam, detector with its image, every part shaded and named, and the "
     "axes. It shows whether everything is where it should be before images are computed.",
@@ -40,7 +46,7 @@ static const char *const text[] = {
     "A film shows the detector's image over the range of its first frame, and the labels where they are in it. See "
     "`skiagraph help breathe` about formats.",
     "--json prints {files, source_detector_mm, source_object_mm, magnification, parts: [{label, column, row, colour}]}; "
-    "column and row are where the centre of a part is in the picture.",
+    "column and row are where the centre of a part is in the picture. With --sensitivity it has the key sensitivity of `cost --json`.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_view_output,
@@ -51,6 +57,7 @@ static const cli_flag *const flags[] = {&cli_flag_view_output,
                                         &cli_flag_view_at,
                                         &cli_flag_view_seconds,
                                         &cli_flag_breathe_fps,
+                                        &cli_flag_view_sensitivity,
                                         &cli_flag_device,
                                         &cli_flag_tolerance,
                                         &cli_flag_set,
@@ -64,6 +71,8 @@ static const cli_flag *const flags[] = {&cli_flag_view_output,
 static const cli_item examples[] = {{"skiagraph view scene.json -o view.png", "draws the scene"},
                                     {"skiagraph view thorax/thorax.json --seconds 4 -o view.html",
                                      "makes a page in which the thorax breathes and can be turned"},
+                                    {"skiagraph view scene.json --sensitivity -o view.html",
+                                     "makes a page that shows which part's place shows most in the image"},
                                     {"skiagraph view thorax/thorax.json --from top --phase 0.5 -o view.png",
                                      "the breathing thorax from above, at half of its cycle"},
                                     {NULL, NULL}};

@@ -84,7 +84,8 @@ int view_write_page(view_work *w, const char *path) {
                       .seconds = w->seconds,
                       .image_columns = (w->session.view.columns + block - 1) / block,
                       .image_rows = (w->session.view.rows + block - 1) / block,
-                      .image_frames = frames};
+                      .image_frames = frames,
+                      .sensitivity = w->sensitive ? &w->sensitivity : NULL};
     uint8_t *image = malloc((size_t)(frames * page.image_columns * page.image_rows));
     cli_progress_begin("making the page, moments", frames);
     int exit_status = view_shapes_make(w->session.scene, frames, view_max_triangles(frames), &shapes);

@@ -220,6 +220,8 @@ static int scene_json(const view_page *page, blob *to, json_t *object) {
     json_object_set_new(object, "view", view);
     json_object_set_new(object, "distances", distances_json(page));
     json_object_set_new(object, "motion", motion_json(page));
+    if (page->sensitivity)
+        json_object_set_new(object, "sensitivity", cli_sensitivity_json(page->session, page->sensitivity));
     json_array_append_new(box, cli_json_numbers(page->places->low, 3));
     json_array_append_new(box, cli_json_numbers(page->places->high, 3));
     json_object_set_new(object, "box", box);

@@ -18,6 +18,7 @@ typedef struct {
     /* [image_frames][image_rows][image_columns] greys of the detector, image_frames 1 or that of the shapes; NULL: none */
     const uint8_t *image;
     int64_t image_columns, image_rows, image_frames;
+    const cli_sensitivity *sensitivity; /* NULL: not wanted */
 } view_page;
 
 /* The scene of a page as JSON that can stand in a script, and the bytes of its surfaces in base 64. The caller frees both, also

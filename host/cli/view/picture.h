@@ -3,6 +3,7 @@
 #ifndef CLI_VIEW_PICTURE_H
 #define CLI_VIEW_PICTURE_H
 
+#include "session/sensitivity.h"
 #include "session/session.h"
 
 #include <stddef.h>
@@ -54,10 +55,16 @@ typedef struct {
     uint8_t *image, *rgba;
     double *path;
     view_places places;
+    int sensitive; /* 1: sensitivity is wanted */
+    cli_sensitivity sensitivity;
 } view_work;
 
 /* Computes the detector's image of the present pose and shows it in the look. */
 int view_make_image(view_work *w);
+
+/* Measures how much the image of the present pose changes when each part moves, if w->sensitive is 1. What has no derivative is a
+ * note. */
+int view_find_sensitivity(view_work *w);
 
 /* Moves the scene to a time in s. */
 int view_pose_at(view_work *w, double time);

@@ -112,6 +112,9 @@ static int read_flags(view_work *w) {
     w->look.orthographic = cli_given(w->arguments, &cli_flag_view_orthographic);
     if (!cli_given(w->arguments, &cli_flag_view_output))
         return cli_error(CLI_USAGE, "view: no output is named; add -o FILE.png or -o FILE.html");
+    w->sensitive = cli_given(w->arguments, &cli_flag_view_sensitivity);
+    if (w->sensitive && !has_output(w, is_page))
+        return cli_error(CLI_USAGE, "view: --sensitivity colours the parts of a page; add -o FILE.html");
     int exit_status = read_side(w);
     if (exit_status == CLI_DONE) exit_status = read_size(w);
     const char *phase = cli_value(w->arguments, &cli_flag_view_phase);
@@ -221,6 +224,8 @@ static int print(const view_work *w) {
         json_object_set_new(object, "source_object_mm", cli_json_number(w->places.source_object));
         json_object_set_new(object, "magnification", cli_json_number(w->places.magnification));
         json_object_set_new(object, "parts", parts_json(w));
+        if (w->sensitive)
+            json_object_set_new(object, "sensitivity", cli_sensitivity_json(&w->session, &w->sensitivity));
         return cli_json_print(object);
     }
     for (int i = 0; !cli_is_quiet() && (path = nth_output(w, i)); i++) cli_print("wrote %s\n", path);
@@ -236,11 +241,13 @@ int cli_view(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = view_make_image(&w);
     if (exit_status == CLI_DONE) exit_status = find_path(&w);
     if (exit_status == CLI_DONE) exit_status = view_find_places(&w.session, &w.look, &w.places);
+    if (exit_status == CLI_DONE) exit_status = view_find_sensitivity(&w);
     if (exit_status == CLI_DONE) exit_status = write_pictures(&w);
     if (exit_status == CLI_DONE) exit_status = write_others(&w);
     if (exit_status == CLI_DONE) exit_status = print(&w);
     free(w.places.parts);
     free(w.places.named);
+    free(w.sensitivity.parts);
     free(w.values);
     free(w.image);
     free(w.rgba);

@@ -75,6 +75,7 @@ const toggles = {
   parallel: () => press('parallel', camera.parallel = !camera.parallel),
   marks: () => press('marks', shot.marks = !shot.marks),
   panel: () => { press('panel', !document.querySelector('aside').classList.toggle('closed')); resize(); },
+  sensitive: () => changes.size && colourParts(!isColoured()),
   dark: () => setDark(!document.documentElement.classList.contains('dark')),
 };
 
@@ -86,10 +87,11 @@ function setDark(on) {
 }
 
 function showRow(i) {
-  const part = scene.parts[i], mesh = meshes[i];
+  const mesh = meshes[i], colour = mesh.colour.slice(0, 3).map(x => Math.round(255 * x));
+  const opacity = isColoured() ? 1 : Math.max(mesh.colour[3], 0.2); // colours of a scale are read off
   rows[i].className = i === shot.chosen ? 'chosen' : i === shot.under ? 'under' : '';
   rows[i].firstChild.checked = mesh.visible;
-  rows[i].querySelector('.swatch').style.background = `rgb(${part.colour.slice(0, 3).join(' ')} / ${Math.max(mesh.colour[3], 0.2)})`;
+  rows[i].querySelector('.swatch').style.background = `rgb(${colour.join(' ')} / ${opacity})`;
 }
 
 function setUnder(i) {
@@ -132,6 +134,8 @@ function describe() {
   if (part.material) pairs.unshift(['material', part.material]);
   if (part.density > 0) pairs.splice(-2, 0, ['density', number(part.density) + ' g/cm\u00b3']);
   if (part.inside >= 0) pairs.push(['inside', scene.parts[part.inside].label]);
+  const its = changeOf(shot.chosen);
+  if (its) pairs.push(['for a mm', percent(its.largest)], ['along', its.direction.map(x => x.toFixed(2)).join(', ')]);
   fillTable(table, pairs);
   Object.assign(slider, {type: 'range', min: 0, max: 1, step: 0.01, value: mesh.colour[3]});
   slider.setAttribute('aria-label', 'Opacity');
@@ -160,12 +164,13 @@ function fillPanel() {
     const name = make('span', part.label, 'name');
     row.title = part.label;
     row.append(box, make('span', '', 'swatch'), name);
+    if (changeOf(i)) row.append(make('span', percent(changeOf(i).largest), 'change'));
     row.onpointerenter = () => setUnder(i);
     row.onpointerleave = () => setUnder(-1);
     name.onclick = event => { event.preventDefault(); setChosen(shot.chosen === i ? -1 : i); };
     return row;
   });
-  byId('list').append(...rows);
+  byId('list').append(...listed().map(i => rows[i]));
   rows.forEach((_, i) => showRow(i));
   byId('filter').oninput = () => {
     const wanted = byId('filter').value.toLowerCase();
@@ -256,7 +261,7 @@ function listenToCanvas() {
 const nearer = factor => { zoom(factor, 0, 0); standing = ''; };
 const keys = {
   '0': () => lookAs('start'), Home: () => lookAs('start'), '1': () => lookAs('front'), '2': () => lookAs('side'), '3': () => lookAs('top'),
-  '4': () => lookAs('source'), f: () => lookAs('parts'), p: toggles.parallel, m: toggles.marks, d: toggles.dark, l: toggles.panel,
+  '4': () => lookAs('source'), f: () => lookAs('parts'), p: toggles.parallel, m: toggles.marks, s: toggles.sensitive, d: toggles.dark, l: toggles.panel,
   '+': () => nearer(0.9), '=': () => nearer(0.9), '-': () => nearer(1 / 0.9), Escape: () => setChosen(-1),
   ' ': () => scene.motion && play(!playing),
   h: () => shot.chosen >= 0 && setVisible(shot.chosen, !meshes[shot.chosen].visible),
@@ -286,6 +291,7 @@ function begin() {
   prepareParts();
   uploadParts();
   fillPanel();
+  fillLegend();
   fillLabels();
   listenToCanvas();
   listenToKeys();
