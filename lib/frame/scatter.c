@@ -61,6 +61,7 @@ static skg_status compute(skg_job *job, const skg_frame_work *work, int componen
     if (work->frame && work->frame->scatter_series) return take(job, &scatter, work->frame, component);
     SKG_TRY(skg_frame_check_places(recipe, job->machine));
     SKG_TRY(skg_frame_matter(recipe, work->frame, &matter));
+    if (work->frame) scatter.progress = work->frame->progress;
     if (matter) scatter.density = matter, scatter.fill = matter + recipe->scene->count;
     status = compute_own(job, &scatter, component);
     skg_free(&matter);

@@ -1,6 +1,7 @@
 #include "scatter/tracing.h"
 
 #include "core/clock.h"
+#include "core/log.h"
 #include "core/maths.h"
 #include "scatter/interactions.h"
 
@@ -158,6 +159,7 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
                            int64_t columns, int64_t rows, skg_tracing *t) {
     const int64_t seed = (int64_t)((uint64_t)work->recipe->options.scatter->seed + work->seed);
     t->args = (skg_scatter_args){.columns = (SKG_INT)columns, .rows = (SKG_INT)rows};
+    t->progress = work->progress;
     t->args.seed[0] = (SKG_INT)(uint32_t)(uint64_t)seed;
     t->args.seed[1] = (SKG_INT)(uint32_t)((uint64_t)seed >> 32);
     t->noise = work->recipe->options.noise;
@@ -220,6 +222,7 @@ skg_status skg_trace_until(skg_context *context, skg_tracing *t, int64_t end) {
     SKG_TRY(get_program(context, t, &program));
     for (int64_t first = t->args.end; first < end; first = t->args.end) {
         const double begun = skg_seconds();
+        SKG_TRY(skg_progress_step(t->progress, first, end));
         t->args.first = (SKG_INT)first;
         t->args.end = (SKG_INT)(first + chunk < end ? first + chunk : end);
         SKG_TRY(launch(context, program, t));

@@ -47,6 +47,7 @@ typedef struct {
     int32_t layers, bands, oblique, layered; /* bands: 1: there are some */
     int32_t world;
     int64_t sums_count;
+    skg_progress *progress; /* of the frame, whose caller owns it; NULL: none */
 } skg_tracing;
 
 /* The grid on which photons are counted. */

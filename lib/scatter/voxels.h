@@ -66,6 +66,7 @@ typedef struct {
     const double *density;      /* [parts] over that of the material; NULL: 1 */
     const double *fill;         /* [parts] share of the part that is there; NULL: 1 */
     uint64_t seed;              /* added to that of the options */
+    skg_progress *progress;     /* NULL: none */
 } skg_scatter_work;
 
 /* The pose of a part. */

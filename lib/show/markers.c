@@ -14,8 +14,22 @@ static const double BEAM_RADIUS = 0.7, FRAME_RADIUS = 1.1, AXIS_RADIUS = 1.6, SO
                     POINT_RADIUS = 2.2;
 
 #define BEAM_COLOUR SKG_SHOW_COLOUR(236, 158, 30, 255)
-#define FRAME_COLOUR SKG_SHOW_COLOUR(70, 74, 82, 255)
-#define PATH_COLOUR SKG_SHOW_COLOUR(120, 70, 190, 255)
+
+/* Luminance of the background, 0 to 255, below which frames and paths are light. */
+static const double DARK = 110;
+
+static int is_dark(const skg_look *look) {
+    const uint8_t *ground = look->background;
+    return ground && 0.3 * ground[0] + 0.6 * ground[1] + 0.1 * ground[2] < DARK;
+}
+
+static uint32_t frame_colour(const skg_look *look) {
+    return is_dark(look) ? SKG_SHOW_COLOUR(156, 162, 172, 255) : SKG_SHOW_COLOUR(70, 74, 82, 255);
+}
+
+static uint32_t path_colour(const skg_look *look) {
+    return is_dark(look) ? SKG_SHOW_COLOUR(176, 136, 240, 255) : SKG_SHOW_COLOUR(120, 70, 190, 255);
+}
 
 /* Two directions of length 1 across a third one. */
 static void frame_of(const double along[3], double u[3], double v[3]) {
@@ -122,7 +136,7 @@ static skg_status add_jaws(skg_show_model *model, const skg_view *view, const sk
     SKG_TRY(skg_collimation_corners_get(look->collimation, view, 1, opening[0]));
     for (int i = 0; i < 4; i++)
         SKG_TRY(add_line(model, camera, opening[i], opening[(i + 1) % 4], FRAME_RADIUS, FRAME_RADIUS,
-                         FRAME_COLOUR));
+                         frame_colour(look)));
     return SKG_OK;
 }
 
@@ -162,17 +176,18 @@ static skg_status add_axes(skg_show_model *model, const skg_show_camera *camera,
 static skg_status add_path(skg_show_model *model, const skg_look *look, const skg_show_camera *camera) {
     for (int64_t i = 0; i < look->path_count; i++) {
         const double *at = look->path + 3 * i;
-        SKG_TRY(add_ball(model, camera, at, POINT_RADIUS, PATH_COLOUR));
-        if (i > 0) SKG_TRY(add_line(model, camera, at - 3, at, BEAM_RADIUS, BEAM_RADIUS, PATH_COLOUR));
+        SKG_TRY(add_ball(model, camera, at, POINT_RADIUS, path_colour(look)));
+        if (i > 0) SKG_TRY(add_line(model, camera, at - 3, at, BEAM_RADIUS, BEAM_RADIUS, path_colour(look)));
     }
     return SKG_OK;
 }
 
 /* The frame of the detector. */
-static skg_status add_frame(skg_show_model *model, const skg_show_camera *camera, double corners[4][3]) {
+static skg_status add_frame(skg_show_model *model, const skg_look *look, const skg_show_camera *camera,
+                            double corners[4][3]) {
     for (int i = 0; i < 4; i++)
         SKG_TRY(add_line(model, camera, corners[i], corners[(i + 1) % 4], FRAME_RADIUS, FRAME_RADIUS,
-                         FRAME_COLOUR));
+                         frame_colour(look)));
     return SKG_OK;
 }
 
@@ -199,7 +214,7 @@ skg_status skg_show_markers_add(skg_show_model *model, const skg_view *view, con
     SKG_TRY(add_beam(model, view, look, camera, low, high));
     SKG_TRY(add_axes(model, camera, low, high));
     SKG_TRY(add_path(model, look, camera));
-    SKG_TRY(add_frame(model, camera, corners));
+    SKG_TRY(add_frame(model, look, camera, corners));
     SKG_TRY(skg_show_clip_near(model, camera, first));
     return add_detector(model, camera, corners);
 }

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from ._device import Device, RangeWarning, warn
 from ._interface import ENUMS, OK, RANGE, STALE
 from ._library import call, check, ffi, lib, struct, text
-from ._progress import Meter, Progress
+from ._progress import Meter, Progress, Watch
 from .view import View
 
 # A chunk of frames takes about this long, s: two of them are under way when an interrupt comes.
@@ -99,7 +99,11 @@ def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[An
     output.data = ffi.cast("void *", part.__array_interface__["data"][0])
     output.frame_stride, output.channel_stride, output.row_stride = (
         stride // size if extent > 1 else 0 for stride, extent in zip(part.strides[:3], part.shape[:3]))
-    status = check(submit(count, batch.frames(first, count, keep), output, job))
+    frames = batch.frames(first, count, keep)
+    with Watch(False, "histories") as watch:  # scatter is computed in here
+        for i in range(count):
+            frames[i].progress = watch
+        status = check(submit(count, frames, output, job))
     if status == STALE:
         raise Stale(text(lib.skg_last_error()))
     assert status in (OK, RANGE)

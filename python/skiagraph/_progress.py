@@ -55,19 +55,20 @@ class Watch:
         self._progress, self._unit = progress, unit
         self._meter: Meter | None = None
         self._raised: BaseException | None = None
-        self._function = ffi.callback("skg_progress_function", self._hear)
+        # Python raises a pending interrupt as soon as a function begins, before its first statement
+        self._function = ffi.callback("skg_progress_function", self._hear, error=1, onerror=self._fail)
         address = ffi.new("skg_progress **")
         call("skg_progress_create", self._function, ffi.NULL, address)
         self.handle = address[0]
 
     def _hear(self, done: int, total: int, user: Any) -> int:
-        try:
-            self._meter = self._meter or Meter(self._progress, total, self._unit)
-            if done:
-                self._meter.update(done)
-        except BaseException as error:
-            self._raised = error
-        return int(self._raised is not None)
+        self._meter = self._meter or Meter(self._progress, total, self._unit)
+        if done:
+            self._meter.update(done)
+        return 0
+
+    def _fail(self, kind: type[BaseException], error: BaseException, trace: TracebackType) -> None:
+        self._raised = error
 
     def __enter__(self) -> Any:
         return self.handle

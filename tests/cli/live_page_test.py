@@ -250,6 +250,8 @@ def sizes(tried, name):
             browser.until("Math.abs(canvas.width - canvas.clientWidth) < 1 && !dirty")
             for box in ("document.documentElement", "document.querySelector('aside')"):
                 check("no scrolling sideways", browser.run(f"{box}.scrollWidth <= {box}.clientWidth"), f"{box} {width}")
+            for box in ("header", ".buttons"):
+                check("buttons in one row", browser.run(f"document.querySelector('{box}').clientHeight < 55"), f"{box} {width}")
             if pictures:
                 browser.picture(os.path.join(pictures, f"{name}-{'dark' if is_dark else 'light'}-{width}.png"))
 

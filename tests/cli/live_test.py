@@ -284,6 +284,24 @@ def scatter(path):
         check_same(frames[max(frames)], image(path, "--quantity", "attenuation", *words))
 
 
+def interrupted(path):
+    """A wish ends the last step of scatter, which takes long; so does Ctrl-C."""
+    beam = {"Source.Beam": {"kVp": 80, "mAs": 1}, "Samples.tissue.Material": "Water", "Samples.bone.Material": "Aluminium"}
+    with Server(command, path) as server:
+        page = Page(server)
+        for i in range(2):
+            wish = page.wish(settings=beam | {"Scatter": 1e-4, "Detector.Position": [0, 10 + i, 0, "cm"]})
+            shot = page.find(lambda m: isinstance(m, dict) and m.get("wish") == wish and (m.get("scatter") or {}).get("histories", 0) > 2**21)
+            page.send({"ack": shot["shot"]})
+            time.sleep(1)  # the last step takes minutes
+            if i == 0:
+                begun = time.monotonic()
+                page.frame(page.wish())
+                assert time.monotonic() - begun < 10
+        begun = time.monotonic()
+        assert server.end() == 0 and time.monotonic() - begun < 10
+
+
 def looks(path):
     """Pictures of the 3D view: for the page that asks, as it asks."""
     def picture(page, **keys):
@@ -407,7 +425,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, wishes, bands, answers, looks, scatter, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, wishes, bands, answers, looks, scatter, interrupted, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

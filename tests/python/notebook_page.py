@@ -149,6 +149,8 @@ class Lab:
 ARROW = """(() => { draw(); const r = canvas.getBoundingClientRect(), t = onScreen(add(middleOf(), REACH * 0.7 * mmPerPixel(middleOf()), AXES[0]));
   return [r.left + t[0], r.top + t[1]]; })()"""
 SUM = "xray.frame.numbers.reduce((s, x) => (Math.imul(s, 31) + x) | 0, 7)"
+COLOURS = """(() => { const s = byId('picture'), d = s.getContext('2d').getImageData(0, 0, s.width, s.height).data;
+  return new Set(new Uint32Array(d.buffer)).size; })()"""
 SETTLED = "xray.frame && live && net.role === 'owner' && xray.frame.wish === net.sent && !net.waits"
 
 
@@ -157,6 +159,9 @@ def tried(lab, pictures):
     lab.until("typeof xray !== 'undefined' && " + SETTLED, 180)
     check("an image", lab.run("new Set(xray.frame.numbers).size") > 20)
     check("3D", lab.run("meshes.length") == 2)
+    lab.until("served.stamp > 0 && !served.waits")  # WebGL is software here
+    check("3D by the kernel", lab.run("isServed() && !byId('picture').hidden && byId('drawer').options[0].textContent.endsWith('the kernel')"))
+    check("a picture", lab.run(COLOURS) > 20, str(lab.run(COLOURS)))
     lab.browser.run("document.querySelector('.jp-OutputArea iframe').scrollIntoView({block: 'end'})")
     time.sleep(0.5)
     if pictures:

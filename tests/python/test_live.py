@@ -16,6 +16,8 @@ from skiagraph._live import hub as hubs
 from skiagraph._live import page, widget
 
 HEADER = struct.Struct("<4sIIHHdddfHBB")
+PICTURE = struct.Struct("<4sIHHf")
+LOOK = {"number": 7, "size": [64, 48], "target": [0, 0, 0], "distance": 300, "from": [0.2, -1, 0.3], "up": [0, 0, 1], "background": [10, 20, 30]}
 SAME = [1.0, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]
 
 
@@ -62,6 +64,16 @@ class Page:
     @property
     def number(self):
         return HEADER.unpack_from(self.frames[-1])[1]
+
+    def picture(self, **keys):
+        """The pixels that answer a look."""
+        count = len(self.files)
+        self.say({"look": LOOK | keys})
+        assert len(self.files) == count + 1
+        mark, number, columns, rows, ms = PICTURE.unpack_from(self.files[-1])
+        pixels = self.files[-1][PICTURE.size:]
+        assert (mark, number) == (b"SKLP", 7) and ms > 0 and len(pixels) == 4 * columns * rows
+        return pixels
 
     def last(self, key):
         return next(text for text in reversed(self.texts) if key in text)
@@ -144,12 +156,15 @@ def test_beam_and_options_are_in_the_scene(solid, hub, tmp_path):
     ({"wish": 1, "poses": {"0": SAME[:15]}}, "16 numbers"), ({"wish": 1, "poses": {"0": [*SAME[:12], 0, 0, 0, 2]}}, "16 numbers"),
     ({"wish": 1, "poses": {"0": [float("nan"), *SAME[1:]]}}, "16 numbers"), ({"wish": 1, "phase": 1.5}, "below 1"),
     ({"wish": 1, "projection": 0.5}, "whole number"), ({"wish": 1, "quantity": ["energy"]}, "quantity"), ({"ack": None}, "number of a frame"),
-    ({"probe": [1]}, "column, row"), ({"take": "exe"}, "png, tif or mha"), ({"measure": True}, "skiagraph live")])
+    ({"probe": [1]}, "column, row"), ({"take": "exe"}, "png, tif or mha"), ({"look": 1}, '"size" is missing'),
+    *(({"look": LOOK | bad}, f'"look": "{next(iter(bad))}" is') for bad in (
+        {"size": [0, 1]}, {"size": [4096, 4096]}, {"size": [64, True]}, {"distance": 0}, {"distance": [1]}, {"target": [1, 2]}, {"up": "x"}, {"what": 1},
+        {"cut": [1, 2, 3]}, {"parts": {"x": [1, 2, 3, 4]}}, {"parts": {"0": [1, 2, 3, 256]}}, {"parts": []}, {"number": -1}, {"parallel": 1})), ({"measure": True}, "skiagraph live")])
 def test_malformed_messages_are_refused(hub, message, sentence):
     one = Page(hub)
-    frames = len(one.frames)
+    frames, files = len(one.frames), len(one.files)
     one.say(message)
-    assert sentence in one.last("refused")["refused"] and len(one.frames) == frames
+    assert sentence in one.last("refused")["refused"] and (len(one.frames), len(one.files)) == (frames, files)
     for nothing in (None, 3, {}, {"view": 1}, {"view": "a"}, {"view": "a", "messages": 1}):
         hub.hear(nothing)
 
@@ -280,6 +295,25 @@ def test_probe_and_files(solid, hub):
         assert one.files[-1][:4] == b"SKLB" and one.files[-1][8:8 + length].decode() == f"image.{ending}"
 
 
+def test_pictures_of_the_3d_view(solid, hub):
+    one = Page(hub, "first")
+    first = one.picture()
+    assert first[:4] == bytes([10, 20, 30, 255]) and one.picture() == first
+    others = [one.picture(**keys) for keys in (
+        {"from": [0.1, -1, 0]}, {"up": [0.1, 0, 1]}, {"target": [5, 0, 0]}, {"distance": 420}, {"parallel": True}, {"background": [10, 20, 31]},
+        {"cut": [0, -1, 0, 0]}, {"parts": {"0": [1, 2, 3, 255]}}, {"parts": {"0": [1, 2, 3, 0]}}, {"distance": 900, "grey": [0, 3]},
+        {"distance": 900, "grey": [3, 0]}, {"size": [31, 17]})]
+    assert len(set(others)) == len(others) and first not in others
+    one.wish(poses={"0": shift(16, 0, -8)})
+    assert one.picture() != first
+    one.wish()
+    assert one.picture() == first and one.picture(parts={"0": [0] * 4, "1": [0] * 4}) != first
+    second = Page(hub, "second")
+    assert second.picture() == first and one.picture() == first  # a page that only shows the scene may look, too
+    solid.close()
+    assert one.picture() == b"" and "closed" in one.last("refused")["refused"]
+
+
 def test_projections_follow_the_source():
     made = sk.Scene({"Source": {"Position": [0, 0, -1000, "mm"], "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
                      "Detector": {"Position": [0, 0, 200, "mm"], "UpVector": [0, 1, 0], "NumberOfPixels": [64, 48], "Size": [128, 96, "mm"]},
@@ -329,6 +363,7 @@ def test_the_command_says_the_same(command, solid, tmp_path):
     one = Page(hubs.Hub(scene._state))
     keys = {"poses": {"1": shift(5)}, "settings": {"Source.Position": [3, 0, -900, "mm"], "Collimation": {"Field": "detector"}}}
     one.wish(**keys)
+    looks = [{"size": [320, 240], "distance": distance, "grey": [0, 2], "cut": [0, 0, 1, 3], "parts": {"0": [90, 160, 200, 120]}} for distance in (200, 2500)]
     try:
         server = client.Server("skiagraph", str(tmp_path / "scene.json"))
     except RuntimeError as error:
@@ -341,7 +376,13 @@ def test_the_command_says_the_same(command, solid, tmp_path):
             message = other.receive()
             shot = message if isinstance(message, dict) and "shot" in message else shot
             told = message if isinstance(message, dict) and "scene" in message else told
+        pictures = []
+        for look in looks:
+            other.send({"look": LOOK | look})
+            pictures.append(other.find(lambda m: isinstance(m, bytes) and m[:4] == b"SKLP")[PICTURE.size:])
         other.close()
+    for look, picture in zip(looks, pictures, strict=True):
+        assert one.picture(**look) == picture, look
     mine = HEADER.unpack_from(one.frames[-1])
     assert (frame.columns, frame.rows, frame.low, frame.step, frame.flat, frame.quantity, frame.notes) == (*mine[3:8], *mine[10:])
     assert list(frame.numbers) == np.frombuffer(one.frames[-1], "<u2", offset=HEADER.size).tolist()

@@ -8,6 +8,7 @@ import signal
 import subprocess
 import sys
 import threading
+import time
 
 import numpy as np
 import pytest
@@ -117,6 +118,22 @@ def test_the_interpreter_runs_meanwhile(scene):
     stop.set()
     thread.join()
     assert after > before
+
+
+def test_an_interrupt_ends_scatter(view):
+    """SIGINT comes while the scatter of a frame is computed, for minutes."""
+    made = sk.Scene()
+    made.add("block", sk.Mesh.cube(40), material="Water")
+    made.view, made.beam = view, sk.Beam.mono(60, 1000)
+    before = made.image(scatter=0.05)
+    timer = threading.Timer(1, lambda: signal.pthread_kill(threading.main_thread().ident, signal.SIGINT))
+    timer.start()
+    begun = time.monotonic()
+    with pytest.raises(KeyboardInterrupt):
+        made.image(scatter=1e-4)
+    timer.join()
+    assert time.monotonic() - begun < 15
+    assert (made.image(scatter=0.05) == before).all()
 
 
 def test_an_interrupt_ends_a_batch(scene):

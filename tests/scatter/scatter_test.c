@@ -229,6 +229,49 @@ START_TEST(a_second_frame_is_the_first) {
 }
 END_TEST
 
+static int32_t cancel_third(int64_t done, int64_t total, void *user) {
+    int *calls = user;
+    ck_assert(done >= 0 && done < total);
+    return ++*calls == 3;
+}
+
+/* Cancelled while histories are followed; afterwards the same plan makes the same image as before. */
+START_TEST(a_progress_cancels_scatter) {
+    subject s;
+    skg_frame frame;
+    skg_output output;
+    skg_job *job = NULL;
+    skg_progress *progress = NULL;
+    int calls = 0;
+    subject_open(&s);
+    subject_fill(&s);
+    s.scatter.histories = 1 << 18;
+    subject_plan(&s);
+    pictures before = subject_pictures(&s, NULL);
+    s.scatter.seed = 1;
+    subject_plan(&s); /* another plan has no scatter yet */
+    skg_frame_init(&frame);
+    skg_output_init(&output);
+    output.data = before.sigma;
+    ck_skg(skg_progress_create(cancel_third, &calls, &progress));
+    frame.progress = progress;
+    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_CANCELLED, "cancelled");
+    ck_assert_ptr_null(job);
+    ck_assert_int_eq(calls, 3);
+    skg_progress_release(&progress);
+    pictures after = subject_pictures(&s, NULL);
+    ck_assert_mem_ne(after.scatter, before.scatter, (size_t)after.count * sizeof *after.scatter);
+    s.scatter.seed = 0;
+    subject_plan(&s);
+    pictures again = subject_pictures(&s, NULL);
+    same(again.image, before.image, again.count);
+    pictures_free(&before);
+    pictures_free(&after);
+    pictures_free(&again);
+    subject_close(&s);
+}
+END_TEST
+
 /* A job need not have an image: the scatter is the same, and so is an image that follows. */
 START_TEST(scatter_comes_alone) {
     subject s;
@@ -329,6 +372,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, threads_have_the_same_scatter);
     tcase_add_test(tests, batches_are_single_frames);
     tcase_add_test(tests, a_second_frame_is_the_first);
+    tcase_add_test(tests, a_progress_cancels_scatter);
     tcase_add_test(tests, scatter_comes_alone);
     tcase_add_test(tests, overrides_are_other_materials);
     tcase_add_test(tests, histories_and_tolerances_are_met);

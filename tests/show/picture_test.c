@@ -252,6 +252,30 @@ START_TEST(the_path_of_a_source_is_drawn) {
 }
 END_TEST
 
+static int grey_of(const uint8_t *at) {
+    return (at[0] + at[1] + at[2]) / 3;
+}
+
+/* Frame and path are dark on a light background, and light on a dark one. */
+START_TEST(lines_stand_out_from_the_background) {
+    const uint8_t dark[3] = {20, 22, 26}, light[3] = {230, 230, 230};
+    const double path[2][3] = {{-60, 0, 80}, {60, 0, 80}};
+    double detector[4][3], edge[3];
+    add_box("box", 10, 0, 0, 0, -1);
+    look.path = path[0], look.path_count = 2;
+    ck_skg(skg_collimation_corners_get(NULL, &view, 0, detector[0]));
+    for (int k = 0; k < 3; k++) edge[k] = 0.5 * (detector[0][k] + detector[1][k]);
+    look.background = light;
+    draw(picture);
+    look.background = dark;
+    draw(other);
+    ck_assert_int_lt(grey_of(pixel_at(picture, edge[0], edge[1], edge[2])), 170);
+    ck_assert_int_gt(grey_of(pixel_at(other, edge[0], edge[1], edge[2])), 80);
+    ck_assert_int_lt(grey_of(pixel_at(picture, 31, 0, 80)), 170);
+    ck_assert_int_gt(grey_of(pixel_at(other, 31, 0, 80)), 110);
+}
+END_TEST
+
 static int is_orange(const uint8_t *at) {
     return at[0] > at[2] + 60 && at[0] > at[1] + 20;
 }
@@ -508,6 +532,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_detector_shows_its_image);
     tcase_add_test(tests, creases_and_smooth_surfaces);
     tcase_add_test(tests, the_path_of_a_source_is_drawn);
+    tcase_add_test(tests, lines_stand_out_from_the_background);
     tcase_add_test(tests, jaws_leave_a_smaller_beam);
     tcase_add_test(tests, failures_are_reported);
     tcase_add_test(tests, bounds_hold_the_eye);

@@ -1,5 +1,6 @@
 #include "live/frame.h"
 
+#include "common/interrupt.h"
 #include "common/progress.h"
 #include "core/maths.h"
 #include "live/numbers.h"
@@ -103,6 +104,21 @@ static skg_status wait_for(skg_job **job, live_hub *hub, double expected_ms, int
     return skg_job_wait(job);
 }
 
+/* Cancels the scatter of a frame when a newer wish has come, or the end. */
+static int32_t is_outdated(int64_t done, int64_t total, void *user) {
+    (void)done;
+    (void)total;
+    return cli_stop_asked() || live_hub_has_news(user);
+}
+
+/* Scatter is computed while its frame is submitted, so that the job cannot be cancelled. Only a frame that refines the one that is
+ * shown may be dropped: wishes that follow each other fast would otherwise show nothing. */
+static skg_status watch_scatter(const live_scene *scene, const live_wish *wish, live_hub *hub,
+                                skg_frame *frame) {
+    if (!hub || !scene->session.options.scatter || scene->shown_wish != wish->number) return SKG_OK;
+    return skg_progress_create(is_outdated, hub, &frame->progress);
+}
+
 int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *plan, const skg_view *view,
                       live_hub *hub, const skg_output *outputs, int64_t output_count, int *dropped,
                       int *is_outside, char *sentence) {
@@ -118,10 +134,13 @@ int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *
     frame.pose_count = list.count;
     frame.pose_parts = list.parts;
     frame.poses = list.poses;
+    if (is_listed && status == SKG_OK) status = watch_scatter(scene, wish, hub, &frame);
     if (is_listed && status == SKG_OK)
         status = skg_plan_outputs_submit(plan, 1, &frame, output_count, outputs, &job);
     if (job) status = wait_for(&job, hub, scene->frame_ms, dropped);
+    if (status == SKG_ERR_CANCELLED && frame.progress) *dropped = 1;
     if (status == SKG_ERR_CANCELLED && *dropped) status = SKG_OK;
+    skg_progress_release(&frame.progress);
     *is_outside = status == SKG_RANGE;
     if (is_listed && status != SKG_OK && status != SKG_RANGE) is_listed = fail(sentence);
     free(list.parts);
@@ -191,6 +210,7 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
     scene->is_shown = 1;
     scene->shown_plan = plan;
     scene->shown = view;
+    scene->shown_wish = wish->number;
     scene->shown_channel = wish->channel;
     scene->shown_flat = header.flat_field;
     if (pack(scene->values + wish->channel * view.columns * view.rows, &header, shot)) return 1;

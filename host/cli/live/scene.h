@@ -53,7 +53,7 @@ typedef struct {
     int64_t frames; /* whole images so far */
     float *values;  /* [channels][rows][columns] of an image */
     int is_shown;   /* 1: `values` is a whole image: channel shown_channel of the view `shown` is shown */
-    int64_t shown_channel;
+    int64_t shown_channel, shown_wish; /* shown_wish: number of the wish of the last frame */
     skg_view shown;
     double shown_flat; /* its flat field; 0: the values are -ln(I/I0) */
     double box[6];     /* least and greatest corner of the parts, mm, where has_box */

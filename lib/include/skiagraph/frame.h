@@ -18,6 +18,7 @@
 #ifndef SKIAGRAPH_FRAME_H
 #define SKIAGRAPH_FRAME_H
 
+#include <skiagraph/progress.h>
 #include <skiagraph/types.h>
 
 #ifdef __cplusplus
@@ -59,6 +60,10 @@ typedef struct {
     const skg_scatter_series *scatter_series;
     /** The frame's number in that series, 0 to its number of frames less 1; between two numbers it is between them. */
     double series_place;
+    /** Of a plan with scatter: the progress of the frame's scatter, which is computed while the frame is submitted. It is called at
+     * least every 0.6 s. If it cancels, the submission returns SKG_ERR_CANCELLED, and the outputs are undefined. Its steps are
+     * histories of a batch; the total rises where the error is not met. NULL: none. */
+    skg_progress *progress;
 } skg_frame;
 
 SKG_INIT(skg_frame)

@@ -59,7 +59,8 @@ typedef struct {
     /** [4] a, b, c, d: parts are drawn only where a x + b y + c z is at most d, mm. What is seen of their inside is drawn
      * without shading. NULL: parts are whole. */
     const double *cut;
-    /** [3] red, green and blue of the background, 0 to 255; NULL: a light grey. */
+    /** [3] red, green and blue of the background, 0 to 255; NULL: a light grey. On a dark one, the frame of the detector,
+     * the opening of the jaws and the path are light. */
     const uint8_t *background;
     /** [parts][16] poses instead of those of the scene, row by row, mm; NULL: those of the scene. */
     const double *poses;

@@ -40,6 +40,8 @@ class Frame:
     factor: int
     is_draft: bool
     is_outside: bool
+    #: Flat field of the band that is shown; 0 for attenuations.
+    flat: float
 
 
 class Camera:
@@ -79,7 +81,8 @@ class Camera:
         is_outside = any(issubclass(warning.category, RangeWarning) for warning in said)
         with state.calls():
             plan = state.plan(options, view)
-        return Frame(image, plan, view, ms, factor, is_draft, is_outside)
+            flat = listed("skg_channel", "skg_plan_channel", plan)[subject.wish.channel]["flat_field"]
+        return Frame(image, plan, view, ms, factor, is_draft, is_outside, flat)
 
     def _factor(self, view: View) -> int:
         """Pixels of the detector for each of a draft, along a side: the time goes about with the pixels."""
@@ -107,9 +110,8 @@ def pack(frame: Frame, number: int, wish: Wish) -> bytes:
     # what is no number is shown as the largest, too
     packed = np.clip(np.nan_to_num(numbers, nan=65535, posinf=65535, neginf=0), 0, 65535).astype("<u2")
     notes = _DRAFT * frame.is_draft | _INFINITE * (not is_finite.all()) | _RANGE * frame.is_outside
-    flat = listed("skg_channel", "skg_plan_channel", frame.plan)[wish.channel]["flat_field"]
     rows, columns = image.shape
-    header = _HEADER.pack(b"SKLF", number, wish.wish, columns, rows, low, step, flat, frame.ms, frame.factor,
+    header = _HEADER.pack(b"SKLF", number, wish.wish, columns, rows, low, step, frame.flat, frame.ms, frame.factor,
                           ENUMS["quantity"][wish.quantity], notes)
     rows16: bytes = packed.tobytes()
     return header + rows16

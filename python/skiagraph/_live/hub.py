@@ -2,7 +2,7 @@
 
 The protocol is that of docs/live.md. What comes is {"view": ID} with "page" (the page is asked for), "gone", or "messages", a bundle,
 which is answered by {"heard": true} when all of it is dealt with. What goes is {"to": ID} or, to all views, {}, with "text", a
-message of the protocol, or with a buffer: the page, a frame or a file.
+message of the protocol, or with a buffer: the page, a frame, a picture of the 3D view or a file.
 """
 from __future__ import annotations
 
@@ -17,7 +17,8 @@ from .._interface import Error
 from .._library import ffi
 from .._state import State
 from . import describe, page
-from .frame import Camera, pack, probe, take
+from .frame import Camera, Frame, pack, probe, take
+from .look import Look, draw, read_look
 from .subject import Subject
 from .wish import Refusal, kind_of, read_ack, read_probe, read_take, read_wish
 
@@ -45,6 +46,9 @@ class Hub:
         self._is_wanted = self._drag = self._is_closed = False
         self._played = 0.0
         self._last: tuple[bytes, dict[str, Any]] | None = None
+        #: The last frame, and the newest look of a view that has not been answered yet.
+        self._frame: Frame | None = None
+        self._look: Look | None = None
         #: What the library warned of since the page began. The text about the scene has it.
         self._warnings: list[str] = []
         self._has_failed = False
@@ -87,6 +91,7 @@ class Hub:
             except Refusal as refusal:
                 self._tell({"refused": str(refusal)}, name)
         self._go_on()
+        self._draw(name)
 
     def _take(self, name: str, kind: str, message: dict[str, Any]) -> None:
         if kind == "ack":
@@ -96,6 +101,8 @@ class Hub:
         elif kind == "probe":
             at = read_probe(message["probe"])
             self._try(lambda: self._tell({"probed": message["probe"], "parts": probe(self._subject, at)}, name))
+        elif kind == "look":
+            self._look = read_look(message["look"])
         elif name != self._views[-1]:
             self._tell({"refused": "another page changes this scene; this one only shows it"}, name)
         elif kind == "wish":
@@ -201,11 +208,20 @@ class Hub:
                 facts = {"geometry": self._geometry, "warnings": self._warnings, "plan_ms": frame.ms}
                 self._scene = describe.scene(subject, frame.plan, facts)
                 self._tell(self._scene)
-        self._number, self._drag = number, False
+        self._number, self._drag, self._frame = number, False, frame
         self._last = data, shot
         self._untaken.append(number)
         self.send({}, [data])
         self._tell(shot)
+
+    def _draw(self, name: str) -> None:
+        """Answers the look of a view, with a frame first if one was wanted."""
+        look, self._look = self._look, None
+        if look is not None:
+            data, failure = draw(self._subject, self._frame, look)
+            self.send({"to": name}, [data])
+            if failure is not None:
+                self._tell({"refused": str(failure)}, name)
 
     # Texts
 

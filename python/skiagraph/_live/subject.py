@@ -67,6 +67,7 @@ class Subject:
         self.wish = Wish(_later(self.wish.wish), phase=self._breath, quantity=self.wish.quantity, bands=self.wish.bands,
                          channel=self.wish.channel)
         self.surfaces = self._surfaces()
+        self._bounds: NDArray[np.float64] | None = None
         self.note()
 
     # What a wish changes
@@ -234,6 +235,26 @@ class Subject:
         poses, moves = np.frombuffer(buffer).reshape(len(parts), 4, 4), self.wish.moves()
         moved = np.stack([moves[part] @ pose if part in moves else pose for part, pose in zip(parts, poses)])
         return Batch(1, parts=parts, poses=moved[None], views=[view])
+
+    # For pictures of the 3D view
+
+    def bounds(self) -> NDArray[np.float64]:
+        """The box of the parts before the page moves them, [2][3] mm: axes and beam of pictures stay where they are."""
+        if self._bounds is None:
+            corners = []
+            for part, (a, b, c, _) in zip(self.state.parts(), self.base):
+                x, y, z = part.mesh.vertices.T
+                placed = np.stack([row[0] * x + row[1] * y + row[2] * z + row[3] for row in (a, b, c)])
+                corners += [placed.min(axis=1), placed.max(axis=1)]
+            self._bounds = np.stack([np.min(corners, axis=0), np.max(corners, axis=0)])
+        return self._bounds
+
+    def poses(self) -> NDArray[np.float64]:
+        """Of all parts as the last frame has them, [parts][4][4]."""
+        poses, its = np.stack([part.pose for part in self.state.parts()]), self.batch(self.view())
+        if its.poses is not None:
+            poses[list(its.parts)] = its.poses[0]
+        return poses
 
 
 def _later(number: int) -> int:

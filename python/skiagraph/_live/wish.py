@@ -14,7 +14,7 @@ from .._interface import ENUMS
 
 _SETTINGS_MAX, _KEY_MAX, _LARGEST = 1000, 400, 1e9
 _BANDS_MAX = ENUMS["limit"]["channels_max"]
-KINDS = ("wish", "ack", "probe", "take", "measure")
+KINDS = ("wish", "ack", "probe", "take", "measure", "look")
 FORMATS = ("png", "tif", "mha")
 
 
@@ -70,7 +70,7 @@ def read_wish(message: dict[str, Any]) -> tuple[Wish, bool]:
 
 
 def read_probe(value: Any) -> tuple[float, float]:
-    if not isinstance(value, list) or len(value) != 2 or not all(_is_number(x) and abs(x) <= 1e6 for x in value):
+    if not isinstance(value, list) or len(value) != 2 or not all(is_number(x) and abs(x) <= 1e6 for x in value):
         raise Refusal('"probe" is not [column, row]')
     return float(value[0]), float(value[1])
 
@@ -87,7 +87,7 @@ def read_take(value: Any) -> str:
     return str(value)
 
 
-def _is_number(value: Any) -> bool:
+def is_number(value: Any) -> bool:
     return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
 
 
@@ -119,7 +119,7 @@ def _poses(value: Any) -> None:
     for key, rows in value.items():
         if not re.fullmatch("[0-9]{1,9}", key, re.ASCII):
             raise Refusal(f'"poses": "{key[:40]}" is no number of a part')
-        is_matrix = isinstance(rows, list) and len(rows) == 16 and all(_is_number(x) and abs(x) <= _LARGEST for x in rows)
+        is_matrix = isinstance(rows, list) and len(rows) == 16 and all(is_number(x) and abs(x) <= _LARGEST for x in rows)
         if not is_matrix or rows[12:] != [0, 0, 0, 1]:
             raise Refusal(f'"poses": part {key} needs 16 numbers, row by row, the last row 0, 0, 0, 1')
 
@@ -130,7 +130,7 @@ def _number(value: Any) -> None:
 
 
 def _phase(value: Any) -> None:
-    if value is not None and not (_is_number(value) and 0 <= value < 1):
+    if value is not None and not (is_number(value) and 0 <= value < 1):
         raise Refusal('"phase" is not from 0 to below 1')
 
 
@@ -148,7 +148,7 @@ def _bands(value: Any) -> None:
     if not isinstance(value, list) or len(value) == 1 or len(value) > _BANDS_MAX + 1:
         raise Refusal(f'"bands" is no list of 2 to {_BANDS_MAX + 1} edges in keV')
     for number, edge in enumerate(value):
-        if not (_is_number(edge) and edge >= 0 and (number == 0 or edge > value[number - 1])):
+        if not (is_number(edge) and edge >= 0 and (number == 0 or edge > value[number - 1])):
             raise Refusal(f'"bands": edge {number + 1} is not an energy in keV above the one before it')
 
 

@@ -11,7 +11,7 @@ function rendererName() {
   return gl ? String(gl.getParameter(names ? names.UNMASKED_RENDERER_WEBGL : gl.RENDERER)) : 'no WebGL 2';
 }
 const isSlow = !gl || SOFTWARE.test(rendererName());
-const isServed = () => !isNotebook && (!gl || (served.by === 'auto' ? isSlow : served.by === 'server')); // a notebook's kernel draws none
+const isServed = () => !gl || (served.by === 'auto' ? isSlow : served.by === 'server');
 
 // {"PART": [red, green, blue, opacity]} of the parts that are hidden, chosen, pointed at, or of another opacity than at first.
 function coloursNow() {
@@ -78,7 +78,9 @@ function listenToServed() {
   const box = byId('drawer');
   try { served.by = localStorage.getItem('drawer') || 'auto'; } catch (error) { /* private windows may have none */ }
   box.value = served.by;
-  box.options[0].textContent = `automatically: ${isSlow ? 'the server' : 'this browser'}`;
+  const server = isNotebook ? 'the kernel' : 'the server';
+  box.options[0].textContent = `automatically: ${isSlow ? server : 'this browser'}`;
+  box.options[2].textContent = `by ${server}`;
   box.options[1].disabled = !gl;
   box.title = rendererName();
   box.onchange = () => {
