@@ -62,11 +62,12 @@ int skg_thread_start(pthread_t *thread, void *(*work)(void *given), void *given)
     return error;
 }
 
-/* Starts helpers, at most as many as there are further items and CPUs. */
+/* Starts helpers, at most as many as there are further items and CPUs. Short work may be done before all of them have begun. */
 static int start(crew *c, pthread_t *threads) {
     const int64_t most = c->count < THREADS_MAX ? c->count : THREADS_MAX, cpus = skg_thread_limit();
     int started = 0;
-    while (started + 1 < most && started + 1 < cpus && skg_thread_start(&threads[started], do_thread, c) == 0)
+    while (started + 1 < most && started + 1 < cpus && atomic_load(&c->next) < c->count &&
+           skg_thread_start(&threads[started], do_thread, c) == 0)
         started++;
     return started;
 }

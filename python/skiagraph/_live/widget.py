@@ -59,7 +59,7 @@ def _kind() -> Any:
             """After each cell, what it has changed is shown."""
             self._unfollow: Callable[[], None] = lambda: None
             try:
-                from IPython import get_ipython  # type: ignore[import-not-found, unused-ignore]
+                from IPython import get_ipython  # type: ignore[import-not-found, attr-defined, unused-ignore]
             except ImportError:
                 return
             shell, this = get_ipython(), weakref.ref(self)  # type: ignore[no-untyped-call, unused-ignore]
