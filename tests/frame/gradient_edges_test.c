@@ -134,8 +134,9 @@ START_TEST(sides_count_where_their_part_wins) {
     moving.poses = twists[0];
     ck_skg(skg_plan_derivative(plan, NULL, &moving, found, NULL));
     for (int p = 0; p < PIXELS; p++) sum += adjoint[p] * found[p];
+    /* the same */
     ck_assert_msg(fabs(sum - expected) <= 1e-5 * fabs(expected), "%s: derivative %.9g, not %.9g", c->name,
-                  sum, expected); /* the same */
+                  sum, expected);
     skg_plan_release(&plan);
     skg_scene_release(&scene);
 }
@@ -149,7 +150,7 @@ static int is_inside(const box *b, const double at[3]) {
     for (int axis = 0; axis < 3; axis++) {
         double along = 0;
         for (int k = 0; k < 3; k++) along += pose[4 * k + axis] * (at[k] - b->at[k]);
-        if (fabs(along) > b->size[axis] / 2) return 0;
+        if (fabs(along) > b->size[axis] / 2) return 0; /* no tolerance */
     }
     return b->size[0] > 0;
 }
