@@ -9,11 +9,11 @@ static void skg_draw_tiny(const skg_target *target, const skg_batch *batch) {
         const skg_realv slowest = SKG_LOAD_V(realv, batch->slowest + k), fastest = SKG_LOAD_V(realv, batch->fastest + k);
         for (int step = 0; step < 4; step++) {
             skg_tiny_hits hits;
-            long values[SKG_WIDE];
             if (!skg_hit_tiny(target, batch, k, &tiny, step, &hits)) continue;
             const skg_realv slope = first + fma(across, (skg_realv)(step & 1), down * (skg_realv)(step >> 1));
-            const skg_longv value = skg_integers_v(hits.worth * scale * skg_within(slope, slowest, fastest));
-            *(skg_longv *)values = value;
+            const skg_realv worth = hits.worth * scale * skg_within(slope, slowest, fastest);
+            const skg_longv value = skg_integers_v(hits.inside ? worth : (skg_realv)(0)); /* some lanes may have no face */
+            const long *values = (const long *)&value;
             for (int lane = 0; lane < SKG_WIDE; lane++)
                 if (values[lane])
                     target->moments[tiny.place[lane] - batch->own_plane[k + lane] + hits.offset] += values[lane];
