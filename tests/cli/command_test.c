@@ -116,9 +116,9 @@ START_TEST(devices_are_listed_and_chosen) {
 END_TEST
 
 START_TEST(no_device_is_status_4) {
-    ck_run(0, "devices");
-    if (!strstr(said, "refused:")) /* where a driver is refused, the list follows */
-        ck_run_fails(4, "no OpenCL device fits device=no-such-device", "devices --device no-such-device");
+    /* the list follows where there are drivers that are not known, also of no device, as Mesa's */
+    ck_run(4, "devices --device no-such-device");
+    ck_assert_ptr_nonnull(strstr(complained, "skiagraph: no OpenCL device fits device=no-such-device"));
     ck_run_fails(4, "no OpenCL device on this machine", "OCL_ICD_VENDORS=/dev/null |devices");
     ck_run_fails(4, "driver=/no/such/driver.so cannot be loaded",
                  "devices --device driver=/no/such/driver.so");
