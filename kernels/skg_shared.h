@@ -43,8 +43,8 @@
 #define SKG_EXTENT_COLUMNS 32
 
 /* The bit of a plane in the set of a copy, which planes 32 apart share, and whether a copy counts for a plane. */
-#define SKG_PLANE_BIT(plane) (1u << ((plane) & 31))
-#define SKG_COUNTS(set, plane) (((SKG_UINT)(set) & SKG_PLANE_BIT(plane)) != 0)
+#define SKG_PLANE_BIT(plane) (1u << ((plane)&31))
+#define SKG_COUNTS(set, plane) (((SKG_UINT)(set)&SKG_PLANE_BIT(plane)) != 0)
 
 /* How many bad pixels of a leaky mesh are listed. */
 #define SKG_FIRST_BAD 8
@@ -248,7 +248,7 @@ typedef struct {
         far; /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
     float log_low, per_log; /* of the table by energy */
     float per_momentum, per_log_momentum;
-    float angle_rows;       /* rows of the table of angles for one of that by energy */
+    float angle_rows;     /* rows of the table of angles for one of that by energy */
     float min_kev, scale; /* photons below are given up; of sums */
     float strips[3],
         focus; /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */

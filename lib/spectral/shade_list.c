@@ -119,7 +119,8 @@ skg_status skg_shades_append_fitted(skg_directions *d, skg_shades *shades, doubl
     for (int32_t k = 0; k < d->count; k++) {
         const double *amounts = d->amounts + k * d->states;
         double low = HUGE_VAL, high = -HUGE_VAL;
-        *error = fmax(*error, skg_polynomial_fit(amounts, shades->polynomials[shades->heel + shades->oblique + k]));
+        *error = fmax(*error,
+                      skg_polynomial_fit(amounts, shades->polynomials[shades->heel + shades->oblique + k]));
         for (int64_t s = 0; s < d->states; s++) low = fmin(low, amounts[s]), high = fmax(high, amounts[s]);
         SKG_TRY(skg_shades_append(d->bins, d->unit + k * d->bins, low, high, shades));
     }

@@ -174,15 +174,14 @@ static skg_status run_batches(const skg_gather_run *run) {
                            &run->staging->log);
 }
 
-/* Makes sure of the moments, which are 0 if they are added to. Batches write all but what stands behind the faces. */
-static skg_status reserve_moments(const skg_gather_run *run) {
-    const int64_t faces = 4 * run->geometry->triangles, first = run->workers > 0 ? faces : 0;
+skg_status skg_gather_clear(const skg_gather_run *run, int64_t first, int64_t end) {
     const size_t size = sizeof(int64_t);
     const cl_int none = 0;
-    SKG_TRY(skg_gather_reserve(run, &run->memory->moments, (faces + 4) * (int64_t)size));
-    SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
-                                   sizeof none, (size_t)first * size, (size_t)(faces + 4 - first) * size, 0,
-                                   NULL, NULL));
+    SKG_TRY(skg_gather_reserve(run, &run->memory->moments, end * (int64_t)size));
+    if (first < end)
+        SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
+                                       sizeof none, (size_t)first * size, (size_t)(end - first) * size, 0,
+                                       NULL, NULL));
     return SKG_OK;
 }
 
@@ -261,7 +260,8 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     skg_gradient_find_scales(&run, most, around, scales, units);
     SKG_TRY(skg_gather_upload_scales(&run, 2 * parts, scales));
     SKG_TRY(skg_gather_slopes(&run));
-    SKG_TRY(reserve_moments(&run));
+    const int64_t faces = 4 * geometry->triangles; /* batches write all but what stands behind the faces */
+    SKG_TRY(skg_gather_clear(&run, run.workers > 0 ? faces : 0, faces + 4));
     if (run.workers > 0) SKG_TRY(run_batches(&run));
     SKG_TRY(skg_gather_faces(&run));
     SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,

@@ -50,6 +50,9 @@ void skg_gather_round(const skg_gather_run *run, int64_t first, int64_t count, c
 skg_status skg_gather_upload_scales(const skg_gather_run *run, int64_t count, const double *scales);
 skg_status skg_gather_reserve(const skg_gather_run *run, skg_buffer *buffer, int64_t bytes);
 
+/* Makes sure of `end` sums, of which those from number `first` on are 0. */
+skg_status skg_gather_clear(const skg_gather_run *run, int64_t first, int64_t end);
+
 /* What priorities add to the weights of hits; the hits of competing parts are listed still, by skg_hits_settle of this pass. */
 skg_status skg_gather_slopes(const skg_gather_run *run);
 

@@ -70,15 +70,10 @@ static skg_status run_batches(const skg_gather_run *run) {
 
 /* Adds up the hits of every pixel: in batches, which zero their own sums, or by atomic operations. */
 static skg_status run_hits(const skg_gather_run *run, int64_t copies) {
-    const int64_t bytes = copies * sums_of(run) * (int64_t)sizeof(int64_t);
-    const cl_int none = 0;
-    SKG_TRY(skg_gather_reserve(run, &run->memory->moments, bytes));
+    const int64_t sums = copies * sums_of(run);
+    SKG_TRY(skg_gather_clear(run, run->workers > 0 ? sums : 0, sums));
     SKG_TRY(skg_gather_slopes(run));
-    if (run->workers > 0)
-        SKG_TRY(run_batches(run));
-    else
-        SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,
-                                       sizeof none, 0, (size_t)bytes, 0, NULL, NULL));
+    if (run->workers > 0) SKG_TRY(run_batches(run));
     return skg_gather_faces(run);
 }
 

@@ -18,4 +18,5 @@ if ! "$stage/venv/bin/python" -c "import anywidget, cffi, jupyterlab, numpy" 2>/
         skip "pip found no packages: $(tail -n 1 "$stage/pip.log")"
 fi
 cmake --install "$build" --component python --prefix "$stage/site" >"$stage/install.log"
+# shellcheck disable=SC2086 # a folder, or nothing
 PATH=$build/bin:$PATH PYTHONPATH=$stage/site "$stage/venv/bin/python" "$source/tests/python/notebook_page.py" "$stage/jupyter" $pictures

@@ -104,8 +104,9 @@ SKG_INIT(skg_gradient)
  *                oblique scintillator, jaws, and a world with ratios or in a parallel beam
  *     range      SKG_RANGE if a derivative by a path length is not finite
  *     stale      SKG_STALE as skg_plan_submit */
-SKG_API skg_status skg_plan_gradient_submit(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
-                                            const skg_gradient *gradient, skg_job **job);
+SKG_API skg_status skg_plan_gradient_submit(skg_plan *plan, const skg_frame *frame,
+                                            const skg_adjoint *adjoint, const skg_gradient *gradient,
+                                            skg_job **job);
 
 /** Makes the gradient of a loss for one frame: skg_plan_gradient_submit and skg_job_wait. */
 SKG_API skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
