@@ -132,5 +132,5 @@ static int by_depth(const void *a, const void *b) {
 }
 
 void skg_crossings_sort(skg_crossing_list *list) {
-    qsort(list->at, (size_t)list->count, sizeof *list->at, by_depth);
+    if (list->count > 1) qsort(list->at, (size_t)list->count, sizeof *list->at, by_depth);
 }

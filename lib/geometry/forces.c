@@ -105,8 +105,9 @@ static skg_status add_edge_on(const skg_face_moments *faces, int64_t face, skg_f
 
 /* --- all others */
 
-static void multiply(const double matrix[3][3], const double *vector, double *product) {
-    for (int r = 0; r < 3; r++) product[r] = skg_dot(matrix[r], vector);
+/* Takes a vector of the world into the axes of the mesh. */
+static void turn_to_mesh(const local_camera *local, const double *vector, double *turned) {
+    for (int r = 0; r < 3; r++) turned[r] = skg_dot(local->inverse[r], vector);
 }
 
 static void find_camera(const skg_face_moments *faces, local_camera *local) {
@@ -125,11 +126,11 @@ static void find_camera(const skg_face_moments *faces, local_camera *local) {
         first[r] = (camera->parallel ? 0 : camera->first[r]) + (double)faces->pixel[0] * camera->column[r] +
                    (double)faces->pixel[1] * camera->row[r];
     }
-    multiply(local->inverse, from, local->origin);
-    multiply(local->inverse, first, local->first);
-    multiply(local->inverse, camera->column, local->column);
-    multiply(local->inverse, camera->row, local->row);
-    multiply(local->inverse, camera->first, local->beam);
+    turn_to_mesh(local, from, local->origin);
+    turn_to_mesh(local, first, local->first);
+    turn_to_mesh(local, camera->column, local->column);
+    turn_to_mesh(local, camera->row, local->row);
+    turn_to_mesh(local, camera->first, local->beam);
 }
 
 void skg_face_planes_find(const skg_mesh *mesh, const int32_t *corners, const int32_t *source,
