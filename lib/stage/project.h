@@ -41,15 +41,15 @@ skg_status skg_geometry_part_vertices(skg_context *context, skg_geometry *geomet
  * says where merged vertices of a leaky mesh have parted. */
 skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging);
 
-/* Enqueues that no vertex was bad: frames are independent, so each begins with it. Whether vertices are bad is found as they are
- * projected, so that none are projected since then. */
+/* Enqueues that no vertex was bad: frames are independent, so each begins with it. Bad vertices are found by the projection, which the
+ * frame then has to make again. */
 skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry);
 
 /* Enqueues one frame's projection, by its part table (skg_geometry_weigh). kernel: the raster's (skg_raster_projection) */
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,
                                 skg_stage_log *log);
 
-/* Whether what stands projected is of the tables and vertices on the device, by this kernel, since no vertex was bad. */
+/* 1: this kernel has projected the vertices and tables that are on the device, since skg_geometry_reset_bad. */
 int skg_geometry_is_projected(const skg_geometry *geometry, cl_kernel kernel);
 
 /* Bytes on the device. */
