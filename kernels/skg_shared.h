@@ -144,6 +144,12 @@ typedef struct {
 /* The first moment of a face that is seen as a line (kernels/gradient.cl). */
 #define SKG_EDGE_ON ((SKG_LONG)1 << 62)
 
+/* What skg_weights makes of the rays: nothing, two planes, or sums, of which there are SKG_RAY_SUMS. */
+#define SKG_RAYS_NONE 0
+#define SKG_RAYS_PLANES 1
+#define SKG_RAYS_SUMS 2
+#define SKG_RAY_SUMS 4
+
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_BACKGROUND 0x10000
 

@@ -8,6 +8,29 @@
 #define SKG_WEIGHED SKG_SUMMED
 #endif
 
+/* What is asked of the weights, by the kernel's names. */
+typedef struct {
+    __global const skg_real *adjoint;
+    __global const int *wanted;
+    __global skg_real *weights;
+    int channel, rays;
+} skg_weighing;
+
+/* What a work-item finds of its rays: see `most` and `of_rays` of the kernel. */
+typedef struct {
+    skg_realv most[SKG_WEIGHED];
+    skg_realv lengths, across, down, intensity;
+} skg_found;
+
+/* The derivative of one channel by itself, of the runs. */
+static void skg_choose_channel(const skg_strip *strip, int channel, skg_realv slope[SKG_CHANNELS][SKG_RUNS]) {
+    SKG_EACH_RUN {
+        const skg_maskv inside =
+            SKG_TO_MASK_V(strip->column + r * SKG_WIDE + SKG_TO_INT_V(SKG_LANES) < strip->args.layout.columns);
+        SKG_EACH_CHANNEL slope[c][r] = inside ? (skg_realv)(c == channel) : (skg_realv)(0);
+    }
+}
+
 /* The derivatives of the runs by what their channels show; 0 behind the end of a row. */
 static void skg_read_adjoint(const skg_strip *strip, __global const skg_real *adjoint,
                              skg_realv slope[SKG_CHANNELS][SKG_RUNS]) {
@@ -136,25 +159,52 @@ static void skg_put_sums(const skg_strip *strip, int plane, const skg_realv *val
     skg_put_weights(strip, plane, scaled, weights);
 }
 
-/* Which planes parts of accumulators make that have hits in the runs. In the others no length changes, but for the world's. */
-static void skg_find_needed(const skg_strip *strip, uchar *needed) {
+/* Which planes accumulators make whose weights are wanted and that have hits in the runs. In the others no length changes, but for the
+ * world's. Returns 0 if there are none. */
+static int skg_find_needed(const skg_strip *strip, const skg_weighing *weighing, uchar *needed) {
+    int any = 0;
     for (int p = 0; p < SKG_SUMMED; p++) needed[p] = SKG_WEIGH_PLANES || (SKG_WORLD && p == strip->args.world_plane);
+    for (int s = 0; s < SKG_WEIGHED; s++) {
+        if ((weighing->rays == SKG_RAYS_NONE && !weighing->wanted[s]) || !skg_meets(strip, s)) continue;
+        any = 1;
 #if SKG_SUMS
-    for (int s = 0; s < SKG_SUMS; s++) {
-        if (!skg_meets(strip, s)) continue;
         for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= strip->lists[s * SKG_SUMMED + p] != 0;
-    }
 #else
-    for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= skg_meets(strip, p);
+        needed[s] = 1;
 #endif
+    }
+    return any;
 }
 
-static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjoint, __global skg_real *weights,
-                           skg_realv *most) {
+/* The two planes of rays, or their sums. length: of the rays; path, shown: of the planes. */
+static void skg_put_rays(const skg_strip *strip, const skg_weighing *weighing, const skg_realv *length, const skg_realv *path,
+                         const skg_realv *shown, skg_found *found) {
+    if (weighing->rays == SKG_RAYS_PLANES) {
+        skg_put_weights(strip, SKG_WEIGHED, path, weighing->weights);
+        skg_put_weights(strip, SKG_WEIGHED + 1, shown, weighing->weights);
+    } else if (weighing->rays == SKG_RAYS_SUMS) {
+        SKG_EACH_RUN {
+            const skg_realv falls = SKG_FALLOFF ? 3 * shown[r] : (skg_realv)(0);
+            const skg_realv share = (path[r] - falls) / (length[r] * length[r]);
+            found->lengths += share;
+            found->across = fma(share, (skg_real)(strip->column + r * SKG_WIDE) + SKG_LANES, found->across);
+            found->down = fma(share, (skg_realv)((skg_real)strip->row), found->down);
+            found->intensity += shown[r];
+        }
+    }
+}
+
+static void skg_weigh_runs(const skg_strip *strip, const skg_weighing *weighing, skg_found *found) {
     skg_pixels pixels;
-    skg_realv slope[SKG_CHANNELS][SKG_RUNS], total[SKG_SUMMED][SKG_RUNS], unit[SKG_RUNS], path[SKG_RUNS], shown[SKG_RUNS];
+    skg_realv slope[SKG_CHANNELS][SKG_RUNS], total[SKG_SUMMED][SKG_RUNS], unit[SKG_RUNS], length[SKG_RUNS];
+    skg_realv path[SKG_RUNS], shown[SKG_RUNS];
+    uchar needed[SKG_SUMMED];
+    if (!skg_find_needed(strip, weighing, needed) && !SKG_WEIGH_PLANES && weighing->rays == SKG_RAYS_NONE) return;
     skg_read_planes(strip, &pixels);
-    skg_read_adjoint(strip, adjoint, slope);
+    if (weighing->channel < 0)
+        skg_read_adjoint(strip, weighing->adjoint, slope);
+    else
+        skg_choose_channel(strip, weighing->channel, slope);
 #if SKG_COLLIMATED
     skg_collimate_adjoint(strip, slope);
 #endif
@@ -171,22 +221,22 @@ static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjo
     skg_add_nodes(strip, &pixels);
 #endif
     SKG_EACH_RUN skg_unfinish(strip, &pixels, slope, r);
-    uchar needed[SKG_SUMMED];
-    skg_find_needed(strip, needed);
     skg_add_slopes(strip, &pixels, slope, needed, total, shown);
 #endif
     SKG_EACH_SUMMED SKG_EACH_RUN path[r] = fma(total[p][r], pixels.x[p][r], path[r]);
 #if SKG_WEIGH_PLANES
-    SKG_EACH_SUMMED skg_put_weights(strip, p, total[p], weights);
+    SKG_EACH_SUMMED skg_put_weights(strip, p, total[p], weighing->weights);
     return;
 #endif
     SKG_EACH_RUN {
         const int at = min(strip->column + r * SKG_WIDE, strip->args.layout.columns - 1);
-        unit[r] = skg_ray_lengths_v(&strip->args.ray, at, strip->row) * strip->args.ray.unit;
+        length[r] = skg_ray_lengths_v(&strip->args.ray, at, strip->row);
+        unit[r] = length[r] * strip->args.ray.unit;
     }
+    skg_put_rays(strip, weighing, length, path, shown, found);
 #if SKG_SUMS
     for (int s = 0; s < SKG_SUMS; s++) {
-        if (!skg_meets(strip, s)) continue;
+        if (!weighing->wanted[s] || !skg_meets(strip, s)) continue;
         skg_realv sum[SKG_RUNS];
         SKG_EACH_RUN sum[r] = (skg_realv)(0);
         SKG_EACH_SUMMED {
@@ -194,28 +244,44 @@ static void skg_weigh_runs(const skg_strip *strip, __global const skg_real *adjo
             if (share == 0) continue; /* true of most */
             SKG_EACH_RUN sum[r] = fma((skg_realv)(share), total[p][r], sum[r]);
         }
-        skg_put_sums(strip, s, sum, unit, weights, most);
+        skg_put_sums(strip, s, sum, unit, weighing->weights, found->most);
     }
 #else
-    SKG_EACH_SUMMED if (skg_meets(strip, p)) skg_put_sums(strip, p, total[p], unit, weights, most);
+    SKG_EACH_SUMMED {
+        if (!weighing->wanted[p] || !skg_meets(strip, p)) continue;
+        skg_put_sums(strip, p, total[p], unit, weighing->weights, found->most);
+    }
 #endif
-    skg_put_weights(strip, SKG_WEIGHED, path, weights);
-    skg_put_weights(strip, SKG_WEIGHED + 1, shown, weights);
 }
 
-/* most: [planes], a plane's being `step` behind that of the plane before */
-SKG_APART void skg_weigh_strip(const skg_strip *whole, __global const skg_real *adjoint, __global skg_real *weights,
-                               __global skg_real *most, int step) {
-    skg_strip strip = *whole; /* a copy that stores cannot alias */
-    skg_realv largest[SKG_WEIGHED];
-    for (int p = 0; p < SKG_WEIGHED; p++) largest[p] = (skg_realv)(0);
+static skg_real skg_sum_lanes(skg_realv v) {
+    skg_real lanes[SKG_WIDE], sum = 0;
+    SKG_STORE_V(realv, v, lanes);
+    for (int k = 0; k < SKG_WIDE; k++) sum += lanes[k];
+    return sum;
+}
+
+/* most, of_rays: a plane's, and a sum's, being `step` behind that before */
+SKG_APART void skg_weigh_strip(const skg_strip *whole, const skg_weighing *weighing, __global skg_real *most,
+                               __global skg_real *of_rays, int step) {
+    skg_strip strip = *whole; /* copies that stores cannot alias */
+    const skg_weighing own = *weighing;
+    skg_found found;
+    for (int p = 0; p < SKG_WEIGHED; p++) found.most[p] = (skg_realv)(0);
+    found.lengths = found.across = found.down = found.intensity = (skg_realv)(0);
     const int end = min(strip.column + SKG_STRIP * SKG_RUNS * SKG_WIDE, strip.args.layout.columns);
     for (int row = 0; row < SKG_FINE; row++, strip.row++)
         for (strip.column = whole->column; strip.column < end; strip.column += SKG_RUNS * SKG_WIDE)
-            skg_weigh_runs(&strip, adjoint, weights, largest);
+            skg_weigh_runs(&strip, &own, &found);
+    if (own.rays == SKG_RAYS_SUMS) {
+        of_rays[0] = skg_sum_lanes(found.lengths);
+        of_rays[step] = skg_sum_lanes(found.across);
+        of_rays[2 * (long)step] = skg_sum_lanes(found.down);
+        of_rays[3 * (long)step] = skg_sum_lanes(found.intensity);
+    }
     for (int p = 0; p < SKG_WEIGHED && !SKG_WEIGH_PLANES; p++) {
         skg_real lanes[SKG_WIDE], result = 0;
-        SKG_STORE_V(realv, largest[p], lanes);
+        SKG_STORE_V(realv, found.most[p], lanes);
         for (int k = 0; k < SKG_WIDE; k++) result = lanes[k] <= result ? result : lanes[k];
         most[(long)p * step] = result;
     }
@@ -223,16 +289,23 @@ SKG_APART void skg_weigh_strip(const skg_strip *whole, __global const skg_real *
 
 /* Arguments and work-items as of skg_attenuate, but for the last two buffers; `args.image` is the layout of the weights.
  *
- * adjoint   [channels][rows][columns] of the image: d loss / d what a pixel shows
- * weights   [planes + 2][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators, within its extent; then the sum over planes
- *           of mm times d loss / d mm; then d loss / d logarithm of the intensity. With SKG_WEIGH_PLANES instead: d loss / d mm
- *           of each plane that is mixed from accumulators, and nothing else
- * most      [planes][work-items] the largest magnitudes of the weights of accumulators */
+ * adjoint   [channels][rows][columns] of the image: d loss / d what a pixel shows; used if channel < 0
+ * channel   else: the loss is this channel of each pixel by itself
+ * wanted    [planes] 0: the weights of this plane of accumulators are not written
+ * rays      SKG_RAYS_...: what is made of the rays. NONE: nothing
+ * weights   [planes + 2][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators that is wanted, within its extent;
+ *           with SKG_RAYS_PLANES then the sum over planes of mm times d loss / d mm; then d loss / d logarithm of the
+ *           intensity. With SKG_WEIGH_PLANES instead: d loss / d mm of each plane that is mixed from accumulators, and nothing else
+ * most      [planes][work-items] the largest magnitudes of the weights of accumulators
+ * of_rays   [SKG_RAY_SUMS][work-items] SKG_RAYS_SUMS: sums over rays of what changes with their length, over its square: of what those two
+ *           planes would have, the first less three times the second if intensities fall with the distance; of that times
+ *           the column; and the row; and of the second */
 __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copies, __global const int *used,
                           __constant const skg_real *coefficients, __constant const skg_real *weights_of_nodes,
                           __constant const skg_real *lists, __constant const skg_real *polynomials,
-                          __global const skg_real *tables, __global const skg_real *adjoint, __global skg_real *weights,
-                          __global skg_real *most) {
+                          __global const skg_real *tables, __global const skg_real *adjoint, int channel,
+                          __global const int *wanted, int rays, __global skg_real *weights, __global skg_real *most,
+                          __global skg_real *of_rays) {
     const int strips = (args.layout.columns + SKG_WIDE * SKG_RUNS * SKG_STRIP - 1) / (SKG_WIDE * SKG_RUNS * SKG_STRIP);
     skg_strip strip;
     strip.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
@@ -246,6 +319,7 @@ __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copie
     strip.lists = lists;
     strip.polynomials = polynomials;
     strip.tables = tables;
-    skg_weigh_strip(&strip, adjoint, weights, most + (long)get_global_id(1) * strips + get_global_id(0),
-                    strips * (args.layout.rows / SKG_FINE));
+    const long item = (long)get_global_id(1) * strips + get_global_id(0);
+    const skg_weighing weighing = {adjoint, wanted, weights, channel, rays};
+    skg_weigh_strip(&strip, &weighing, most + item, of_rays + item, strips * (args.layout.rows / SKG_FINE));
 }

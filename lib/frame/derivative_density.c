@@ -26,11 +26,15 @@ skg_status skg_derivative_add_changes(skg_job *job, const skg_pass *pass, const 
     const int64_t size = job->recipe->view.rows * job->recipe->view.columns;
     double *image = gradient->derivative + channel * size;
     if (gradient->plane_changes) {
-        SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
+        const skg_weights_wanted wanted = {
+            .factor = factor, .channel = (int32_t)channel, .of = SKG_WEIGHTS_OF_PLANES};
+        SKG_TRY(skg_gradient_weigh(job, pass, sums, &wanted));
         SKG_TRY(skg_gradient_keep_planes(job, pass));
         add_products(job, pass, model->planes, gradient->planes, gradient->plane_changes, image);
     }
     if (gradient->node_changes) {
+        for (int64_t k = 0; k < model->channels; k++)
+            for (int64_t i = 0; i < size; i++) gradient->adjoint[k * size + i] = k == channel;
         SKG_TRY(skg_gradient_keep_nodes(job, pass, sums, factor));
         add_products(job, pass, model->nodes, gradient->nodes, gradient->node_changes, image);
     }

@@ -246,12 +246,21 @@ static skg_status add_channel(skg_job *job, const skg_frame_work *work, const sk
     return SKG_OK;
 }
 
+/* Parts whose weights are needed: those that move, and all that compete if one of them does. */
+static void find_weighed(const skg_pass *pass, const uint8_t *moves, uint8_t *weighed) {
+    const skg_priority *priority = &pass->priority;
+    int competes = 0;
+    for (int64_t s = 0; s < priority->count; s++) competes |= moves[priority->parts[s]];
+    for (int64_t p = 0; p < pass->scene->count; p++) weighed[p] = moves[p];
+    for (int64_t s = 0; competes && s < priority->count; s++) weighed[priority->parts[s]] = 1;
+}
+
 skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
                                    const skg_pass *pass, const skg_sums *sums, double factor) {
     struct skg_gradient_work *gradient = job->gradient;
     const skg_direction *direction = &gradient->direction;
-    const int64_t size = job->recipe->view.rows * job->recipe->view.columns;
     double *values = NULL;
+    uint8_t *weighed = NULL;
     skg_velocities v = {.vertices = NULL};
     slopes_work w = {.pass = pass, .of_view = &v, .direction = direction};
     skg_status status = SKG_OK;
@@ -260,16 +269,22 @@ skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int
     if (pass->camera.parallel) find_beam(work->view, &pass->camera, direction, &v);
     SKG_TRY_CLEANUP(
         skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *values, "derivative", &values));
+    SKG_TRY_CLEANUP(skg_alloc(pass->scene->count, 1, "derivative", &weighed));
     SKG_TRY_CLEANUP(find_slopes(job, &w));
+    find_weighed(pass, w.moves, weighed);
     for (int64_t c = 0; c < job->recipe->model.channels; c++) {
-        for (int64_t k = 0; k < job->recipe->model.channels; k++)
-            for (int64_t p = 0; p < size; p++) gradient->adjoint[k * size + p] = k == c;
-        SKG_TRY_CLEANUP(skg_gradient_weigh(job, pass, sums, factor, 0));
+        const int by_view = (direction->source || direction->detector) && !pass->camera.parallel;
+        const skg_weights_wanted wanted = {.factor = factor,
+                                           .channel = (int32_t)c,
+                                           .rays = by_view ? SKG_RAYS_PLANES : SKG_RAYS_NONE,
+                                           .parts = weighed};
+        SKG_TRY_CLEANUP(skg_gradient_weigh(job, pass, sums, &wanted));
         SKG_TRY_CLEANUP(add_channel(job, work, pass, &w, c, values));
         SKG_TRY_CLEANUP(skg_derivative_add_changes(job, pass, sums, factor, c));
     }
 cleanup:
     release_slopes(&w);
+    skg_free(&weighed);
     skg_free(&values);
     return status;
 }

@@ -148,7 +148,7 @@ static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const s
     SKG_TRY(update_meshes(job));
     SKG_TRY(skg_geometry_weigh(machine->context, &machine->geometry, &pass->camera, pass->parts,
                                pass->scale.scale));
-    if (!from_sums || !skg_geometry_is_projected(&machine->geometry, projection))
+    if (!from_sums || !skg_geometry_take_projection(&machine->geometry, projection))
         SKG_TRY(skg_geometry_project(machine->context, &machine->geometry, projection, log));
     if (from_sums && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);

@@ -18,11 +18,11 @@ typedef struct {
 /* The derivatives by the logarithm of the intensity of every ray. */
 static skg_status transpose(const nodes_work *w, double *values) {
     skg_machine *machine = w->job->machine;
-    skg_gradient_memory *memory = &machine->gradient;
-    SKG_TRY(skg_attenuate_transpose(machine->attenuator, w->sums, &w->pass->camera, &w->attenuation,
-                                    w->factor, 0, memory->adjoint.memory, memory->weights.memory,
-                                    memory->most.memory, &w->job->staging.log));
-    return skg_gradient_read(w->pass, memory->weights.memory, (w->layout.planes + 1) * w->layout.plane,
+    const skg_weights_wanted wanted = {
+        .factor = w->factor, .channel = -1, .of = SKG_WEIGHTS_OF_RAYS, .rays = SKG_RAYS_PLANES};
+    SKG_TRY(skg_gradient_transpose(machine->attenuator, w->pass, w->sums, &w->attenuation, &wanted,
+                                   &machine->gradient, &w->job->staging));
+    return skg_gradient_read(w->pass, machine->gradient.weights.memory, (w->layout.planes + 1) * w->layout.plane,
                              w->layout.plane, values);
 }
 

@@ -1,7 +1,6 @@
 #include "frame/gradient_pass.h"
 
 #include "core/maths.h"
-#include "core/threads.h"
 #include "frame/adjoint.h"
 #include "frame/gradient_density.h"
 #include "frame/gradient_faces.h"
@@ -45,48 +44,12 @@ static void add_parallel(const skg_view *view, const skg_camera *camera, const s
     }
 }
 
-/* The rays of a pass. values: of each the sum over planes of mm times derivative by mm; derivative by the logarithm of the
- * intensity. falls: power of 1 / |D| in the intensities. Result of each row: the sums over its rays of what changes with |D|, over
- * |D|^2; of that times the column; of the derivatives by logarithms. */
-typedef struct {
-    const skg_camera *camera;
-    const skg_weight_layout *layout;
-    skg_reals values;
-    double falls;
-    double (*rows)[3];
-} ray_sums;
-
-enum { LANES = 4 }; /* sums that do not wait for each other */
-
-static skg_status add_row(void *user, int64_t row) {
-    const ray_sums *s = user;
-    const int64_t of_paths = row * s->layout->stride, of_intensities = of_paths + s->layout->plane;
-    double first[3], sums[3][LANES] = {{0}};
-    skg_add_scaled(s->camera->first, (double)row, s->camera->row, first);
-    const double square = skg_dot(first, first), twice = 2 * skg_dot(first, s->camera->column),
-                 step = skg_dot(s->camera->column, s->camera->column);
-    for (int64_t c = 0; c < s->camera->columns; c++) {
-        const double column = (double)c, intensity = skg_reals_at(&s->values, of_intensities + c);
-        const double value = skg_reals_at(&s->values, of_paths + c) - s->falls * intensity;
-        const double share = value / (square + column * (twice + column * step));
-        sums[0][c % LANES] += share;
-        sums[1][c % LANES] += share * column;
-        sums[2][c % LANES] += intensity;
-    }
-    for (int k = 0; k < 3; k++) s->rows[row][k] = sums[k][0] + sums[k][1] + sums[k][2] + sums[k][3];
-    return SKG_OK;
-}
-
-/* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3. */
-static void add_ray_lengths(const ray_sums *s, ends *e, double *intensity) {
-    const skg_camera *camera = s->camera;
-    double all[3] = {0}, turn[3];
-    for (int64_t r = 0; r < camera->rows; r++) {
-        const double *sums = s->rows[r];
-        for (int k = 0; k < 3; k++)
-            all[k] += sums[0] * (camera->first[k] + (double)r * camera->row[k]) + sums[1] * camera->column[k];
-        *intensity += sums[2];
-    }
+/* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3. sums: over rays
+ * (kernels/weights.cl) */
+static void add_ray_lengths(const skg_camera *camera, const double sums[SKG_RAY_SUMS], ends *e) {
+    double all[3], turn[3];
+    for (int k = 0; k < 3; k++)
+        all[k] = sums[0] * camera->first[k] + sums[1] * camera->column[k] + sums[2] * camera->row[k];
     /* The pixel is source + ray, so that its lever is that of the source. */
     skg_cross(camera->origin, all, turn);
     for (int k = 0; k < 3; k++) {
@@ -152,28 +115,21 @@ static void add_ends(const skg_recipe *recipe, const skg_view *view, int64_t num
     }
 }
 
+/* intensity: result: the sum over rays of the derivatives by the logarithm of the intensity */
 static skg_status add_point(skg_job *job, const skg_pass *pass, const skg_force_sums *all, ends *e,
                             double *intensity) {
     const skg_camera *camera = &pass->camera;
-    const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
-    const int falls = job->machine->images.falloff;
-    ray_sums sums = {.camera = camera, .layout = &layout, .falls = falls ? 3 : 0};
-    skg_status status = SKG_OK;
+    double sums[SKG_RAY_SUMS];
     for (int k = 0; k < 3; k++) {
         e->source[k] -= all->force[k] - all->along[k];
         e->detector[k] -= all->along[k];
         e->detector[3 + k] -= all->pixel_torque[k];
     }
-    SKG_TRY_CLEANUP(skg_alloc(camera->rows, sizeof *sums.rows, "gradient", &sums.rows));
-    SKG_TRY_CLEANUP(skg_gradient_read_reals(pass, job->machine->gradient.weights.memory,
-                                            layout.planes * layout.plane, 2 * layout.plane, &sums.values));
-    SKG_TRY_CLEANUP(skg_parallel(camera->rows, add_row, &sums));
-    add_ray_lengths(&sums, e, intensity);
-    if (falls) add_distance(camera, camera->origin, camera->first, 3 * *intensity, e);
-cleanup:
-    skg_free(&sums.values.memory);
-    skg_free(&sums.rows);
-    return status;
+    SKG_TRY(skg_gradient_read_ray_sums(pass, &job->machine->gradient, &job->staging, sums));
+    add_ray_lengths(camera, sums, e);
+    *intensity = sums[3];
+    if (job->machine->images.falloff) add_distance(camera, camera->origin, camera->first, 3 * *intensity, e);
+    return SKG_OK;
 }
 
 static skg_status add_view(skg_job *job, const skg_frame_work *work, int64_t number, const skg_pass *pass,
@@ -208,18 +164,16 @@ static skg_status check_places(const skg_pass *pass) {
     return SKG_OK;
 }
 
-skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
-                              int32_t of_planes) {
+skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums,
+                              const skg_weights_wanted *wanted) {
     skg_machine *machine = job->machine;
-    skg_gradient_memory *memory = &machine->gradient;
     skg_attenuation attenuation = machine->images;
     SKG_TRY(check_places(pass));
     memcpy(attenuation.window, pass->window, sizeof attenuation.window);
-    SKG_TRY(skg_adjoint_send(job, job->gradient->adjoint));
-    SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, memory));
-    return skg_attenuate_transpose(machine->attenuator, sums, &pass->camera, &attenuation, factor, of_planes,
-                                   memory->adjoint.memory, memory->weights.memory, memory->most.memory,
-                                   &job->staging.log);
+    if (wanted->channel < 0) SKG_TRY(skg_adjoint_send(job, job->gradient->adjoint));
+    SKG_TRY(skg_gradient_reserve(pass, job->recipe->model.planes, &machine->gradient));
+    return skg_gradient_transpose(machine->attenuator, pass, sums, &attenuation, wanted, &machine->gradient,
+                                  &job->staging);
 }
 
 /* Gathers with the parts as `drawn` has them. The tables of the pass are put back. */
@@ -263,7 +217,10 @@ skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64
     skg_force_sums *of_parts = NULL;
     skg_geometry_part *drawn = pass->parts;
     skg_surroundings around;
-    SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 0));
+    const int by_view = (gradient->wanted.source || gradient->wanted.detector) && !pass->camera.parallel;
+    const skg_weights_wanted of_parts_and_rays = {
+        .factor = factor, .channel = -1, .rays = by_view ? SKG_RAYS_SUMS : SKG_RAYS_NONE};
+    SKG_TRY(skg_gradient_weigh(job, pass, sums, &of_parts_and_rays));
     if (gradient->wanted.densities) SKG_TRY(skg_gradient_find_surroundings(job, pass, &around, &drawn));
     SKG_TRY(skg_gradient_draw_competitors(job, pass, &drawn));
     SKG_TRY(skg_alloc(pass->scene->count, sizeof *of_parts, "gradient", &of_parts));
@@ -272,7 +229,8 @@ skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64
     skg_free(&of_parts);
     SKG_TRY(status);
     if (gradient->wanted.densities && skg_gradient_needs_lengths(gradient, pass->scene->count)) {
-        SKG_TRY(skg_gradient_weigh(job, pass, sums, factor, 1));
+        const skg_weights_wanted of_planes = {.factor = factor, .channel = -1, .of = SKG_WEIGHTS_OF_PLANES};
+        SKG_TRY(skg_gradient_weigh(job, pass, sums, &of_planes));
         SKG_TRY(skg_gradient_keep_planes(job, pass));
     }
     if (!gradient->wanted.attenuations) return SKG_OK;

@@ -12,10 +12,8 @@
 skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
                                  const skg_pass *pass, const skg_sums *sums, double factor);
 
-/* Enqueues the derivatives by the sums of a pass from those by its intensities, job->gradient->adjoint.
- *
- * of_planes   1: by the mm of planes instead */
-skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
-                              int32_t of_planes);
+/* Enqueues the derivatives by the sums of a pass from those by its intensities: job->gradient->adjoint, if no channel is wanted. */
+skg_status skg_gradient_weigh(skg_job *job, const skg_pass *pass, const skg_sums *sums,
+                              const skg_weights_wanted *wanted);
 
 #endif

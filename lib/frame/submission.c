@@ -161,12 +161,13 @@ static skg_status enqueue_first(skg_job *job, const skg_frame *frames, const dou
     skg_frame_work work = {.view = &gradient->of_frame, .poses = poses, .frame = &frame, .lengths_of = -1};
     skg_status status = SKG_OK;
     SKG_TRY(skg_held_frame_read(job, frames, 0, &frame, &gradient->of_frame, poses, &work.noise));
-    SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
     if (gradient->image) {
+        SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
         job->gradient = NULL; /* the image is that of any frame */
         status = enqueue_output(job, &gradient->shown, 0, &work);
         job->gradient = gradient;
     } else {
+        SKG_TRY(skg_geometry_continue(machine->context, &machine->geometry));
         status = skg_frame_enqueue_sums(job, &work);
     }
     SKG_TRY(status);

@@ -313,8 +313,8 @@ skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t 
 }
 
 skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                                   const skg_attenuation *attenuation, double factor, int32_t of_planes,
-                                   cl_mem adjoint, cl_mem weights, cl_mem most, skg_stage_log *log) {
+                                   const skg_attenuation *attenuation, const skg_transposition *asked,
+                                   skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
     const skg_weight_layout layout = skg_attenuate_weight_layout(raster, sums->fine);
     const skg_image_place place = {.row_stride = layout.stride, .channel_stride = layout.plane};
@@ -325,9 +325,10 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
     skg_attenuate_double args = scalars_of(&key, sums, camera, &mean, &place);
     skg_attenuate_float rounded;
-    const int64_t option = of_planes;
+    const int64_t option = asked->of_planes;
+    const cl_int channel = asked->channel, rays = asked->rays;
     cl_program program = NULL;
-    args.factor = factor;
+    args.factor = asked->factor;
     SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
     SKG_TRY(get_files(attenuator, &key, &option, &program));
     const skg_argument arguments[] = {
@@ -339,9 +340,13 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
         SKG_ARGUMENT(WEIGHTS, lists, sums->lists),
         SKG_ARGUMENT(WEIGHTS, polynomials, mean.polynomials.memory),
         SKG_ARGUMENT(WEIGHTS, tables, mean.tables.memory),
-        SKG_ARGUMENT(WEIGHTS, adjoint, adjoint),
-        SKG_ARGUMENT(WEIGHTS, weights, weights),
-        SKG_ARGUMENT(WEIGHTS, most, most),
+        SKG_ARGUMENT(WEIGHTS, adjoint, asked->adjoint),
+        SKG_ARGUMENT(WEIGHTS, channel, channel),
+        SKG_ARGUMENT(WEIGHTS, wanted, asked->wanted),
+        SKG_ARGUMENT(WEIGHTS, rays, rays),
+        SKG_ARGUMENT(WEIGHTS, weights, asked->weights),
+        SKG_ARGUMENT(WEIGHTS, most, asked->most),
+        SKG_ARGUMENT(WEIGHTS, of_rays, asked->of_rays),
     };
     const skg_work_size work = work_of(sums, key.options.precision);
     return SKG_LAUNCH_ONCE(raster->context, program, "skg_weights", "weights", &work, arguments, log);

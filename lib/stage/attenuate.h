@@ -105,17 +105,30 @@ typedef struct {
 } skg_weight_layout;
 skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t fine);
 
+/* What is asked of skg_attenuate_transpose, and where it goes. */
+typedef struct {
+    double factor; /* of intensities */
+    /* The loss is this channel of each pixel by itself; -1: its derivative by the image is `adjoint`, [channels][rows][columns] in the
+     * precision of the raster */
+    int32_t channel;
+    int32_t
+        of_planes; /* 1: weights are derivatives by the mm of the planes that exponents are made of, and nothing else */
+    int32_t rays; /* SKG_RAYS_... */
+    int32_t reserved;
+    cl_mem adjoint;
+    cl_mem wanted; /* [planes] int: 0: the weights of this plane of accumulators are not made */
+    cl_mem
+        weights; /* of the layout; with SKG_RAYS_PLANES the last two planes are, for each ray, the sum over planes of mm times
+                     * derivative by mm, and the derivative by the logarithm of the intensity */
+    cl_mem most;    /* [planes][items] the largest magnitudes of the weights of accumulators */
+    cl_mem of_rays; /* [SKG_RAY_SUMS][items] with SKG_RAYS_SUMS; else it may be any buffer */
+} skg_transposition;
+
 /* Enqueues the transpose of skg_attenuate: from the derivative of a loss by the image to those by the sums (kernels/weights.cl).
- * Noise is left out.
- *
- * of_planes   1: the weights are derivatives by the mm of the planes that exponents are made of, and nothing else
- * adjoint     [channels][rows][columns] of the image, in the precision of the raster
- * weights     of the layout; the last two planes are, for each ray, the sum over planes of mm times derivative by mm, and
- *             the derivative by the logarithm of the intensity
- * most        [planes][items] the largest magnitudes of the weights of accumulators */
+ * Noise is left out. */
 skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
-                                   const skg_attenuation *attenuation, double factor, int32_t of_planes,
-                                   cl_mem adjoint, cl_mem weights, cl_mem most, skg_stage_log *log);
+                                   const skg_attenuation *attenuation, const skg_transposition *asked,
+                                   skg_stage_log *log);
 
 /* Prefetches the program of skg_attenuate (skg_prefetch_begin) with sums of a raster with these options. sums: without a
  * raster; attenuation: its shape; ranged: 1: it will have a range. */

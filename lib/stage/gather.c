@@ -13,19 +13,22 @@ enum { GROUP = 64, SLICES = 32, CLAIM = 1024 }; /* CLAIM: triangles of a work-it
 void skg_gradient_memory_release(skg_gradient_memory *memory) {
     skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,   &memory->scales,
                                    &memory->moments, &memory->slopes,  &memory->around, &memory->first_around,
-                                   &memory->lengths, &memory->faces,   &memory->node};
+                                   &memory->lengths, &memory->faces,   &memory->node,   &memory->of_rays,
+                                   &memory->wanted};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     skg_free(&memory->gathered);
     skg_free(&memory->reals);
     skg_free(&memory->corners);
     skg_free(&memory->planes);
     skg_free(&memory->versions);
+    skg_free(&memory->wanted_now);
 }
 
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
     return memory->adjoint.bytes + memory->weights.bytes + memory->most.bytes + memory->scales.bytes +
            memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes + memory->faces.bytes +
-           memory->node.bytes + memory->around.bytes + memory->first_around.bytes;
+           memory->node.bytes + memory->around.bytes + memory->first_around.bytes + memory->of_rays.bytes +
+           memory->wanted.bytes;
 }
 
 static size_t real_size(const skg_raster *raster) {
@@ -34,19 +37,6 @@ static size_t real_size(const skg_raster *raster) {
 
 static skg_weight_layout layout_of(const skg_pass *pass) {
     return skg_attenuate_weight_layout(pass->main.raster, pass->fine);
-}
-
-skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory) {
-    const skg_weight_layout layout = layout_of(pass);
-    const int64_t most = planes > layout.planes + 2 ? planes : layout.planes + 2;
-    /* Lanes without a hit read behind their rows. */
-    const int64_t behind = SKG_SPARE_ROWS * layout.stride + SKG_SPARE_COLUMNS;
-    SKG_TRY(skg_buffer_reserve(pass->main.raster->context, &memory->most,
-                               layout.planes * layout.items * (int64_t)real_size(pass->main.raster),
-                               CL_MEM_READ_WRITE, "weights of a gradient"));
-    return skg_buffer_reserve(pass->main.raster->context, &memory->weights,
-                              (most * layout.plane + behind) * (int64_t)real_size(pass->main.raster),
-                              CL_MEM_READ_WRITE, "weights of a gradient");
 }
 
 skg_status skg_gather_reserve(const skg_gather_run *run, skg_buffer *buffer, int64_t bytes) {
@@ -106,9 +96,11 @@ skg_status skg_gather_find_max(const skg_gather_run *run, double *most) {
     SKG_TRY(skg_staging_take(run->staging, planes * items, sizeof *of_items, "gradient", &of_items));
     SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * items, of_items));
     for (int64_t i = 0; i < planes * items; i++) {
-        if (!isfinite(of_items[i]))
+        if (!isfinite(of_items[i])) {
+            skg_buffer_release(&run->memory->weights); /* later ones begin with 0 again */
             return skg_fail(SKG_RANGE, "gradient: the derivative of the loss by a path length is not finite; "
                                        "give a smaller derivative by the image, or take precision double");
+        }
         most[i / items] = fmax(most[i / items], of_items[i]);
     }
     return SKG_OK;

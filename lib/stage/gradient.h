@@ -10,7 +10,10 @@
 
 /* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer adjoint, weights, most, scales, moments, slopes, lengths, faces, node, around, first_around;
+    skg_buffer adjoint, weights, most, of_rays, wanted, scales, moments, slopes, lengths, faces, node, around,
+        first_around;
+    int32_t *wanted_now; /* [wanted_count] what the device has in `wanted` */
+    int64_t wanted_count;
     int64_t *gathered; /* [triangles + 1][4] the moments on the host */
     void *reals;       /* [triangles][3] slopes on their way to the device */
     int32_t *corners;  /* [triangles of all meshes][3] as the device has them */
@@ -40,6 +43,33 @@ typedef struct {
     int32_t has_edges; /* 1: some faces are seen as lines */
     int32_t reserved;
 } skg_gathered;
+
+/* What weights are of. */
+enum {
+    SKG_WEIGHTS_OF_PARTS,  /* what hits of parts are worth */
+    SKG_WEIGHTS_OF_PLANES, /* the mm of the planes that exponents are made of */
+    SKG_WEIGHTS_OF_RAYS    /* rays alone */
+};
+
+/* The derivatives by the sums of a pass that are wanted. */
+typedef struct {
+    double factor; /* of the intensities of the pass */
+    int32_t
+        channel;  /* of the intensities whose derivatives they are; -1: those of a loss, by memory->adjoint */
+    int32_t of;   /* SKG_WEIGHTS_OF_... */
+    int32_t rays; /* SKG_RAYS_... */
+    const uint8_t
+        *parts; /* [parts] 0: what hits of this part are worth is not wanted; NULL: that of all is */
+} skg_weights_wanted;
+
+/* Enqueues them. attenuation: of the image, with the window of the pass */
+skg_status skg_gradient_transpose(skg_attenuator *attenuator, const skg_pass *pass, const skg_sums *sums,
+                                  const skg_attenuation *attenuation, const skg_weights_wanted *wanted,
+                                  skg_gradient_memory *memory, skg_staging *staging);
+
+/* Reads the sums over rays that SKG_RAYS_SUMS has made, and waits. */
+skg_status skg_gradient_read_ray_sums(const skg_pass *pass, const skg_gradient_memory *memory,
+                                      skg_staging *staging, double sums[SKG_RAY_SUMS]);
 
 /* Makes sure of memory for the derivatives of a pass by its sums, or by the mm of `planes` planes. */
 skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory);

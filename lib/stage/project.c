@@ -12,9 +12,15 @@ static size_t real_size(const skg_geometry *geometry) {
 
 skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry) {
     const cl_int none = INT32_MAX;
-    geometry->projected_state = 0;
+    geometry->projected_state = geometry->projections = geometry->bad_stands = 0;
     SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->bad.memory, &none, sizeof none, 0,
                                    sizeof none, 0, NULL, NULL));
+    return SKG_OK;
+}
+
+skg_status skg_geometry_continue(skg_context *context, skg_geometry *geometry) {
+    if (geometry->projections != 1) return skg_geometry_reset_bad(context, geometry);
+    geometry->bad_stands = 1;
     return SKG_OK;
 }
 
@@ -182,6 +188,7 @@ void skg_geometry_release(skg_geometry *geometry) {
 
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,
                                 skg_stage_log *log) {
+    if (geometry->bad_stands) SKG_TRY(skg_geometry_reset_bad(context, geometry));
     geometry->projected_state = 0;
     const skg_raster_layout layout = {.parts = (SKG_INT)geometry->parts,
                                       .vertices = (SKG_INT)geometry->vertices};
@@ -198,13 +205,16 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl
     const skg_work_size work = {1, {(geometry->vertices + run - 1) / run}, {on_gpu ? 64 : 1}};
     SKG_TRY(SKG_LAUNCH(context, kernel, "project", &work, arguments, log));
     geometry->projected_state = geometry->state;
+    geometry->projections++;
     geometry->projected_by = kernel;
     return SKG_OK;
 }
 
-int skg_geometry_is_projected(const skg_geometry *geometry, cl_kernel kernel) {
-    return geometry->projected_state != 0 && geometry->projected_state == geometry->state &&
-           geometry->projected_by == kernel;
+int skg_geometry_take_projection(skg_geometry *geometry, cl_kernel kernel) {
+    const int stands = geometry->projected_state != 0 && geometry->projected_state == geometry->state &&
+                       geometry->projected_by == kernel;
+    if (stands) geometry->bad_stands = 0;
+    return stands;
 }
 
 int64_t skg_geometry_bytes(const skg_geometry *geometry) {

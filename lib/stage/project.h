@@ -49,8 +49,12 @@ skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry);
 skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl_kernel kernel,
                                 skg_stage_log *log);
 
-/* 1: this kernel has projected the vertices and tables that are on the device, since skg_geometry_reset_bad. */
-int skg_geometry_is_projected(const skg_geometry *geometry, cl_kernel kernel);
+/* As skg_geometry_reset_bad, for a frame that may take over the projection of the frame before, with its bad vertices; not from a frame of several
+ * passes, whose bad vertices are those of all. */
+skg_status skg_geometry_continue(skg_context *context, skg_geometry *geometry);
+
+/* Takes over the projection of the vertices and tables that are on the device. 0: this kernel has made none. */
+int skg_geometry_take_projection(skg_geometry *geometry, cl_kernel kernel);
 
 /* Bytes on the device. */
 int64_t skg_geometry_bytes(const skg_geometry *geometry);

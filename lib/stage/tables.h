@@ -65,6 +65,8 @@ typedef struct {
     int64_t state; /* changes with the tables and vertices on the device; never 0 once they are there */
     int64_t projected_state; /* the state of which `projected` is; 0: not known */
     cl_kernel projected_by;
+    int32_t projections; /* since skg_geometry_reset_bad */
+    int32_t bad_stands;  /* 1: `bad` is of the frame before, and is reset by the next projection */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
     skg_buffer projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/fine.clh) */
