@@ -64,17 +64,19 @@ typedef struct {
     skg_output output;
     skg_adjoint adjoint;
     skg_gradient gradient;
-    int wants; /* 0: the image alone; 1, 2: its gradient; 3: its derivative along a direction */
-    skg_direction direction;
-    double *derivative;
+    int wants; /* 0: the image alone; 1, 2: its gradient; 3, 4: its derivatives along directions */
+    int64_t direction_count;
+    skg_direction *directions;
+    double *derivatives;
 } contender;
 
 static void frame(void *who) {
     contender *self = who;
     bench_try(skg_plan_image(self->plan, &self->output), "image");
-    if (self->wants == 3)
-        bench_try(skg_plan_derivative(self->plan, NULL, &self->direction, self->derivative, NULL),
-                  "derivative");
+    if (self->wants >= 3)
+        bench_try(skg_plan_derivatives(self->plan, NULL, self->direction_count, self->directions,
+                                       self->derivatives, NULL),
+                  "derivatives");
     else if (self->wants)
         bench_try(skg_plan_gradient(self->plan, NULL, &self->adjoint, &self->gradient), "gradient");
 }
@@ -114,21 +116,34 @@ static double **make_vertices(const bench_thorax *thorax) {
     return vertices;
 }
 
+enum { CONTENDERS = 5, WAYS = 6 };
+
+/* Along the twists of the first part. twists: [WAYS][parts][6] */
+static void set_directions(const bench_thorax *thorax, double *twists, skg_direction directions[WAYS]) {
+    for (int d = 0; d < WAYS; d++) {
+        skg_direction_init(&directions[d]);
+        directions[d].poses = twists + d * 6 * thorax->parts;
+        twists[d * 6 * thorax->parts + d] = 1;
+    }
+}
+
 static void compare(const settings *set, const bench_thorax *thorax, skg_plan *plan, FILE *csv) {
-    static const char *const names[4] = {"image", "image, poses, source, detector, densities",
-                                         "the same and all vertices", "image, along a pose"};
+    static const char *const names[CONTENDERS] = {"image", "image, poses, source, detector, densities",
+                                                  "the same and all vertices", "image, along a twist",
+                                                  "image, along six twists"};
     double *adjoint = bench_alloc((size_t)(set->size * set->size), sizeof *adjoint), view[9];
-    double *derivative = bench_alloc((size_t)(set->size * set->size), sizeof *derivative);
-    double *twists = bench_alloc((size_t)(6 * thorax->parts), sizeof *twists);
+    double *derivatives = bench_alloc((size_t)(WAYS * set->size * set->size), sizeof *derivatives);
+    double *twists = bench_alloc((size_t)(WAYS * 6 * thorax->parts), sizeof *twists);
+    skg_direction directions[WAYS];
     double **vertices = make_vertices(thorax);
     double *densities = bench_alloc((size_t)thorax->parts, sizeof *densities);
-    contender all[4] = {0};
-    bench_times times[4] = {0};
-    const bench_frame frames[4] = {frame, frame, frame, frame};
-    void *who[4];
+    contender all[CONTENDERS] = {0};
+    bench_times times[CONTENDERS] = {0};
+    const bench_frame frames[CONTENDERS] = {frame, frame, frame, frame, frame};
+    void *who[CONTENDERS];
     for (long p = 0; p < set->size * set->size; p++) adjoint[p] = 1e-6 * (double)(p % 7 - 3);
-    twists[0] = 1;
-    for (int k = 0; k < 4; k++) {
+    set_directions(thorax, twists, directions);
+    for (int k = 0; k < CONTENDERS; k++) {
         contender *c = &all[k];
         who[k] = c;
         c->plan = plan, c->wants = k;
@@ -141,25 +156,28 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
         c->gradient.densities = densities;
         c->gradient.source = view, c->gradient.detector = view + 3;
         if (k == 2) c->gradient.vertices = vertices;
-        skg_direction_init(&c->direction);
-        c->direction.poses = twists;
-        c->derivative = derivative;
+        c->direction_count = k == 4 ? WAYS : 1;
+        c->directions = directions;
+        c->derivatives = derivatives;
     }
-    bench_interleave(4, frames, who, (int)(set->repeats + 4) / 5, 5, times);
+    bench_interleave(CONTENDERS, frames, who, (int)(set->repeats + 4) / 5, 5, times);
     printf("| what | minimum, ms | median, ms | images |\n|---|---:|---:|---:|\n");
     if (csv) fprintf(csv, "what,min_ms,median_ms,images\n");
-    for (int k = 0; k < 4; k++) {
+    for (int k = 0; k < CONTENDERS; k++) {
         const double least = bench_min(&times[k]), images = least / bench_min(&times[0]);
         printf("| %s | %.4g | %.4g | %.2f |\n", names[k], least, bench_median(&times[k]), images);
         if (csv) fprintf(csv, "\"%s\",%.5g,%.5g,%.3f\n", names[k], least, bench_median(&times[k]), images);
         free(all[k].output.data);
         free(all[k].gradient.poses);
     }
+    const double further = (bench_min(&times[4]) - bench_min(&times[3])) / (WAYS - 1);
+    printf("| each further twist | %.4g | | %.2f |\n", further, further / bench_min(&times[0]));
+    if (csv) fprintf(csv, "each further twist,%.5g,,%.3f\n", further, further / bench_min(&times[0]));
     for (int64_t p = 0; p < thorax->parts; p++) free(vertices[p]);
     free(vertices);
     free(twists);
     free(densities);
-    free(derivative);
+    free(derivatives);
     free(adjoint);
 }
 

@@ -137,18 +137,20 @@ static skg_status undo_blurs(const skg_job *job, double **values) {
 }
 
 skg_status skg_derivative_of_image(const skg_job *job, const skg_view *view, const double *image,
-                                   double **values) {
+                                   double *values) {
     const skg_recipe *recipe = job->recipe;
     const skg_layers *layers = &job->machine->layers;
     const int64_t columns = view->columns, size = view->rows * columns, channels = recipe->model.channels;
-    double *blurred = NULL;
-    for (int64_t c = 0; c < channels && layers->count > 0; c++) {
-        if (!blurred) SKG_TRY(skg_alloc(channels * size, sizeof *blurred, "derivative", &blurred));
-        skg_blur_apply(layers->blurs[0], columns, view->rows, *values + c * size, blurred + c * size);
+    double *sharp = NULL;
+    if (layers->count > 0) SKG_TRY(skg_alloc(size, sizeof *sharp, "derivative", &sharp));
+    for (int64_t c = 0; c < channels && sharp; c++) {
+        memcpy(sharp, values + c * size, (size_t)size * sizeof *sharp);
+        memset(values + c * size, 0, (size_t)size * sizeof *values); /* is added to */
+        skg_blur_apply(layers->blurs[0], columns, view->rows, sharp, values + c * size);
     }
-    if (blurred) skg_free(values), *values = blurred;
-    SKG_TRY(undo_detection(job, view, *values));
-    if (image) undo_logarithm(channels * size, image, *values);
+    skg_free(&sharp);
+    SKG_TRY(undo_detection(job, view, values));
+    if (image) undo_logarithm(channels * size, image, values);
     return SKG_OK;
 }
 

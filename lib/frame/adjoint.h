@@ -21,9 +21,9 @@ skg_status skg_adjoint_take(skg_job *job);
 skg_status skg_adjoint_of_intensities(const skg_job *job, const skg_view *view, const double *image,
                                       double **values);
 
-/* Turns derivatives of the intensities of one layer along a direction into those of the image, [channels][rows][columns]. */
+/* Turns derivatives of the intensities of one layer along a direction into those of the image, [channels][rows][columns], in place. */
 skg_status skg_derivative_of_image(const skg_job *job, const skg_view *view, const double *image,
-                                   double **values);
+                                   double *values);
 
 /* Whether the image itself is needed: where a logarithm is taken of what is finished. */
 int skg_adjoint_needs_image(const skg_recipe *recipe);

@@ -19,24 +19,49 @@ static void add_products(const skg_job *job, const skg_pass *pass, int64_t count
         }
 }
 
+/* Of all directions: by the mm of planes. */
+static void add_planes(skg_job *job, const skg_pass *pass, int64_t channel, int64_t size) {
+    struct skg_gradient_work *gradient = job->gradient;
+    for (int64_t d = 0; d < gradient->direction_count; d++) {
+        const skg_derivative_work *of = &gradient->directions[d];
+        if (of->plane_changes)
+            add_products(job, pass, job->recipe->model.planes, gradient->planes, of->plane_changes,
+                         of->image + channel * size);
+    }
+}
+
+/* By the exponents of nodes. */
+static void add_nodes(skg_job *job, const skg_pass *pass, int64_t channel, int64_t size) {
+    struct skg_gradient_work *gradient = job->gradient;
+    for (int64_t d = 0; d < gradient->direction_count; d++) {
+        const skg_derivative_work *of = &gradient->directions[d];
+        if (of->node_changes)
+            add_products(job, pass, job->recipe->model.nodes, gradient->nodes, of->node_changes,
+                         of->image + channel * size);
+    }
+}
+
 skg_status skg_derivative_add_changes(skg_job *job, const skg_pass *pass, const skg_sums *sums, double factor,
                                       int64_t channel) {
     struct skg_gradient_work *gradient = job->gradient;
     const skg_model *model = &job->recipe->model;
     const int64_t size = job->recipe->view.rows * job->recipe->view.columns;
-    double *image = gradient->derivative + channel * size;
-    if (gradient->plane_changes) {
+    int of_planes = 0, of_nodes = 0;
+    for (int64_t d = 0; d < gradient->direction_count; d++) {
+        of_planes |= gradient->directions[d].plane_changes != NULL;
+        of_nodes |= gradient->directions[d].node_changes != NULL;
+    }
+    if (of_planes) {
         const skg_weights_wanted wanted = {
             .factor = factor, .channel = (int32_t)channel, .of = SKG_WEIGHTS_OF_PLANES};
         SKG_TRY(skg_gradient_weigh(job, pass, sums, &wanted));
         SKG_TRY(skg_gradient_keep_planes(job, pass));
-        add_products(job, pass, model->planes, gradient->planes, gradient->plane_changes, image);
+        add_planes(job, pass, channel, size);
     }
-    if (gradient->node_changes) {
-        for (int64_t k = 0; k < model->channels; k++)
-            for (int64_t i = 0; i < size; i++) gradient->adjoint[k * size + i] = k == channel;
-        SKG_TRY(skg_gradient_keep_nodes(job, pass, sums, factor));
-        add_products(job, pass, model->nodes, gradient->nodes, gradient->node_changes, image);
-    }
+    if (!of_nodes) return SKG_OK;
+    for (int64_t k = 0; k < model->channels; k++)
+        for (int64_t i = 0; i < size; i++) gradient->adjoint[k * size + i] = k == channel;
+    SKG_TRY(skg_gradient_keep_nodes(job, pass, sums, factor));
+    add_nodes(job, pass, channel, size);
     return SKG_OK;
 }

@@ -1,15 +1,12 @@
 #include "frame/derivative_pass.h"
 
 #include "core/maths.h"
-#include "core/threads.h"
 #include "frame/derivative_density.h"
-#include "frame/gradient_edges.h"
+#include "frame/derivative_slopes.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
-#include "geometry/slopes.h"
 #include "spectral/model.h"
 
-#include <float.h>
 #include <string.h>
 
 /* The velocity of a sample of the source: by differences, as in gradient_pass.c. */
@@ -62,145 +59,68 @@ static void find_beam(const skg_view *view, const skg_camera *camera, const skg_
     skg_add_scaled(moves, -skg_dot(moves, d) / skg_dot(d, d), d, v->beam);
 }
 
-/* Consecutive faces of a part. */
+/* One pass, with its weights on the device. */
 typedef struct {
-    int64_t part, first, end;
-} face_range;
-
-/* The slopes of the faces of the parts that move, and what faces that are seen as lines add to each channel. */
-typedef struct {
+    skg_job *job;
+    const skg_frame_work *work;
     const skg_pass *pass;
-    const skg_velocities *of_view;
-    const skg_direction *direction;
-    skg_face_moments *faces; /* [parts] */
-    skg_part_edges *edges;   /* [parts] */
-    skg_edge_weights of_edges;
-    double *slopes;     /* [triangles][3] of the parts that move */
-    uint8_t *edge_on;   /* [triangles] of them */
-    int64_t *first;     /* [parts] the first triangle */
-    uint8_t *moves;     /* [parts] */
-    face_range *ranges; /* of the parts that move */
-    int64_t range_count;
-    skg_geometry_part *drawn; /* [parts] as the kernels gather them */
-} slopes_work;
-
-enum { FACES = 2048 }; /* of a range */
-
-static skg_velocities velocities_of(const slopes_work *w, int64_t part) {
-    const skg_direction *direction = w->direction;
-    skg_velocities v = *w->of_view;
-    if (direction->poses) memcpy(v.pose, direction->poses + 6 * part, sizeof v.pose);
-    if (direction->vertices) v.vertices = direction->vertices[part];
-    return v;
-}
-
-static skg_status find_range(void *user, int64_t number) {
-    const slopes_work *w = user;
-    const face_range *range = &w->ranges[number];
-    const int64_t part = range->part;
-    const double reference = w->pass->parts[part].reference;
-    const double rounding =
-        w->pass->kernels.precision == SKG_PRECISION_DOUBLE ? DBL_EPSILON : (double)FLT_EPSILON;
-    const skg_velocities v = velocities_of(w, part);
-    skg_slopes_find(&w->faces[part], &v, w->pass->camera.parallel || !(reference > 0) ? 1 : reference,
-                    rounding, range->first, range->end, w->slopes + 3 * w->first[part],
-                    w->edge_on + w->first[part]);
-    return SKG_OK;
-}
-
-/* Divides the faces of the parts that move. */
-static skg_status find_ranges(slopes_work *w) {
-    const int64_t parts = w->pass->scene->count;
-    int64_t most = 0;
-    for (int64_t p = 0; p < parts; p++) most += w->faces[p].mesh->triangles / FACES + 1;
-    SKG_TRY(skg_alloc(most, sizeof *w->ranges, "derivative", &w->ranges));
-    for (int64_t p = 0; p < parts; p++) {
-        const skg_velocities v = velocities_of(w, p);
-        const int64_t count = w->faces[p].mesh->triangles;
-        w->moves[p] = (uint8_t)skg_slopes_move(&v);
-        for (int64_t f = 0; w->moves[p] && f < count; f += FACES)
-            w->ranges[w->range_count++] =
-                (face_range){.part = p, .first = f, .end = f + FACES < count ? f + FACES : count};
-    }
-    return SKG_OK;
-}
-
-static skg_status find_slopes(skg_job *job, slopes_work *w) {
-    const skg_geometry *geometry = &job->machine->geometry;
-    const int64_t parts = w->pass->scene->count;
-    SKG_TRY(skg_alloc(parts, sizeof *w->faces, "derivative", &w->faces));
-    SKG_TRY(skg_alloc(parts, sizeof *w->edges, "derivative", &w->edges));
-    SKG_TRY(skg_alloc(parts, sizeof *w->first, "derivative", &w->first));
-    SKG_TRY(skg_alloc(parts, sizeof *w->moves, "derivative", &w->moves));
-    SKG_TRY(skg_alloc(3 * geometry->triangles, sizeof *w->slopes, "derivative", &w->slopes));
-    SKG_TRY(skg_alloc(geometry->triangles, sizeof *w->edge_on, "derivative", &w->edge_on));
-    SKG_TRY(skg_edge_weights_create(w->pass, &w->of_edges));
-    w->drawn = w->pass->parts;
-    SKG_TRY(skg_gradient_draw_competitors(job, w->pass, &w->drawn));
-    for (int64_t p = 0; p < parts; p++) {
-        if (p > 0) w->first[p] = w->first[p - 1] + w->faces[p - 1].mesh->triangles;
-        SKG_TRY(skg_gradient_place_faces(job, w->pass, p, &w->faces[p]));
-        w->edges[p] = (skg_part_edges){.all = &w->of_edges, .part = p};
-        w->faces[p].weigh = skg_edge_weigh;
-        w->faces[p].weigh_user = &w->edges[p];
-    }
-    SKG_TRY(find_ranges(w));
-    return skg_parallel(w->range_count, find_range, w);
-}
-
-static void release_slopes(slopes_work *w) {
-    skg_edge_weights_release(&w->of_edges);
-    skg_free(&w->faces);
-    skg_free(&w->edges);
-    skg_free(&w->first);
-    skg_free(&w->moves);
-    skg_free(&w->ranges);
-    skg_free(&w->slopes);
-    skg_free(&w->edge_on);
-}
+    skg_moving_parts moving;
+    skg_pass_direction *directions; /* of moving */
+    skg_geometry_part *drawn;       /* [parts] as the kernels gather them */
+    uint8_t *weighed;               /* [parts] whose weights are needed */
+    double *rays;                   /* [rows][columns] if pixels have several rays; else NULL */
+    double *values; /* the same along one direction, which is added to: rays, or a channel of the image */
+} pass_run;
 
 /* Adds the faces that are seen as lines, with the weights that stand on the device. */
-static skg_status add_edges(skg_job *job, slopes_work *w, double *values) {
-    skg_edge_weights_clear(&w->of_edges);
-    for (int64_t p = 0; p < w->pass->scene->count; p++) {
-        const skg_velocities v = velocities_of(w, p);
-        const skg_face_moments *faces = &w->faces[p];
-        if (!w->moves[p] || w->drawn[p].contributions == 0) continue;
+static skg_status add_edges(pass_run *r, int64_t direction) {
+    skg_moving_parts *moving = &r->moving;
+    for (int64_t p = 0; p < r->pass->scene->count; p++) {
+        const skg_face_moments *faces = &moving->faces[p];
+        if (!moving->moves_now[p] || r->drawn[p].contributions == 0) continue;
+        const skg_velocities v = skg_moving_velocities(moving, direction, p);
         for (int64_t f = 0; f < faces->mesh->triangles; f++) {
-            if (!w->edge_on[w->first[p] + f]) continue;
-            SKG_TRY(skg_edge_weights_read(job, p, &w->of_edges));
-            SKG_TRY(skg_slopes_spread(faces, &v, f, values));
+            if (!moving->seen[p].edge_on[f]) continue;
+            SKG_TRY(skg_edge_weights_read(r->job, p, &moving->of_edges));
+            SKG_TRY(skg_slopes_spread(faces, &v, f, r->values));
         }
     }
     return SKG_OK;
 }
 
+/* Whether the rays themselves change their lengths. */
+static int changes_rays(const pass_run *r, int64_t direction) {
+    const skg_direction *d = r->directions[direction].direction;
+    return (d->source || d->detector) && !r->pass->camera.parallel;
+}
+
 /* What changes besides the lengths: those of whole rays, the falloff, and the photons of an absolute beam. */
-static skg_status add_rays(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
-                           const skg_velocities *v, double *values) {
+static skg_status add_rays(pass_run *r, int64_t direction) {
+    const skg_job *job = r->job;
     const skg_recipe *recipe = job->recipe;
+    const skg_pass *pass = r->pass;
     const skg_camera *camera = &pass->camera;
+    const skg_view *view = r->work->view;
+    const skg_velocities *v = &r->directions[direction].of_view;
+    const double *source = r->directions[direction].direction->source;
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     const int falls = job->machine->images.falloff;
     static const double none[3] = {0};
     double *rays = NULL, all = 0, way[3];
-    if (camera->parallel) return SKG_OK;
-    skg_add_scaled(work->view->centre, -1, work->view->source, way);
+    skg_add_scaled(view->centre, -1, view->source, way);
     if (falls) all += 3 * skg_slope_of_distance(camera, v, camera->origin, camera->first, v->source);
     if (recipe->absolute && !skg_quantity_is_ratio(&recipe->options))
-        all -= 2 * skg_slope_of_distance(camera, v, work->view->source, way,
-                                         job->gradient->direction.source ? job->gradient->direction.source
-                                                                         : none);
+        all -= 2 * skg_slope_of_distance(camera, v, view->source, way, source ? source : none);
     SKG_TRY(skg_alloc(2 * layout.plane, sizeof *rays, "derivative", &rays));
     const skg_status status = skg_gradient_read(pass, job->machine->gradient.weights.memory,
                                                 layout.planes * layout.plane, 2 * layout.plane, rays);
-    for (int64_t r = 0; r < camera->rows && status == SKG_OK; r++)
+    for (int64_t row = 0; row < camera->rows && status == SKG_OK; row++)
         for (int64_t c = 0; c < camera->columns; c++) {
-            const double *at = rays + r * layout.stride + c;
+            const double *at = rays + row * layout.stride + c;
             double ray[3];
             for (int k = 0; k < 3; k++)
-                ray[k] = camera->first[k] + (double)c * camera->column[k] + (double)r * camera->row[k];
-            values[r * camera->columns + c] +=
+                ray[k] = camera->first[k] + (double)c * camera->column[k] + (double)row * camera->row[k];
+            r->values[row * camera->columns + c] +=
                 (at[0] - (falls ? 3 : 0) * at[layout.plane]) * skg_slope_of_ray(camera, v, ray) +
                 all * at[layout.plane];
         }
@@ -208,41 +128,51 @@ static skg_status add_rays(skg_job *job, const skg_frame_work *work, const skg_p
     return status;
 }
 
-/* Adds up the slopes of hits with the parts as `drawn` has them. The tables of the pass are put back. */
-static skg_status scatter(skg_job *job, slopes_work *w, double *values) {
-    const skg_pass *pass = w->pass;
-    skg_machine *machine = job->machine;
+/* Adds up the slopes of hits with the parts as they are drawn. The tables of the pass are put back. */
+static skg_status scatter(pass_run *r, double largest) {
+    const skg_pass *pass = r->pass;
+    skg_machine *machine = r->job->machine;
     skg_geometry *geometry = &machine->geometry;
     const int64_t state = geometry->state;
     const double scale = pass->scale.scale;
     skg_pass other = *pass;
-    other.parts = w->drawn;
-    if (w->drawn != pass->parts)
-        SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, w->drawn, scale));
-    SKG_TRY(skg_gradient_scatter(&other, geometry, &machine->hits, &machine->gradient, &job->staging,
-                                 w->moves, w->slopes, values, &job->gradient->saturated));
-    if (w->drawn != pass->parts)
+    other.parts = r->drawn;
+    if (r->drawn != pass->parts)
+        SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, r->drawn, scale));
+    SKG_TRY(skg_gradient_scatter(&other, geometry, &machine->hits, &machine->gradient, &r->job->staging,
+                                 r->moving.moves_now, largest, r->values));
+    if (r->drawn != pass->parts)
         SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, scale));
     geometry->state = state; /* the sums of the pass stand as before */
     return SKG_OK;
 }
 
-/* One channel of the intensities: the adjoint is 1 there, so that the weights of a ray are its own slopes. */
-static skg_status add_channel(skg_job *job, const skg_frame_work *work, const skg_pass *pass, slopes_work *w,
-                              int64_t channel, double *values) {
-    struct skg_gradient_work *gradient = job->gradient;
-    const int64_t columns = pass->camera.columns, rows = pass->camera.rows, fine = pass->fine;
-    double *image = gradient->derivative + channel * (rows / fine) * (columns / fine);
-    SKG_TRY(scatter(job, w, values));
-    SKG_TRY(add_edges(job, w, values));
-    if (gradient->direction.source || gradient->direction.detector)
-        SKG_TRY(add_rays(job, work, pass, w->of_view, values));
-    for (int64_t r = 0; r < rows; r++) {
-        double *to = image + r / fine * (columns / fine);
-        const double *from = values + r * columns;
+/* Adds the rays to the pixels of an image. */
+static void add_pixels(const pass_run *r, double *image) {
+    const int64_t columns = r->pass->camera.columns, rows = r->pass->camera.rows, fine = r->pass->fine;
+    for (int64_t row = 0; row < rows; row++) {
+        double *to = image + row / fine * (columns / fine);
+        const double *from = r->rays + row * columns;
         for (int64_t c = 0, pixel = 0; c < columns; pixel++)
             for (const int64_t end = c + fine; c < end; c++) to[pixel] += from[c];
     }
+}
+
+/* One channel of the intensities along one direction. The loss is the channel itself, so that the weights of a ray are its own slopes. */
+static skg_status add_direction(pass_run *r, int64_t direction, int64_t channel) {
+    skg_derivative_work *of = &r->job->gradient->directions[direction];
+    const skg_camera *camera = &r->pass->camera;
+    double *image = of->image + channel * r->job->recipe->view.rows * r->job->recipe->view.columns;
+    double largest = 0;
+    int64_t saturated = 0;
+    SKG_TRY(skg_slopes_make(&r->moving, direction, r->job->machine, &largest, &saturated));
+    if (channel == 0) of->saturated += saturated;
+    r->values = r->rays ? r->rays : image;
+    if (r->rays) memset(r->rays, 0, (size_t)(camera->rows * camera->columns) * sizeof *r->rays);
+    SKG_TRY(scatter(r, largest));
+    SKG_TRY(add_edges(r, direction));
+    if (changes_rays(r, direction)) SKG_TRY(add_rays(r, direction));
+    if (r->rays) add_pixels(r, image);
     return SKG_OK;
 }
 
@@ -255,36 +185,51 @@ static void find_weighed(const skg_pass *pass, const uint8_t *moves, uint8_t *we
     for (int64_t s = 0; competes && s < priority->count; s++) weighed[priority->parts[s]] = 1;
 }
 
+static skg_status find_directions(pass_run *r, int64_t number) {
+    const skg_job *job = r->job;
+    const skg_camera *camera = &r->pass->camera;
+    const int64_t count = job->gradient->direction_count;
+    SKG_TRY(skg_alloc(count, sizeof *r->directions, "derivative", &r->directions));
+    for (int64_t d = 0; d < count; d++) {
+        const skg_direction *direction = &job->gradient->directions[d].direction;
+        skg_velocities *v = &r->directions[d].of_view;
+        r->directions[d].direction = direction;
+        find_source(job->recipe, r->work->view, number, direction, v->source);
+        if (direction->detector) memcpy(v->detector, direction->detector, sizeof v->detector);
+        if (camera->parallel) find_beam(r->work->view, camera, direction, v);
+    }
+    return skg_moving_parts_create(r->job, r->pass, count, r->directions, &r->moving);
+}
+
+/* The weights of a channel, then all directions. */
+static skg_status add_channel(pass_run *r, const skg_sums *sums, double factor, int64_t channel) {
+    const int64_t count = r->job->gradient->direction_count;
+    skg_weights_wanted wanted = {.factor = factor, .channel = (int32_t)channel, .parts = r->weighed};
+    for (int64_t d = 0; d < count; d++)
+        if (changes_rays(r, d)) wanted.rays = SKG_RAYS_PLANES;
+    SKG_TRY(skg_gradient_weigh(r->job, r->pass, sums, &wanted));
+    skg_edge_weights_clear(&r->moving.of_edges);
+    for (int64_t d = 0; d < count; d++) SKG_TRY(add_direction(r, d, channel));
+    return skg_derivative_add_changes(r->job, r->pass, sums, factor, channel);
+}
+
 skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,
                                    const skg_pass *pass, const skg_sums *sums, double factor) {
-    struct skg_gradient_work *gradient = job->gradient;
-    const skg_direction *direction = &gradient->direction;
-    double *values = NULL;
-    uint8_t *weighed = NULL;
-    skg_velocities v = {.vertices = NULL};
-    slopes_work w = {.pass = pass, .of_view = &v, .direction = direction};
+    pass_run r = {.job = job, .work = work, .pass = pass, .drawn = pass->parts};
     skg_status status = SKG_OK;
-    find_source(job->recipe, work->view, number, direction, v.source);
-    if (direction->detector) memcpy(v.detector, direction->detector, sizeof v.detector);
-    if (pass->camera.parallel) find_beam(work->view, &pass->camera, direction, &v);
-    SKG_TRY_CLEANUP(
-        skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *values, "derivative", &values));
-    SKG_TRY_CLEANUP(skg_alloc(pass->scene->count, 1, "derivative", &weighed));
-    SKG_TRY_CLEANUP(find_slopes(job, &w));
-    find_weighed(pass, w.moves, weighed);
-    for (int64_t c = 0; c < job->recipe->model.channels; c++) {
-        const int by_view = (direction->source || direction->detector) && !pass->camera.parallel;
-        const skg_weights_wanted wanted = {.factor = factor,
-                                           .channel = (int32_t)c,
-                                           .rays = by_view ? SKG_RAYS_PLANES : SKG_RAYS_NONE,
-                                           .parts = weighed};
-        SKG_TRY_CLEANUP(skg_gradient_weigh(job, pass, sums, &wanted));
-        SKG_TRY_CLEANUP(add_channel(job, work, pass, &w, c, values));
-        SKG_TRY_CLEANUP(skg_derivative_add_changes(job, pass, sums, factor, c));
-    }
+    if (pass->fine > 1)
+        SKG_TRY_CLEANUP(
+            skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *r.rays, "derivative", &r.rays));
+    SKG_TRY_CLEANUP(skg_alloc(pass->scene->count, 1, "derivative", &r.weighed));
+    SKG_TRY_CLEANUP(find_directions(&r, number));
+    SKG_TRY_CLEANUP(skg_gradient_draw_competitors(job, pass, &r.drawn));
+    find_weighed(pass, r.moving.moves, r.weighed);
+    for (int64_t c = 0; c < job->recipe->model.channels; c++)
+        SKG_TRY_CLEANUP(add_channel(&r, sums, factor, c));
 cleanup:
-    release_slopes(&w);
-    skg_free(&weighed);
-    skg_free(&values);
+    skg_moving_parts_release(&r.moving);
+    skg_free(&r.directions);
+    skg_free(&r.weighed);
+    skg_free(&r.rays);
     return status;
 }

@@ -229,7 +229,8 @@ static skg_status add_gradient(skg_job *job, const skg_frame_work *work, int64_t
     SKG_TRY(send_mix(job, pass));
     const skg_sums sums = sums_of(job->machine, job->recipe, pass, 0);
     const double factor = factor_of(job->recipe, work, pass);
-    if (job->gradient->forward) return skg_derivative_add_pass(job, work, number, pass, &sums, factor);
+    if (job->gradient->direction_count)
+        return skg_derivative_add_pass(job, work, number, pass, &sums, factor);
     return skg_gradient_add_pass(job, work, number, pass, &sums, factor);
 }
 
@@ -255,7 +256,7 @@ cleanup:
 /* Those of all parts that need path lengths. */
 static skg_status add_densities(skg_job *job, const skg_frame_work *work, int64_t number) {
     const uint8_t *needs = job->gradient->needs_lengths;
-    if (job->gradient->forward) skg_derivative_clear_rates(job);
+    if (job->gradient->direction_count) skg_derivative_clear_rates(job);
     for (int64_t p = 0; p < job->recipe->scene->count; p++)
         if (needs[p]) SKG_TRY(add_density(job, work, number, p));
     return SKG_OK;
@@ -311,7 +312,7 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
     skg_pass pass;
     skg_status status = SKG_OK;
     /* A pass by itself, and so before this one, whose memory it shares. */
-    if (job->gradient && job->gradient->forward) SKG_TRY(add_densities(job, work, number));
+    if (job->gradient && job->gradient->direction_count) SKG_TRY(add_densities(job, work, number));
     SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &machine->pass, &pass));
     SKG_TRY_CLEANUP(pin_raster(job->recipe, machine, number, &pass, job->gradient != NULL, job->outcome));
     skg_raster_pin_copy(&pass.main, &job->main);
@@ -327,7 +328,7 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
         job->gradient ? add_gradient(job, work, number, &pass) : enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
-    if (job->gradient && !job->gradient->forward && status == SKG_OK)
+    if (job->gradient && !job->gradient->direction_count && status == SKG_OK)
         status = add_densities(job, work, number);
     return status;
 }

@@ -9,6 +9,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 void skg_gradient_init_sized(void *gradient, int32_t size) {
@@ -123,62 +124,67 @@ static skg_status make_job(skg_plan *plan, struct skg_gradient_work **work, skg_
     return SKG_OK;
 }
 
-/* A copy that the job frees; NULL of NULL. */
-static skg_status copy_numbers(skg_job *job, const char *what, int64_t count, const double **numbers) {
-    double *copy = NULL;
-    if (!*numbers) return SKG_OK;
-    for (int64_t i = 0; i < count; i++)
-        if (!isfinite((*numbers)[i]))
-            return skg_fail(SKG_ERR_ARGUMENT,
-                            "%s: number %" PRId64 " of the direction's %s is %g; it has to be finite",
-                            job->gradient->call, i, what, (*numbers)[i]);
-    SKG_TRY(skg_staging_take(&job->staging, count, sizeof *copy, "direction", &copy));
-    memcpy(copy, *numbers, (size_t)count * sizeof *copy);
-    *numbers = copy;
-    return SKG_OK;
-}
-
-/* --- along a direction */
+/* --- along directions */
 
 void skg_direction_init_sized(void *direction, int32_t size) {
     const skg_direction defaults = {0};
     skg_struct_init(direction, size, &defaults, sizeof defaults);
 }
 
-static skg_status copy_vertices(skg_job *job, skg_direction *direction) {
+/* Replaces numbers of a direction by a copy that the job frees. number: of the direction */
+static skg_status copy_numbers(skg_job *job, int64_t number, const char *what, int64_t count,
+                               const double **numbers) {
+    const struct skg_gradient_work *work = job->gradient;
+    double *copy = NULL;
+    char which[32] = "the direction";
+    if (!*numbers) return SKG_OK;
+    if (work->direction_count > 1) snprintf(which, sizeof which, "direction %" PRId64, number);
+    for (int64_t i = 0; i < count; i++)
+        if (!isfinite((*numbers)[i]))
+            return skg_fail(SKG_ERR_ARGUMENT, "%s: number %" PRId64 " of %s's %s is %g; it has to be finite",
+                            work->call, i, which, what, (*numbers)[i]);
+    SKG_TRY(skg_staging_take(&job->staging, count, sizeof *copy, "direction", &copy));
+    memcpy(copy, *numbers, (size_t)count * sizeof *copy);
+    *numbers = copy;
+    return SKG_OK;
+}
+
+static skg_status copy_vertices(skg_job *job, int64_t number, skg_direction *direction) {
     const skg_scene *scene = job->recipe->scene;
     const double **copies = NULL;
     if (!direction->vertices) return SKG_OK;
     SKG_TRY(skg_staging_take(&job->staging, scene->count, sizeof *copies, "direction", &copies));
     for (int64_t p = 0; p < scene->count; p++) {
         copies[p] = direction->vertices[p];
-        SKG_TRY(copy_numbers(job, "vertices", 3 * scene->parts[p].mesh->vertices, &copies[p]));
+        SKG_TRY(copy_numbers(job, number, "vertices", 3 * scene->parts[p].mesh->vertices, &copies[p]));
     }
     direction->vertices = copies;
     return SKG_OK;
 }
 
 /* Parts whose matter changes. */
-static void find_needs(const skg_job *job, uint8_t *needs) {
-    const skg_direction *direction = &job->gradient->direction;
+static void find_needs(const skg_job *job, const skg_direction *direction, uint8_t *needs) {
     const int64_t nodes = job->recipe->model.nodes;
     for (int64_t p = 0; p < job->recipe->scene->count; p++) {
-        needs[p] = direction->densities && direction->densities[p] != 0;
+        needs[p] |= direction->densities && direction->densities[p] != 0;
         for (int64_t n = 0; n < nodes && direction->attenuations; n++)
             needs[p] |= direction->attenuations[p * nodes + n] != 0;
     }
 }
 
-static skg_status copy_direction(skg_job *job) {
-    skg_direction *direction = &job->gradient->direction;
+static skg_status copy_directions(skg_job *job) {
+    struct skg_gradient_work *work = job->gradient;
     const int64_t parts = job->recipe->scene->count;
-    SKG_TRY(copy_numbers(job, "poses", 6 * parts, &direction->poses));
-    SKG_TRY(copy_numbers(job, "source", 3, &direction->source));
-    SKG_TRY(copy_numbers(job, "detector", 6, &direction->detector));
-    SKG_TRY(copy_numbers(job, "densities", parts, &direction->densities));
-    SKG_TRY(copy_numbers(job, "attenuations", parts * direction->nodes, &direction->attenuations));
-    SKG_TRY(copy_vertices(job, direction));
-    find_needs(job, job->gradient->needs_lengths);
+    for (int64_t d = 0; d < work->direction_count; d++) {
+        skg_direction *direction = &work->directions[d].direction;
+        SKG_TRY(copy_numbers(job, d, "poses", 6 * parts, &direction->poses));
+        SKG_TRY(copy_numbers(job, d, "source", 3, &direction->source));
+        SKG_TRY(copy_numbers(job, d, "detector", 6, &direction->detector));
+        SKG_TRY(copy_numbers(job, d, "densities", parts, &direction->densities));
+        SKG_TRY(copy_numbers(job, d, "attenuations", parts * direction->nodes, &direction->attenuations));
+        SKG_TRY(copy_vertices(job, d, direction));
+        find_needs(job, direction, work->needs_lengths);
+    }
     return SKG_OK;
 }
 
@@ -192,18 +198,21 @@ static skg_gradient wanted_of(const skg_direction *direction, double *any) {
     return wanted;
 }
 
-static skg_status check_direction(skg_plan *plan, const skg_frame *frame,
-                                  const struct skg_gradient_work *work) {
+static skg_status check_directions(skg_plan *plan, const skg_frame *frame,
+                                   const struct skg_gradient_work *work) {
     double any[9];
     const skg_recipe *recipe = plan->recipe;
-    const skg_direction *direction = &work->direction;
-    const skg_gradient wanted = wanted_of(direction, any);
-    SKG_TRY(check_wanted(work->call, recipe, &plan->machine, &wanted));
+    for (int64_t d = 0; d < work->direction_count; d++) {
+        const skg_direction *direction = &work->directions[d].direction;
+        const skg_gradient wanted = wanted_of(direction, any);
+        SKG_TRY(check_wanted(work->call, recipe, &plan->machine, &wanted));
+        SKG_TRY(check_nodes(work->call, recipe->model.nodes, direction->attenuations, direction->nodes));
+        SKG_TRY(check_frame(work->call, frame, &wanted));
+    }
     if (recipe->model.layers > 1)
         return refuse(work->call, "a blur that depends on depth, along a direction,",
                       "take skg_plan_gradient");
-    SKG_TRY(check_nodes(work->call, recipe->model.nodes, direction->attenuations, direction->nodes));
-    return check_frame(work->call, frame, &wanted);
+    return SKG_OK;
 }
 
 /* What both submissions begin with. */
@@ -226,31 +235,52 @@ static skg_status start(skg_plan *plan, const skg_frame *frame, skg_job **made, 
     return SKG_OK;
 }
 
-static skg_status submit_derivative(const char *call, skg_plan *plan, const skg_frame *frame,
-                                    const skg_direction *direction, double *derivative, int64_t *saturated,
-                                    skg_job **job) {
+/* Takes the directions over as they are. */
+static skg_status read_directions(struct skg_gradient_work *work, int64_t count,
+                                  const skg_direction *directions) {
+    if (count < 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: %" PRId64 " directions; at least 1", work->call, count);
+    SKG_TRY(skg_alloc(count, sizeof *work->directions, "direction", &work->directions));
+    work->direction_count = count;
+    for (int64_t d = 0; d < count; d++)
+        SKG_TRY(skg_struct_read_at(directions, d, "skg_direction", &work->directions[d].direction,
+                                   sizeof work->directions[d].direction));
+    return SKG_OK;
+}
+
+/* Where results go, and memory for what they are made from. */
+static skg_status place_results(const skg_recipe *recipe, struct skg_gradient_work *work, double *derivatives,
+                                int64_t *saturated) {
+    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
+    int nodes = 0;
+    work->results = derivatives;
+    work->saturated = saturated;
+    for (int64_t d = 0; d < work->direction_count; d++) {
+        work->directions[d].image = derivatives + d * count;
+        nodes |= work->directions[d].direction.attenuations != NULL;
+    }
+    return nodes ? skg_alloc(count, sizeof *work->adjoint, "derivative", &work->adjoint) : SKG_OK;
+}
+
+static skg_status submit_derivatives(const char *call, skg_plan *plan, const skg_frame *frame, int64_t count,
+                                     const skg_direction *directions, double *derivatives, int64_t *saturated,
+                                     skg_job **job) {
     SKG_PLAIN;
     struct skg_gradient_work *work = NULL;
     skg_job *made = NULL;
     skg_status status = SKG_OK;
     SKG_NEEDS_OF(call, plan);
-    SKG_NEEDS_OF(call, direction);
-    SKG_NEEDS_OF(call, derivative);
+    SKG_NEEDS_OF(call, directions);
+    SKG_NEEDS_OF(call, derivatives);
     SKG_NEEDS_OF(call, job);
     SKG_TRY(begin(call, plan, job, &work));
-    work->forward = 1;
-    work->result = derivative;
-    work->saturated_count = saturated;
-    SKG_TRY_CLEANUP(skg_struct_read(direction, "skg_direction", &work->direction, sizeof work->direction));
+    SKG_TRY_CLEANUP(read_directions(work, count, directions));
     SKG_TRY_CLEANUP(skg_plan_renew(plan));
-    SKG_TRY_CLEANUP(check_direction(plan, frame, work));
+    SKG_TRY_CLEANUP(check_directions(plan, frame, work));
     SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
-    const skg_recipe *recipe = plan->recipe;
-    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
-    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *work->derivative, "derivative", &work->derivative));
-    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *work->adjoint, "derivative", &work->adjoint));
+    SKG_TRY_CLEANUP(place_results(plan->recipe, work, derivatives, saturated));
     SKG_TRY_CLEANUP(make_job(plan, &work, &made));
-    SKG_TRY_CLEANUP(copy_direction(made));
+    SKG_TRY_CLEANUP(copy_directions(made));
     status = start(plan, frame, &made, job);
 cleanup:
     skg_job_release(&made);
@@ -263,11 +293,28 @@ static skg_status finish(skg_status status, skg_job **job) {
     return status == SKG_OK ? skg_job_wait(job) : status;
 }
 
+skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, int64_t count,
+                                       const skg_direction *directions, double *derivatives,
+                                       int64_t *saturated, skg_job **job) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, submit_derivatives("skg_plan_derivatives_submit", plan, frame, count,
+                                                    directions, derivatives, saturated, job));
+}
+
+skg_status skg_plan_derivatives(skg_plan *plan, const skg_frame *frame, int64_t count,
+                                const skg_direction *directions, double *derivatives, int64_t *saturated) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    skg_job *job = NULL;
+    const skg_status status = submit_derivatives("skg_plan_derivatives", plan, frame, count, directions,
+                                                 derivatives, saturated, &job);
+    return skg_call_end(handler, finish(status, &job));
+}
+
 skg_status skg_plan_derivative_submit(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                       double *derivative, int64_t *saturated, skg_job **job) {
     const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, submit_derivative("skg_plan_derivative_submit", plan, frame, direction,
-                                                   derivative, saturated, job));
+    return skg_call_end(handler, submit_derivatives("skg_plan_derivative_submit", plan, frame, 1, direction,
+                                                    derivative, saturated, job));
 }
 
 skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
@@ -275,7 +322,7 @@ skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg
     const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
     skg_job *job = NULL;
     const skg_status status =
-        submit_derivative("skg_plan_derivative", plan, frame, direction, derivative, saturated, &job);
+        submit_derivatives("skg_plan_derivative", plan, frame, 1, direction, derivative, saturated, &job);
     return skg_call_end(handler, finish(status, &job));
 }
 

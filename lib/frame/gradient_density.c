@@ -146,7 +146,7 @@ skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t 
     SKG_TRY_CLEANUP(
         skg_gradient_read(pass, job->machine->gradient.lengths.memory, 0, columns * rows, lengths));
     find_own(recipe, part, own);
-    if (gradient->forward) {
+    if (gradient->direction_count) {
         status = skg_derivative_add_lengths(job, pass, part, own, lengths);
         goto cleanup;
     }

@@ -22,8 +22,8 @@ static skg_status transpose(const nodes_work *w, double *values) {
         .factor = w->factor, .channel = -1, .of = SKG_WEIGHTS_OF_RAYS, .rays = SKG_RAYS_PLANES};
     SKG_TRY(skg_gradient_transpose(machine->attenuator, w->pass, w->sums, &w->attenuation, &wanted,
                                    &machine->gradient, &w->job->staging));
-    return skg_gradient_read(w->pass, machine->gradient.weights.memory, (w->layout.planes + 1) * w->layout.plane,
-                             w->layout.plane, values);
+    return skg_gradient_read(w->pass, machine->gradient.weights.memory,
+                             (w->layout.planes + 1) * w->layout.plane, w->layout.plane, values);
 }
 
 /* The attenuation of one energy is its exponent. Rays that jaws stop do not depend on it. */

@@ -13,6 +13,14 @@ static void clear_vertices(const skg_scene *scene, const skg_gradient *wanted) {
                    3 * (size_t)scene->parts[p].mesh->vertices * sizeof **wanted->vertices);
 }
 
+/* Clears the images along directions, which passes are added to. */
+static void clear_images(const skg_job *job) {
+    const skg_recipe *recipe = job->recipe;
+    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
+    memset(job->gradient->results, 0,
+           (size_t)(job->gradient->direction_count * count) * sizeof *job->gradient->results);
+}
+
 /* The image was read in the type of the output. */
 static void widen_image(const skg_job *job) {
     double *image = job->gradient->image;
@@ -27,7 +35,10 @@ skg_status skg_gradient_begin(skg_job *job) {
     const cl_int code = is_read ? skg_event_wait(gradient->ready) : CL_SUCCESS;
     if (code != CL_SUCCESS) return skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
     widen_image(job);
-    if (gradient->forward) return SKG_OK;
+    if (gradient->direction_count) {
+        clear_images(job);
+        return SKG_OK;
+    }
     clear_vertices(job->recipe->scene, &gradient->wanted);
     SKG_TRY(skg_adjoint_take(job));
     return skg_adjoint_of_intensities(job, &gradient->of_frame, gradient->image, &gradient->adjoint);
@@ -50,10 +61,11 @@ static skg_status hand_out(const skg_scene *scene, const struct skg_gradient_wor
 
 skg_status skg_gradient_finish(skg_job *job) {
     struct skg_gradient_work *gradient = job->gradient;
-    const int64_t count = job->recipe->model.channels * job->recipe->view.rows * job->recipe->view.columns;
-    if (!gradient->forward) return hand_out(job->recipe->scene, gradient);
-    SKG_TRY(skg_derivative_of_image(job, &gradient->of_frame, gradient->image, &gradient->derivative));
-    memcpy(gradient->result, gradient->derivative, (size_t)count * sizeof *gradient->result);
-    if (gradient->saturated_count) *gradient->saturated_count = gradient->saturated;
+    if (!gradient->direction_count) return hand_out(job->recipe->scene, gradient);
+    for (int64_t d = 0; d < gradient->direction_count; d++) {
+        SKG_TRY(skg_derivative_of_image(job, &gradient->of_frame, gradient->image,
+                                        gradient->directions[d].image));
+        if (gradient->saturated) gradient->saturated[d] = gradient->directions[d].saturated;
+    }
     return SKG_OK;
 }

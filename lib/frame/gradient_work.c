@@ -13,8 +13,10 @@ void skg_gradient_work_release(struct skg_gradient_work **work) {
     skg_free(&w->planes);
     skg_free(&w->attenuations);
     skg_free(&w->nodes);
-    skg_free(&w->derivative);
-    skg_free(&w->plane_changes);
-    skg_free(&w->node_changes);
+    for (int64_t d = 0; d < w->direction_count; d++) {
+        skg_free(&w->directions[d].plane_changes);
+        skg_free(&w->directions[d].node_changes);
+    }
+    skg_free(&w->directions);
     skg_free(work);
 }

@@ -6,6 +6,16 @@
 
 #include <skiagraph/gradient.h>
 
+/* The derivative of an image along a direction. */
+typedef struct {
+    skg_direction direction; /* its arrays are the job's */
+    double *image;           /* [channels][rows][columns] of the intensities, in the caller's memory */
+    int64_t saturated;       /* faces whose slopes were cut off */
+    /* Of the rays of a pass: how fast the mm of each plane of the model change by densities, and the exponent of each
+     * node by attenuation coefficients; [planes or nodes][rows][columns]. NULL: not at all. */
+    double *plane_changes, *node_changes;
+} skg_derivative_work;
+
 /* What a job computes instead of an image; the job owns it. Its frames are the passes of one frame. */
 struct skg_gradient_work {
     const char *call; /* the name of the public function */
@@ -29,16 +39,10 @@ struct skg_gradient_work {
     double *attenuations; /* [parts][nodes] */
     /* the planes of rays of all nodes of the model, by the exponent of each, if attenuations are wanted */
     double *nodes;
-    int32_t forward; /* 1: the derivative of the image along `direction` instead */
-    int32_t reserved;
-    skg_direction direction;  /* its arrays are the job's */
-    double *derivative;       /* [channels][rows][columns] of the intensities */
-    double *result;           /* the caller's */
-    int64_t saturated;        /* faces whose slopes were cut off */
-    int64_t *saturated_count; /* the caller's, or NULL */
-    /* Along `direction`, of the rays of a pass: how fast the mm of each plane of the model change by densities, and the exponent of each
-     * node by attenuation coefficients; [planes or nodes][rows][columns]. NULL: not at all. */
-    double *plane_changes, *node_changes;
+    int64_t direction_count;         /* above 0: the derivatives of the image along directions instead */
+    skg_derivative_work *directions; /* [direction_count] */
+    double *results;                 /* the caller's: [directions][channels][rows][columns] */
+    int64_t *saturated;              /* the caller's: [directions], or NULL */
 };
 
 void skg_gradient_work_release(struct skg_gradient_work **work);

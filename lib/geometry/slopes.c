@@ -2,59 +2,77 @@
 
 #include "core/maths.h"
 
+#include <float.h>
+
 /* The velocity of a point that a twist moves. */
 static void turn_point(const double twist[6], const double point[3], double velocity[3]) {
     skg_cross(twist + 3, point, velocity);
     for (int k = 0; k < 3; k++) velocity[k] += twist[k];
 }
 
-/* The velocity of a corner relative to the ray that meets it. */
-static void find_velocity(const skg_face_moments *faces, const skg_velocities *v, int64_t vertex,
-                          const double at[3], double t, double relative[3]) {
-    const skg_camera *camera = faces->camera;
-    double pixel[3], of_pixel[3];
-    turn_point(v->pose, at, relative);
-    for (int r = 0; v->vertices && r < 3; r++)
-        relative[r] += skg_dot(faces->pose + 4 * r, v->vertices + 3 * vertex);
-    for (int k = 0; k < 3; k++)
-        pixel[k] = at[k] - (camera->parallel ? t * camera->first[k] : (1 - t) * camera->origin[k]);
-    skg_cross(v->detector + 3, pixel, of_pixel); /* with a point source t times the rotation of the pixel */
-    for (int k = 0; k < 3; k++)
-        relative[k] -= camera->parallel ? v->detector[k] + of_pixel[k] + t * v->beam[k]
-                                        : (1 - t) * v->source[k] + t * v->detector[k] + of_pixel[k];
+/* The velocity of a point relative to the ray that meets it: turn x point + still + t along. */
+typedef struct {
+    double turn[3], still[3], along[3];
+} relative_velocity;
+
+/* With a point source the ray at a point moves by (1 - t) times the source's velocity, and t times that of the pixel, which stands at
+ * source + (point - source) / t; with a parallel beam by that of the pixel, at point - t d, and t times that of d. */
+static void find_relative(const skg_camera *camera, const skg_velocities *v, relative_velocity *r) {
+    double swing[3];
+    skg_cross(v->detector + 3, camera->parallel ? camera->first : camera->origin, swing);
+    for (int k = 0; k < 3; k++) {
+        const double source = v->source[k], detector = v->detector[k];
+        r->turn[k] = v->pose[3 + k] - v->detector[3 + k];
+        r->still[k] = v->pose[k] + (camera->parallel ? -detector : swing[k] - source);
+        r->along[k] = camera->parallel ? swing[k] - v->beam[k] : source - detector - swing[k];
+    }
+}
+
+static int64_t vertex_of(const skg_face_moments *faces, int64_t number) {
+    return faces->source ? faces->source[number] : number;
+}
+
+/* How fast a vertex, by the device's number, moves by itself along a vector. */
+static double vertex_moves(const skg_face_moments *faces, const skg_velocities *v, int64_t number,
+                           const double along[3]) {
+    const double *velocity = v->vertices + 3 * vertex_of(faces, number);
+    double moves = 0;
+    for (int k = 0; k < 3; k++) moves += along[k] * skg_dot(faces->pose + 4 * k, velocity);
+    return moves;
 }
 
 /* A face in the world, and as its camera sees it. */
 typedef struct {
-    int64_t vertices[3];
     double at[3][3], seen[3][3];
 } placed_face;
 
+static void place_vertex(const skg_face_moments *faces, int64_t vertex, double at[3], double seen[3]) {
+    double local[3];
+    skg_mesh_vertex(faces->mesh, vertex, local);
+    for (int r = 0; r < 3; r++) at[r] = skg_dot(faces->pose + 4 * r, local) + faces->pose[4 * r + 3];
+    skg_camera_see(faces->camera, at, seen);
+}
+
 static void place_face(const skg_face_moments *faces, int64_t face, placed_face *f) {
     for (int k = 0; k < 3; k++) {
-        const int32_t number = faces->corners[3 * face + k];
-        double local[3];
-        f->vertices[k] = faces->source ? faces->source[number] : number;
-        skg_mesh_vertex(faces->mesh, f->vertices[k], local);
-        for (int r = 0; r < 3; r++)
-            f->at[k][r] = skg_dot(faces->pose + 4 * r, local) + faces->pose[4 * r + 3];
-        skg_camera_see(faces->camera, f->at[k], f->seen[k]);
+        place_vertex(faces, vertex_of(faces, faces->corners[3 * face + k]), f->at[k], f->seen[k]);
     }
+}
+
+/* fmax without a call. NaN is taken, so that nothing is narrower than it. */
+static double larger(double a, double b) {
+    return a >= b ? a : b;
 }
 
 /* Whether the device sees a face as a line, narrower than 1e-4 pixels, or may do so after rounding. A face that is somewhat wider is
  * integrated as exactly, so that more of them do no harm. */
-static int is_edge_on(const skg_camera *camera, const placed_face *f, double rounding) {
-    double at[3][2], longest = 0, far = 0;
-    for (int k = 0; k < 3; k++)
-        for (int c = 0; c < 2; c++) {
-            at[k][c] = f->seen[k][c] / (camera->parallel ? 1 : f->seen[k][2]);
-            far = fmax(far, fabs(at[k][c]));
-        }
-    for (int k = 0; k < 3; k++)
-        for (int c = 0; c < 2; c++) longest = fmax(longest, fabs(at[k][c] - at[(k + 1) % 3][c]));
-    const double twice_area =
-        (at[1][0] - at[0][0]) * (at[2][1] - at[0][1]) - (at[2][0] - at[0][0]) * (at[1][1] - at[0][1]);
+static int is_edge_on(const double *a, const double *b, const double *c, double rounding) {
+    double longest = 0, far = 0;
+    for (int k = 0; k < 2; k++) {
+        far = larger(far, larger(fabs(a[k]), larger(fabs(b[k]), fabs(c[k]))));
+        longest = larger(longest, larger(fabs(a[k] - b[k]), larger(fabs(b[k] - c[k]), fabs(c[k] - a[k]))));
+    }
+    const double twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
     return fabs(twice_area) <= (1e-4 + 32 * rounding * far) * longest;
 }
 
@@ -68,23 +86,55 @@ int skg_slopes_move(const skg_velocities *v) {
     return v->vertices || any(v->pose, 6) || any(v->source, 3) || any(v->detector, 6) || any(v->beam, 3);
 }
 
-void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
-                     double rounding, int64_t first, int64_t end, double *slopes, uint8_t *edge_on) {
+void skg_slopes_see_vertices(const skg_face_moments *faces, int64_t first, int64_t end,
+                             skg_seen_faces *seen) {
+    for (int64_t v = first; v < end; v++) {
+        double h[3];
+        place_vertex(faces, vertex_of(faces, v), seen->at[v], h);
+        seen->inverse[v] = faces->camera->parallel ? h[2] : 1 / h[2];
+        for (int k = 0; k < 2; k++)
+            seen->pixel[v][k] = faces->camera->parallel ? h[k] : h[k] * seen->inverse[v];
+    }
+}
+
+void skg_slopes_see_faces(const skg_face_moments *faces, double rounding, int64_t first, int64_t end,
+                          skg_seen_faces *seen) {
     const skg_camera *camera = faces->camera;
     for (int64_t face = first; face < end; face++) {
-        placed_face f;
-        double normal[3], from[3], relative[3];
-        place_face(faces, face, &f);
-        edge_on[face] = (uint8_t)is_edge_on(camera, &f, rounding);
-        skg_face_outward(faces, f.at, normal);
-        skg_add_scaled(f.at[0], -1, camera->origin, from);
+        const int32_t *corner = faces->corners + 3 * face;
+        const double *a = seen->at[corner[0]], *b = seen->at[corner[1]], *c = seen->at[corner[2]];
+        double side[2][3], normal[3], from[3];
+        skg_add_scaled(b, -1, a, side[0]);
+        skg_add_scaled(c, -1, a, side[1]);
+        skg_add_scaled(a, -1, camera->origin, from);
+        skg_cross(side[0], side[1], normal);
         const double height = skg_dot(normal, camera->parallel ? camera->first : from);
+        const int edge_on =
+            is_edge_on(seen->pixel[corner[0]], seen->pixel[corner[1]], seen->pixel[corner[2]], rounding);
+        const double scale = edge_on || height == 0 ? 0 : 1 / height;
+        seen->edge_on[face] = (uint8_t)edge_on;
+        skg_scale_vector(scale, normal, seen->pull[face]);
+    }
+}
+
+void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities,
+                     const skg_seen_faces *seen, double factor, int64_t first, int64_t end, double *slopes) {
+    const int parallel = faces->camera->parallel;
+    relative_velocity r;
+    find_relative(faces->camera, velocities, &r);
+    for (int64_t face = first; face < end; face++) {
+        /* pull . (turn x point + still + t along) */
+        double pull[3], turned[3];
+        skg_scale_vector(factor, seen->pull[face], pull);
+        skg_cross(pull, r.turn, turned);
+        const double still = skg_dot(pull, r.still), along = skg_dot(pull, r.along);
         for (int k = 0; k < 3; k++) {
-            const double t = f.seen[k][2];
-            find_velocity(faces, velocities, f.vertices[k], f.at[k], t, relative);
-            const double slope =
-                factor * skg_dot(normal, relative) / (camera->parallel ? height : height * t);
-            slopes[3 * face + k] = isfinite(slope) && !edge_on[face] ? slope : 0;
+            const int32_t corner = faces->corners[3 * face + k];
+            const double inverse = seen->inverse[corner];
+            double moves = skg_dot(turned, seen->at[corner]) + still;
+            if (velocities->vertices) moves += vertex_moves(faces, velocities, corner, pull);
+            const double slope = parallel ? moves + inverse * along : moves * inverse + along;
+            *slopes++ = fabs(slope) <= DBL_MAX ? slope : 0;
         }
     }
 }
@@ -93,11 +143,16 @@ skg_status skg_slopes_spread(const skg_face_moments *faces, const skg_velocities
                              double *values) {
     placed_face f;
     double normal[3], relative[3], slopes[3];
+    relative_velocity r;
+    find_relative(faces->camera, velocities, &r);
     place_face(faces, face, &f);
     skg_face_outward(faces, f.at, normal);
     for (int k = 0; k < 3; k++) {
-        find_velocity(faces, velocities, f.vertices[k], f.at[k], f.seen[k][2], relative);
+        skg_cross(r.turn, f.at[k], relative);
+        for (int c = 0; c < 3; c++) relative[c] += r.still[c] + f.seen[k][2] * r.along[c];
         slopes[k] = skg_dot(normal, relative);
+        if (velocities->vertices)
+            slopes[k] += vertex_moves(faces, velocities, faces->corners[3 * face + k], normal);
     }
     return skg_steep_spread(faces->camera, f.seen, faces->weigh, faces->weigh_user, slopes, values);
 }

@@ -16,14 +16,28 @@ typedef struct {
 /* Whether a part moves against the rays: most directions move one part of many. */
 int skg_slopes_move(const skg_velocities *velocities);
 
-/* Fills the slopes at the corners of faces `first` to end - 1 of a part, slopes[triangles][3]: n . (v - ray) / (h t_k) with the velocity v of the corner and
- * that of the ray there; with a parallel beam n . (v - ray) / (n . d). Times `factor`.
- *
- * edge_on   [triangles] result: 1 for faces that are seen as lines, whose slopes are 0: skg_slopes_spread adds them. They are those
- *           of kernels/gradient.cl, and a few that are slightly wider
- * rounding  of the places of corners on the device, relative */
-void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities, double factor,
-                     double rounding, int64_t first, int64_t end, double *slopes, uint8_t *edge_on);
+/* What the slopes of a part have in common along all directions, with vertices in the device's numbering. */
+typedef struct {
+    double (*at)[3];    /* [vertices] in the world */
+    double (*pixel)[2]; /* [vertices] column and row */
+    double *inverse;    /* [vertices] 1 / t; with a parallel beam t */
+    double (*pull)
+        [3]; /* [faces] the normal over h, or over n . d; 0 for faces that are seen as lines or contain the source */
+    uint8_t *edge_on; /* [faces] 1: it is seen as a line, and skg_slopes_spread adds it. They are those of
+                            * kernels/gradient.cl, and a few that are slightly wider */
+} skg_seen_faces;
+
+/* Fills vertices `first` to end - 1. */
+void skg_slopes_see_vertices(const skg_face_moments *faces, int64_t first, int64_t end, skg_seen_faces *seen);
+
+/* Fills faces `first` to end - 1 when all vertices are. rounding: of the places of corners on the device, relative */
+void skg_slopes_see_faces(const skg_face_moments *faces, double rounding, int64_t first, int64_t end,
+                          skg_seen_faces *seen);
+
+/* The slopes at the corners of faces `first` to end - 1, times `factor`; slopes: [end - first][3] n . (v - ray) / (h t_k) with the
+ * velocity v of the corner and that of the ray there; with a parallel beam n . (v - ray) / (n . d). Those that are not finite are 0. */
+void skg_slopes_find(const skg_face_moments *faces, const skg_velocities *velocities,
+                     const skg_seen_faces *seen, double factor, int64_t first, int64_t end, double *slopes);
 
 /* Adds the derivatives of the means of pixels by a face that is seen as a line, with the weights of `faces`.
  * values: [camera->rows][camera->columns] */

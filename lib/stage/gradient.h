@@ -79,18 +79,6 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
                                const skg_hits_memory *hits, const skg_surroundings *around,
                                skg_gradient_memory *memory, skg_staging *staging, skg_gathered *gathered);
 
-/* Adds up the derivatives of the rays of a pass, and waits for them.
- *
- * moves       [parts] 0: the part does not, and its slopes are not looked at
- * slopes      [triangles][3] of the path parameter over the square of t, at the corners, times the part's reference; in the
- *             device's order. Those above 2^24 times their mean are cut off there, because sums are 64-bit integers
- * values      [rows][columns] result
- * saturated   the number of faces that were cut off is added to it */
-skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
-                                const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, const uint8_t *moves, double *slopes, double *values,
-                                int64_t *saturated);
-
 /* Reals in the precision of a pass. */
 typedef struct {
     void *memory;
@@ -101,6 +89,20 @@ static inline double skg_reals_at(const skg_reals *reals, int64_t index) {
     return reals->is_double ? ((const double *)reals->memory)[index]
                             : (double)((const float *)reals->memory)[index];
 }
+
+/* Memory for the slopes of a geometry's faces, on their way to the device: [triangles][3] of the path parameter over the square of t, at the
+ * corners, times the part's reference; in the device's order. */
+skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradient_memory *memory,
+                                       skg_reals *slopes);
+
+/* Adds up the derivatives of the rays of a pass by these slopes, and waits for them.
+ *
+ * moves     [parts] 0: the part does not, and its slopes are not looked at
+ * largest   the largest magnitude of the slopes of parts that move
+ * values    [rows][columns] to which they are added */
+skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
+                                const skg_hits_memory *hits, skg_gradient_memory *memory,
+                                skg_staging *staging, const uint8_t *moves, double largest, double *values);
 
 /* Reads reals, from number `first` on, and waits. The caller frees their memory. */
 skg_status skg_gradient_read_reals(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,

@@ -69,10 +69,6 @@ void skg_gradient_find_scales(const skg_gather_run *run, const double *most, con
 double skg_gradient_find_scale(const skg_gather_run *run, const double *most, const uint8_t *moves,
                                double slope, double *scales);
 
-/* Cuts the slopes of the parts that move off at 2^24 times their mean, and returns the largest that is left. */
-double skg_gradient_cut_slopes(const skg_geometry *geometry, const uint8_t *moves, double *slopes,
-                               int64_t *saturated);
-
 /* The first triangle of a part, over all parts, and that behind its last: those of the part before end where it begins. */
 static inline int64_t skg_gradient_part_end(const skg_geometry *geometry, int64_t part, int64_t first) {
     return first + geometry->layouts[geometry->mesh_of_part[part]].triangles;

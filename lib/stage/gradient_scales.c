@@ -92,27 +92,6 @@ void skg_gradient_find_scales(const skg_gather_run *run, const double *most, con
     }
 }
 
-double skg_gradient_cut_slopes(const skg_geometry *geometry, const uint8_t *moves, double *slopes,
-                               int64_t *saturated) {
-    double sum = 0, largest = 0;
-    int64_t used = 0;
-    for (int64_t p = 0, i = 0; p < geometry->parts; p++) {
-        const int64_t end = 3 * skg_gradient_part_end(geometry, p, i / 3);
-        for (; moves[p] && i < end; i++) sum += fabs(slopes[i]), used += slopes[i] != 0;
-        i = end;
-    }
-    const double most = used ? ldexp(sum / (double)used, 24) : 0;
-    for (int64_t p = 0, i = 0; p < geometry->parts; p++) {
-        const int64_t end = 3 * skg_gradient_part_end(geometry, p, i / 3);
-        for (; moves[p] && i < end; i++) {
-            if (fabs(slopes[i]) > most) slopes[i] = copysign(most, slopes[i]), ++*saturated;
-            largest = fmax(largest, fabs(slopes[i]));
-        }
-        i = end;
-    }
-    return largest;
-}
-
 /* At most 2^12 of the largest hits meet in a pixel: a hit stays below 2^50. */
 double skg_gradient_find_scale(const skg_gather_run *run, const double *most, const uint8_t *moves,
                                double slope, double *scales) {

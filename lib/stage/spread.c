@@ -1,7 +1,7 @@
 /* The derivatives of pixels along a direction: the forward counterpart of gather.c. */
 #include "stage/gradient_private.h"
 
-#include "core/maths.h"
+#include "core/threads.h"
 
 #include <skiagraph/plan.h>
 
@@ -21,20 +21,30 @@ static int64_t count_workers(const skg_gather_run *run, const skg_weight_layout 
     return info->gpu || 4 * units < info->compute_units ? 0 : units;
 }
 
-/* Enqueues the upload of the slopes of the parts that move, from memory that stays. */
-static skg_status upload_slopes(const skg_gather_run *run, const uint8_t *moves, const double *slopes) {
+skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradient_memory *memory,
+                                       skg_reals *slopes) {
+    slopes->is_double = geometry->precision == SKG_PRECISION_DOUBLE;
+    const size_t row = 3 * (slopes->is_double ? sizeof(double) : sizeof(float));
+    if (!memory->reals) SKG_TRY(skg_alloc(geometry->triangles, row, "derivative", &memory->reals));
+    slopes->memory = memory->reals;
+    return SKG_OK;
+}
+
+/* Enqueues the upload of the slopes of the parts that move, those of neighbours together, from memory that stays. */
+static skg_status upload_slopes(const skg_gather_run *run, const uint8_t *moves) {
     const skg_geometry *geometry = run->geometry;
     skg_gradient_memory *m = run->memory;
     const size_t row = 3 * (run->is_double ? sizeof(double) : sizeof(float));
     SKG_TRY(skg_gather_reserve(run, &m->faces, geometry->triangles * (int64_t)row));
-    if (!m->reals) SKG_TRY(skg_alloc(geometry->triangles, row, "derivative", &m->reals));
     for (int64_t p = 0, first = 0, end; p < geometry->parts; p++, first = end) {
         end = skg_gradient_part_end(geometry, p, first);
-        if (!moves[p] || end == first) continue;
-        skg_gather_round(run, 3 * first, 3 * (end - first), slopes + 3 * first, m->reals);
+        if (!moves[p]) continue;
+        for (; p + 1 < geometry->parts && moves[p + 1]; p++)
+            end = skg_gradient_part_end(geometry, p + 1, end);
+        if (end == first) continue;
         SKG_CL_TRY(clEnqueueWriteBuffer(run->context->device->queue, m->faces.memory, CL_FALSE,
                                         (size_t)first * row, (size_t)(end - first) * row,
-                                        (char *)m->reals + (size_t)first * row, 0, NULL, NULL));
+                                        (const char *)m->reals + (size_t)first * row, 0, NULL, NULL));
     }
     return SKG_OK;
 }
@@ -77,32 +87,47 @@ static skg_status run_hits(const skg_gather_run *run, int64_t copies) {
     return skg_gather_faces(run);
 }
 
-/* Reads the sums of all copies as derivatives. */
-static skg_status read_pixels(const skg_gather_run *run, int64_t copies, double scale, double *values) {
-    const int64_t columns = run->pass->camera.columns, rows = run->pass->camera.rows, size = sums_of(run);
-    const double unit = 1 / scale; /* a power of two */
-    int64_t *sums = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(copies * size, sizeof *sums, "derivative", &sums));
-    SKG_CL_CLEANUP(clEnqueueReadBuffer(run->context->device->queue, run->memory->moments.memory, CL_TRUE, 0,
-                                       (size_t)(copies * size) * sizeof *sums, sums, 0, NULL, NULL));
-    for (int64_t r = 0; r < rows; r++) {
-        int64_t *row = sums + r * run->args.stride;
-        for (int64_t k = 1; k < copies; k++)
-            for (int64_t c = 0; c < columns; c++) row[c] += row[k * size + c];
-        for (int64_t c = 0; c < columns; c++) values[r * columns + c] = (double)row[c] * unit;
+/* The sums of all copies, on the host. */
+typedef struct {
+    const skg_gather_run *run;
+    int64_t copies;
+    double unit;
+    const int64_t *sums;
+    double *values;
+} pixel_sums;
+
+static skg_status add_row(void *user, int64_t row) {
+    const pixel_sums *s = user;
+    const int64_t columns = s->run->pass->camera.columns, size = sums_of(s->run);
+    const int64_t *from = s->sums + row * s->run->args.stride;
+    double *to = s->values + row * columns;
+    for (int64_t c = 0; c < columns; c++) {
+        int64_t sum = from[c];
+        for (int64_t k = 1; k < s->copies; k++) sum += from[k * size + c];
+        to[c] += (double)sum * s->unit;
     }
-cleanup:
-    skg_free(&sums);
+    return SKG_OK;
+}
+
+/* Adds the sums of all copies as derivatives. */
+static skg_status read_pixels(const skg_gather_run *run, int64_t copies, double scale, double *values) {
+    cl_command_queue queue = run->context->device->queue;
+    const size_t bytes = (size_t)(copies * sums_of(run)) * sizeof(int64_t);
+    pixel_sums sums = {.run = run, .copies = copies, .unit = 1 / scale, .values = values};
+    cl_int code = CL_SUCCESS;
+    void *mapped = clEnqueueMapBuffer(queue, run->memory->moments.memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0,
+                                      NULL, NULL, &code);
+    SKG_CL_TRY(code);
+    sums.sums = mapped;
+    const skg_status status = skg_parallel(run->pass->camera.rows, add_row, &sums);
+    SKG_CL_TRY(clEnqueueUnmapMemObject(queue, run->memory->moments.memory, mapped, 0, NULL, NULL));
     return status;
 }
 
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, const uint8_t *moves, double *slopes, double *values,
-                                int64_t *saturated) {
+                                skg_staging *staging, const uint8_t *moves, double largest, double *values) {
     skg_gather_run run = skg_gather_of(pass, geometry, hits, memory, staging);
-    const int64_t pixels = pass->camera.rows * pass->camera.columns;
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     double *most = NULL, *scales = NULL;
     run.forward = 1;
@@ -111,13 +136,11 @@ skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geomet
     SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "derivative", &most));
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "derivative", &scales));
     SKG_TRY(skg_gather_find_max(&run, most));
-    const double slope = skg_gradient_cut_slopes(geometry, moves, slopes, saturated);
-    const double scale = skg_gradient_find_scale(&run, most, moves, slope, scales);
-    for (int64_t p = 0; p < pixels; p++) values[p] = 0;
+    const double scale = skg_gradient_find_scale(&run, most, moves, largest, scales);
     if (scale == 0) return SKG_OK;
     const int64_t copies = run.workers > 0 ? run.workers : 1;
     SKG_TRY(skg_gather_upload_scales(&run, pass->scene->count, scales));
-    SKG_TRY(upload_slopes(&run, moves, slopes));
+    SKG_TRY(upload_slopes(&run, moves));
     SKG_TRY(run_hits(&run, copies));
     return read_pixels(&run, copies, scale, values);
 }

@@ -139,21 +139,35 @@ typedef struct {
 
 SKG_INIT(skg_direction)
 
-/** Starts the derivative of a frame's image along a direction: a job as skg_plan_gradient_submit starts.
+/** Starts the derivatives of a frame's image along directions, of which further ones cost less than the first: a job as
+ * skg_plan_gradient_submit starts.
  *
- *     frame        NULL: as plan and scene stand
- *     direction    what moves or changes; it may be changed when the call returns
- *     derivative   result, when the job was waited for: [channels][rows][columns], in the plan's quantity for a unit of the direction
- *     saturated    result: number of slopes of faces at their corners that were cut off at 2^24 times the mean slope, because the
- *                  sums over hits are 64-bit integers; may be NULL
- *     limits       as above: faces that contain rays change the means of their pixels
- *     job          result
- *     errors       as of skg_plan_gradient_submit; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
+ *     frame         NULL: as plan and scene stand
+ *     count         of directions, at least 1
+ *     directions    [count] what moves or changes; they may be changed when the call returns
+ *     derivatives   result, when the job was waited for: [directions][channels][rows][columns], in the plan's quantity for a unit of
+ *                   the direction. The job writes there until then. Undefined if it fails or was cancelled
+ *     saturated     result: [directions] number of slopes of faces at their corners that were cut off at 2^24 times the mean
+ *                   slope, because the sums over hits are 64-bit integers; may be NULL
+ *     limits        as above: faces that contain rays change the means of their pixels
+ *     job           result
+ *     errors        as of skg_plan_gradient_submit; SKG_ERR_ARGUMENT for fewer than one direction and for numbers that are not
+ *                   finite; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
+SKG_API skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, int64_t count,
+                                               const skg_direction *directions, double *derivatives,
+                                               int64_t *saturated, skg_job **job);
+
+/** Makes the derivatives of a frame's image along directions: skg_plan_derivatives_submit and skg_job_wait. */
+SKG_API skg_status skg_plan_derivatives(skg_plan *plan, const skg_frame *frame, int64_t count,
+                                        const skg_direction *directions, double *derivatives,
+                                        int64_t *saturated);
+
+/** Starts the derivative along one direction: skg_plan_derivatives_submit with a count of 1. */
 SKG_API skg_status skg_plan_derivative_submit(skg_plan *plan, const skg_frame *frame,
                                               const skg_direction *direction, double *derivative,
                                               int64_t *saturated, skg_job **job);
 
-/** Makes the derivative of a frame's image along a direction: skg_plan_derivative_submit and skg_job_wait. */
+/** Makes the derivative along one direction: skg_plan_derivatives with a count of 1. */
 SKG_API skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                        double *derivative, int64_t *saturated);
 
