@@ -57,18 +57,35 @@ class Differentiable:
         with self._state.calls():
             return _gradient(self._state, given, list(wrt), {"quantity": quantity, **options})
 
-    def derivative(self, direction: Mapping[str, Any], quantity: str | None = None, **options: Any) -> NDArray[np.float64]:
+    def derivative(self, direction: Mapping[str, Any] | Sequence[Mapping[str, Any]], quantity: str | None = None,
+                   **options: Any) -> NDArray[np.float64]:
         """The derivative of the image along a direction, [row, column], with bands [band, row, column].
 
         direction: {"poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label: [n, 3]}, "density": {label:
         number}, "mu": {label: [energies]}}, of which any may be missing: how fast each moves or changes, in the units of
-        gradient(), whose results have the same shapes. quantity and options: of the image. The rest is as in gradient().
+        gradient(), whose results have the same shapes. Of a list of directions the result is [direction, ...]; further ones cost
+        less than the first. quantity and options: of the image. The rest is as in gradient().
+
+        >>> import skiagraph as sk
+        >>> scene = sk.Scene()
+        >>> ball = scene.add("ball", sk.Mesh.sphere(40, 64), material="water")
+        >>> scene.view = sk.View(source=(0, 0, -1000), detector=(0, 0, 200), column_step=(2, 0, 0), row_step=(0, 2, 0),
+        ...                      pixels=(64, 64))
+        >>> scene.beam = sk.Beam.mono(60, 1000)
+        >>> scene.derivative([{"source": [1, 0, 0]}, {"density": {"ball": 0.01}}]).shape
+        (2, 64, 64)
         """
-        for name in direction:
-            if name not in NAMES:
-                raise ArgumentError(f"the direction has {name!r}; it is made of {', '.join(map(repr, NAMES))}")
+        is_one = isinstance(direction, Mapping)
+        directions = [direction] if is_one else list(direction)
+        for one in directions:
+            for name in one:
+                if name not in NAMES:
+                    raise ArgumentError(f"the direction has {name!r}; it is made of {', '.join(map(repr, NAMES))}")
+        if not directions:
+            raise ArgumentError("derivative() has a list of no directions; it needs one at least")
         with self._state.calls():
-            return _derivative(self._state, direction, {"quantity": quantity, **options})
+            found = _derivatives(self._state, directions, {"quantity": quantity, **options})
+        return found[0] if is_one else found
 
 
 def _pointer(array: NDArray[np.float64]) -> Any:
@@ -119,39 +136,57 @@ def _vector(value: Any, shape: tuple[int, ...], what: str) -> NDArray[np.float64
     return array
 
 
-def _derivative(state: State, direction: Mapping[str, Any], options: dict[str, Any]) -> NDArray[np.float64]:
-    parts = state.parts()
-    given = struct("skg_direction")
-    poses, keep = np.zeros((len(parts), 6)), [ffi.new("double *[]", len(parts))]
-    for label, twist in direction.get("poses", {}).items():
-        poses[state.number(label)] = _vector(twist, (6,), f"poses[{label!r}]")
-    given.poses = _pointer(poses)
-    for name, size in (("source", 3), ("detector", 6)):
-        if direction.get(name) is not None:
-            keep.append(_vector(direction[name], (size,), name))
-            setattr(given, name, _pointer(keep[-1]))
-    for label, moves in direction.get("vertices", {}).items():
-        number = state.number(label)
-        keep.append(_vector(moves, parts[number].mesh.vertices.shape, f"vertices[{label!r}]"))
-        keep[0][number] = _pointer(keep[-1])
-    given.vertices = ffi.cast("double **", keep[0])
-    if "density" in direction:
-        keep.append(np.zeros(len(parts)))
-        for label, change in direction["density"].items():
-            keep[-1][state.number(label)] = float(change)
-        given.densities = _pointer(keep[-1])
+class _Direction:
+    """A direction as C has it: fills `given`, and keeps the memory behind it."""
+
+    def __init__(self, state: State, direction: Mapping[str, Any], given: Any) -> None:
+        parts = state.parts()
+        self._labels, self._number, self._direction, self._given = len(parts), state.number, direction, given
+        poses, vertices = np.zeros((len(parts), 6)), ffi.new("double *[]", len(parts))
+        self._keep: list[Any] = [poses, vertices]
+        for label, twist in direction.get("poses", {}).items():
+            poses[state.number(label)] = _vector(twist, (6,), f"poses[{label!r}]")
+        given.poses = _pointer(poses)
+        for name, size in (("source", 3), ("detector", 6)):
+            if direction.get(name) is not None:
+                setattr(given, name, self._take(_vector(direction[name], (size,), name)))
+        for label, moves in direction.get("vertices", {}).items():
+            number = state.number(label)
+            vertices[number] = self._take(_vector(moves, parts[number].mesh.vertices.shape, f"vertices[{label!r}]"))
+        given.vertices = ffi.cast("double **", vertices)
+        if "density" in direction:
+            densities = np.zeros(len(parts))
+            for label, change in direction["density"].items():
+                densities[state.number(label)] = float(change)
+            given.densities = self._take(densities)
+
+    def _take(self, array: NDArray[np.float64]) -> Any:
+        self._keep.append(array)
+        return _pointer(array)
+
+    def set_nodes(self, nodes: int) -> None:
+        """Fills what depends on the energies of a plan."""
+        self._given.nodes = nodes
+        if "mu" not in self._direction:
+            return
+        coefficients = np.zeros((self._labels, nodes))
+        for label, change in self._direction["mu"].items():
+            coefficients[self._number(label)] = _vector(change, (nodes,), f"mu[{label!r}]")
+        self._given.attenuations = self._take(coefficients)
+
+
+def _derivatives(state: State, directions: list[Mapping[str, Any]], options: dict[str, Any]) -> NDArray[np.float64]:
+    given = struct("skg_direction", len(directions))
+    filled = [_Direction(state, direction, given[k]) for k, direction in enumerate(directions)]
     bands = options.get("bands")
     shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
-    found = np.empty(shape)
+    found = np.empty((len(directions), *shape))
 
     def start(plan: Any, frame: Any, job: Any) -> int:
-        given.nodes = integer("skg_plan_node_count", plan)
-        coefficients = np.zeros((len(parts), given.nodes))
-        for label, change in direction.get("mu", {}).items():
-            coefficients[state.number(label)] = _vector(change, (given.nodes,), f"mu[{label!r}]")
-        if "mu" in direction:
-            given.attenuations = _pointer(coefficients)
-        return int(lib.skg_plan_derivative_submit(plan, frame, given, _pointer(found), ffi.NULL, job))
+        nodes = integer("skg_plan_node_count", plan)
+        for one in filled:
+            one.set_nodes(nodes)
+        return int(lib.skg_plan_derivatives_submit(plan, frame, len(directions), given, _pointer(found), ffi.NULL, job))
 
     _run(state, options, start, False, lambda: found)
     return found

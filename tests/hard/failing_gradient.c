@@ -45,11 +45,12 @@ static skg_status along_a_direction(skg_plan *plan, float *image) {
     static const double twists[PARTS][6] = {{0}, {0.1, 0, 0.2, 0, 0.01, 0}};
     static const double away[3] = {0, -1, 0};
     static const double changes[PARTS] = {0, 1, 0};
-    static double ones[3 * VERTICES], derivative[CHANNELS * PIXELS], coefficients[PARTS * NODES];
+    static double ones[3 * VERTICES], derivatives[2 * CHANNELS * PIXELS], coefficients[PARTS * NODES];
     const double *const of_parts[PARTS] = {NULL, ones, NULL};
-    int64_t saturated = 0;
-    skg_direction direction;
+    int64_t saturated[2];
+    skg_direction directions[2], direction;
     skg_direction_init(&direction);
+    skg_direction_init(&directions[1]);
     for (int k = 0; k < 3 * VERTICES; k++) ones[k] = 1;
     direction.poses = *twists;
     direction.vertices = of_parts;
@@ -59,8 +60,10 @@ static skg_status along_a_direction(skg_plan *plan, float *image) {
     if (direction.nodes > NODES) return SKG_ERR_ARGUMENT;
     coefficients[direction.nodes] = 0.01; /* of part 1 at the first energy */
     direction.attenuations = coefficients;
-    TRY(skg_plan_derivative(plan, NULL, &direction, derivative, &saturated));
-    for (int i = 0; i < PIXELS; i++) image[i] = (float)derivative[i];
+    directions[0] = direction;
+    directions[1].poses = *twists;
+    TRY(skg_plan_derivatives(plan, NULL, 2, directions, derivatives, saturated));
+    for (int i = 0; i < PIXELS; i++) image[i] = (float)derivatives[i];
     return SKG_OK;
 }
 

@@ -98,6 +98,21 @@ def test_forward_and_reverse_agree(scene):
     assert both == pytest.approx(float((along * given).sum()), rel=1e-7, abs=1e-7 * np.abs(along * given).sum())
 
 
+def test_a_list_of_directions_has_the_bits_of_each(scene):
+    directions = [{"poses": {"inner": [1, 0, 0, 0, 0, 0.01]}}, {"source": [0, 1, 0]}, {"density": {"outer": 0.1}},
+                  {"mu": {"inner": [0.01, 0, 0.02]}}]
+    scene.beam = sk.Beam([40, 60, 90], [50, 80, 30])
+    together = scene.derivative(directions, quantity="attenuation")
+    assert together.shape == (4, 24, 32)
+    for one, found in zip(directions, together):
+        assert np.array_equal(scene.derivative(one, quantity="attenuation"), found) and found.any()
+    assert scene.derivative(tuple(directions[:1]), quantity="attenuation").shape == (1, 24, 32)
+    with pytest.raises(sk.ArgumentError, match="no directions"):
+        scene.derivative([])
+    with pytest.raises(sk.ArgumentError, match="direction 1's source is nan"):
+        scene.derivative([{"source": [0, 0, 1]}, {"source": [0, 0, float("nan")]}])
+
+
 def test_what_is_wrong_is_said(scene):
     with pytest.raises(sk.ArgumentError, match="'colour'"):
         scene.derivative({"colour": {"inner": 1}})

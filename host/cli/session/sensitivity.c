@@ -33,7 +33,7 @@ static void find_largest(const double gram[3][3], double direction[3]) {
     for (int k = 0; k < 3; k++) direction[k] = size > 0 ? power[k][column] / size : k == 0;
 }
 
-/* One measurement. images: [3][values] */
+/* One measurement. twists: [3][parts][6]; images: [3][values] */
 typedef struct {
     skg_plan *plan;
     const skg_frame *frame;
@@ -45,16 +45,18 @@ typedef struct {
 
 /* The derivatives of the image by one part's place along x, y and z. */
 static skg_status differentiate(const measuring *m, int64_t part) {
-    skg_direction direction;
-    skg_status status = SKG_OK;
-    skg_direction_init(&direction);
-    direction.poses = m->twists;
-    for (int k = 0; k < 3 && status == SKG_OK; k++) {
-        int64_t cut = 0;
-        m->twists[6 * part + k] = 1;
-        status = skg_plan_derivative(m->plan, m->frame, &direction, m->images + k * m->values, &cut);
-        m->twists[6 * part + k] = 0;
-        m->found->saturated += cut;
+    skg_direction directions[3];
+    int64_t cut[3] = {0};
+    for (int k = 0; k < 3; k++) {
+        double *twists = m->twists + 6 * k * m->found->count;
+        skg_direction_init(&directions[k]);
+        directions[k].poses = twists;
+        twists[6 * part + k] = 1;
+    }
+    const skg_status status = skg_plan_derivatives(m->plan, m->frame, 3, directions, m->images, cut);
+    for (int k = 0; k < 3; k++) {
+        m->twists[6 * (k * m->found->count + part) + k] = 0;
+        m->found->saturated += cut[k];
     }
     return status;
 }
@@ -108,7 +110,7 @@ static int allocate(const cli_session *session, measuring *m) {
     if (status == SKG_OK) status = skg_plan_channel_count(m->plan, &channels);
     if (status != SKG_OK) return cli_fail(status);
     m->values = channels * session->view.columns * session->view.rows;
-    m->twists = calloc(6 * (size_t)found->count + 1, sizeof *m->twists);
+    m->twists = calloc(18 * (size_t)found->count + 1, sizeof *m->twists);
     m->images = calloc(3 * (size_t)m->values, sizeof *m->images);
     found->parts = calloc((size_t)found->count + 1, sizeof *found->parts);
     if (m->twists && m->images && found->parts) return CLI_DONE;

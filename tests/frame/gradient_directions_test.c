@@ -1,0 +1,120 @@
+/* Derivatives along several directions at once are those along each alone, bit by bit. */
+#include "gradients.h"
+
+#include <math.h>
+#include <string.h>
+
+enum { DIRECTIONS = 8, NODES_MAX = 32 };
+
+static const setting settings[] = {
+    {.name = "one energy"},
+    {.name = "priority", .priority = 1, .colours = 1, .quantity = SKG_QUANTITY_ATTENUATION},
+    {.name = "a hole by priority", .priority = 1, .hole = 1, .world = 1, .colours = 1},
+    {.name = "nested, bands", .nested = 1, .bands = 2, .colours = 1},
+    {.name = "parallel", .parallel = 1, .nested = 1},
+    {.name = "spot, supersampling, falloff", .spot = 1, .supersampling = 2, .falloff = 1, .priority = 1},
+    {.name = "blur", .blur = 1, .colours = 1, .quantity = SKG_QUANTITY_ATTENUATION},
+    {.name = "tolerance", .tolerance = 1e-3, .colours = 1, .nested = 1},
+};
+enum { SETTINGS = sizeof settings / sizeof *settings };
+
+/* What the directions have. */
+static double poses[DIRECTIONS][PARTS][6], coefficients[PARTS * NODES_MAX], changes[PARTS];
+static double source[3] = {0.3, -0.2, 1}, detector[6] = {0, 0, 1, 1e-3, 0, 2e-3};
+static double moves[3 * 4096];
+static const double *vertices[PARTS];
+
+/* A part, another one with the source, the detector, vertices, matter, both with a pose, nothing, and the first once more. */
+static void make_directions(skg_plan *plan, skg_direction *directions) {
+    int64_t nodes = 0;
+    ck_skg(skg_plan_node_count(plan, &nodes));
+    ck_assert_int_le(nodes, NODES_MAX);
+    memset(poses, 0, sizeof poses);
+    memset(vertices, 0, sizeof vertices);
+    for (int i = 0; i < 3 * 4096; i++) moves[i] = sin(i);
+    for (int i = 0; i < PARTS * NODES_MAX; i++) coefficients[i] = 1e-3 * cos(i);
+    for (int d = 0; d < DIRECTIONS; d++) skg_direction_init(&directions[d]);
+    poses[0][0][0] = poses[1][1][4] = poses[5][0][2] = poses[7][0][0] = 1;
+    changes[0] = 0.5;
+    vertices[1] = moves;
+    directions[0].poses = poses[0][0];
+    directions[1].poses = poses[1][0], directions[1].source = source;
+    directions[2].detector = detector;
+    directions[3].vertices = vertices;
+    directions[4].densities = changes;
+    directions[5].poses = poses[5][0], directions[5].densities = changes;
+    directions[5].attenuations = coefficients, directions[5].nodes = nodes;
+    directions[6].poses = poses[6][0];
+    directions[7].poses = poses[7][0];
+}
+
+START_TEST(together_they_have_the_bits_of_each) {
+    static double together[DIRECTIONS * CHANNELS_MAX * PIXELS], alone[CHANNELS_MAX * PIXELS];
+    const setting *set = &settings[_i / 2];
+    const int32_t precision = _i % 2 ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
+    const int64_t size = (set->bands ? set->bands : 1) * PIXELS;
+    skg_direction directions[DIRECTIONS];
+    int64_t saturated[DIRECTIONS];
+    result r;
+    if (precision == SKG_PRECISION_DOUBLE && !run_has_double()) return;
+    make_scene(set);
+    allocate(&r);
+    const skg_view view = make_view(set);
+    skg_plan *plan = make_plan(set, &view, precision, SKG_STRATEGY_AUTO);
+    make_directions(plan, directions);
+    memset(together, 0x55, sizeof together);
+    ck_skg(skg_plan_derivatives(plan, NULL, DIRECTIONS, directions, together, saturated));
+    for (int d = 0; d < DIRECTIONS; d++) {
+        int64_t cut = -1;
+        double largest = 0;
+        ck_skg(skg_plan_derivative(plan, NULL, &directions[d], alone, &cut));
+        ck_assert_int_eq(saturated[d], cut);
+        for (int64_t i = 0; i < size; i++) {
+            largest = fmax(largest, fabs(alone[i]));
+            ck_assert_msg(together[d * size + i] == alone[i],
+                          "%s, direction %d, value %d: %.17g, alone %.17g", set->name, d, (int)i,
+                          together[d * size + i], alone[i]);
+        }
+        ck_assert_msg((largest > 0) == (d != 6), "%s, direction %d: %g", set->name, d, largest);
+    }
+    skg_plan_release(&plan);
+    release(&r);
+}
+END_TEST
+
+START_TEST(what_is_wrong_is_said) {
+    static double found[3 * PIXELS];
+    const setting set = {.name = "one energy"};
+    skg_direction directions[3];
+    double bad[6] = {0, 0, 0, 0, NAN, 0};
+    skg_job *job = NULL;
+    result r;
+    make_scene(&set);
+    allocate(&r);
+    const skg_view view = make_view(&set);
+    skg_plan *plan = make_plan(&set, &view, SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
+    for (int d = 0; d < 3; d++) skg_direction_init(&directions[d]);
+    directions[2].detector = bad;
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 3, directions, found, NULL), SKG_ERR_ARGUMENT,
+                 "skg_plan_derivatives: number 4 of direction 2's detector is nan; it has to be finite");
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 0, directions, found, NULL), SKG_ERR_ARGUMENT,
+                 "skg_plan_derivatives: 0 directions; at least 1");
+    ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, -1, directions, found, NULL, &job), SKG_ERR_ARGUMENT,
+                 "skg_plan_derivatives_submit: -1 directions; at least 1");
+    ck_assert_ptr_null(job);
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, NULL, found, NULL), SKG_ERR_ARGUMENT,
+                 "skg_plan_derivatives: the argument directions is NULL");
+    ck_skg_fails(skg_plan_derivative(plan, NULL, &directions[2], found, NULL), SKG_ERR_ARGUMENT,
+                 "skg_plan_derivative: number 4 of the direction's detector is nan; it has to be finite");
+    skg_plan_release(&plan);
+    release(&r);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, run_open, run_close);
+    tcase_add_loop_test(tests, together_they_have_the_bits_of_each, 0, 2 * SETTINGS);
+    tcase_add_test(tests, what_is_wrong_is_said);
+}
+
+SKG_SUITE_MAIN("gradient_directions", add_tests)
