@@ -3,6 +3,9 @@
 #include "core/maths.h"
 #include "core/threads.h"
 
+#include <float.h>
+#include <math.h>
+
 #include <string.h>
 
 /* Faces that are added up together. The sums of chunks are added in their order, so that the number of threads changes no bit. */
@@ -15,17 +18,17 @@ typedef struct {
     double beam[3]; /* parallel: d */
 } local_camera;
 
-/* Sums over faces in the axes of a mesh and in units of a moment, of which those of the world follow: with V the sum of weight t^2 D, and
- * n over h. */
+/* Sums over faces in the axes of a mesh and in units of a moment, of which those of the world follow. With u = n / h, or n / n . d, the
+ * moments m of a face, its length s, t or t - 1 summed over its hits, and what it pushes. */
 typedef struct {
-    double length, force[3], along[3];
-    double turn[3][3];         /* of the place of a hit times what pushes it */
+    double length, push[3];    /* of s, of s u */
+    double moments[3][3];      /* of m u: [moment][axis] */
     skg_force_sums of_edge_on; /* in the world's axes */
 } local_sums;
 
-/* Consecutive faces of one part. */
+/* Consecutive faces of one part, or the vertices of one. */
 typedef struct {
-    int64_t part, first, end;
+    int64_t part, first, end, of_vertices;
     local_sums sums;
 } face_chunk;
 
@@ -147,75 +150,129 @@ void skg_face_planes_find(const skg_mesh *mesh, const int32_t *corners, const in
     }
 }
 
-/* A face seen from the camera's origin, with moments in their unit: of weight t^2, and of that times D; with a parallel beam of weight,
- * and of that times the pixel. inverse: 1 / h, of n . v_0, or of n . d with a parallel beam. */
-typedef struct {
-    double normal[3], height, inverse;
-    double moment, place[3];
-} seen_face;
+enum { BLOCK = 64, LANES = 4 }; /* faces that are worked out together; sums that do not wait for each other */
 
-static int see_face(const skg_face_moments *faces, const local_camera *camera, int64_t face, seen_face *f) {
-    const int64_t *moments = faces->moments + 4 * face;
-    const double *plane = faces->planes + 4 * face;
-    const double columns = (double)moments[1], rows = (double)moments[2];
-    f->height = plane[3] - skg_dot(plane, camera->origin);
-    f->inverse = 1 / (faces->camera->parallel ? skg_dot(plane, camera->beam) : f->height);
-    f->moment = (double)moments[0];
-    for (int c = 0; c < 3; c++) {
-        f->normal[c] = plane[c];
-        f->place[c] = f->moment * camera->first[c] + columns * camera->column[c] + rows * camera->row[c];
+/* Faces seen from the camera's origin, one a column: normals, then n / h, or n / n . d; moments, of weight t^2, and of that times D, or with
+ * a parallel beam of weight, and of that times the pixel; and lengths. */
+typedef struct {
+    double normal[3][BLOCK], moments[3][BLOCK], plane[BLOCK], length[BLOCK];
+} face_block;
+
+/* Takes faces `first` to end - 1. Those that rays contain, and what is behind the end, have moments of 0. Returns whether there are
+ * faces that rays contain. */
+static int take_block(const skg_face_moments *faces, int64_t first, int64_t end, face_block *block) {
+    int edges = 0;
+    for (int64_t i = 0; i < BLOCK; i++) {
+        const int64_t face = first + i < end ? first + i : end - 1;
+        const int64_t *moments = faces->moments + 4 * face;
+        const double *plane = faces->planes + 4 * face;
+        const int edge_on = moments[0] == SKG_EDGE_ON;
+        const double counts = first + i < end && !edge_on ? 1 : 0;
+        edges |= edge_on;
+        block->plane[i] = plane[3];
+        for (int c = 0; c < 3; c++) {
+            block->normal[c][i] = plane[c];
+            block->moments[c][i] = counts * (double)moments[c];
+        }
     }
-    return isfinite(f->inverse);
+    return edges;
 }
 
-/* The derivative by corner k is the normal over h times the sum of weight lambda_k t^2 / t_k. lambda_k / t_k is D . (v_i x v_j) over h,
+/* 1 / t = n . D / h; with a parallel beam t - 1 = n . (v_0 - p) / h, and hits lie behind their pixels by as much. Faces that
+ * contain the source push nothing. */
+static void see_block(const local_camera *camera, int parallel, face_block *block) {
+    const double *o = camera->origin, *d = camera->beam, *f = camera->first, *c = camera->column,
+                 *r = camera->row;
+    double *x = block->normal[0], *y = block->normal[1], *z = block->normal[2];
+    const double *m0 = block->moments[0], *m1 = block->moments[1], *m2 = block->moments[2];
+    const double sign = parallel ? -1 : 1, way = parallel ? 1 : 0;
+    for (int i = 0; i < BLOCK; i++) {
+        const double height = block->plane[i] - (x[i] * o[0] + y[i] * o[1] + z[i] * o[2]);
+        const double across = parallel ? x[i] * d[0] + y[i] * d[1] + z[i] * d[2] : height;
+        const double inverse = fabs(across) >= DBL_MIN ? 1 / across : 0;
+        const double to_first = x[i] * f[0] + y[i] * f[1] + z[i] * f[2];
+        const double to_column = x[i] * c[0] + y[i] * c[1] + z[i] * c[2];
+        const double to_row = x[i] * r[0] + y[i] * r[1] + z[i] * r[2];
+        const double depth = m0[i] * to_first + m1[i] * to_column + m2[i] * to_row;
+        block->length[i] = (sign * depth + way * (m0[i] * height)) * inverse;
+        x[i] *= inverse, y[i] *= inverse, z[i] *= inverse;
+    }
+}
+
+/* The sum of products, in lanes. */
+static double sum_products(const double a[BLOCK], const double b[BLOCK]) {
+    double lanes[LANES] = {0};
+    for (int i = 0; i < BLOCK; i += LANES)
+        for (int k = 0; k < LANES; k++) lanes[k] += a[i + k] * b[i + k];
+    return (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+}
+
+static void add_block(const face_block *block, local_sums *sums) {
+    double lanes[LANES] = {0};
+    for (int i = 0; i < BLOCK; i += LANES)
+        for (int k = 0; k < LANES; k++) lanes[k] += block->length[i + k];
+    sums->length += (lanes[0] + lanes[1]) + (lanes[2] + lanes[3]);
+    for (int c = 0; c < 3; c++) {
+        sums->push[c] += sum_products(block->length, block->normal[c]);
+        for (int m = 0; m < 3; m++) sums->moments[m][c] += sum_products(block->moments[m], block->normal[c]);
+    }
+}
+
+static skg_status add_faces(const skg_face_moments *faces, const local_camera *camera, int64_t first,
+                            int64_t end, local_sums *sums) {
+    face_block block;
+    const int edges = take_block(faces, first, end, &block);
+    for (int64_t f = first; edges && f < end; f++)
+        if (faces->moments[4 * f] == SKG_EDGE_ON) SKG_TRY(add_edge_on(faces, f, &sums->of_edge_on, NULL));
+    see_block(camera, faces->camera->parallel, &block);
+    add_block(&block, sums);
+    return SKG_OK;
+}
+
+/* --- vertices */
+
+/* The derivative by corner k is n over h times the sum of weight lambda_k t^2 / t_k. lambda_k / t_k is D . (v_i x v_j) over h,
  * with a parallel beam it is ((v_i - p) x (v_j - p)) . d over h; i and j are the other corners. */
 static void add_vertices(const skg_face_moments *faces, const local_camera *camera, int64_t face,
-                         const seen_face *f, double *vertices) {
-    double corner[3][3];
+                         double *vertices) {
+    const int64_t *moments = faces->moments + 4 * face;
+    const double *plane = faces->planes + 4 * face, moment = (double)moments[0];
+    const double height =
+        faces->camera->parallel ? skg_dot(plane, camera->beam) : plane[3] - skg_dot(plane, camera->origin);
+    double corner[3][3], place[3];
     int64_t number[3];
+    if (!(fabs(height) >= DBL_MIN)) return;
     for (int k = 0; k < 3; k++) {
         number[k] = vertex_of(faces, face, k);
-        skg_mesh_vertex(faces->mesh, number[k], corner[k]);
-        for (int c = 0; c < 3; c++) corner[k][c] -= camera->origin[c];
+        skg_mesh_vertex_from(faces->mesh, number[k], camera->origin, corner[k]);
+        place[k] = moment * camera->first[k] + (double)moments[1] * camera->column[k] +
+                   (double)moments[2] * camera->row[k];
     }
-    const double unit = faces->unit * f->inverse * f->inverse;
+    const double unit = faces->unit / (height * height);
     for (int k = 0; k < 3; k++) {
         const double *a = corner[(k + 1) % 3], *b = corner[(k + 2) % 3];
         double across[3], side[3], turned[3];
         skg_cross(a, b, across);
-        double share = skg_dot(f->place, across);
+        double share = skg_dot(place, across);
         if (faces->camera->parallel) {
             skg_add_scaled(b, -1, a, side);
             skg_cross(side, camera->beam, turned);
-            share = skg_dot(across, camera->beam) * f->moment - skg_dot(f->place, turned);
+            share = skg_dot(across, camera->beam) * moment - skg_dot(place, turned);
         }
         double *at = vertices + 3 * number[k];
-        for (int c = 0; c < 3; c++) at[c] += f->normal[c] * (share * unit);
+        for (int c = 0; c < 3; c++) at[c] += plane[c] * (share * unit);
     }
 }
 
-static skg_status add_face(const skg_face_moments *faces, const local_camera *camera, int64_t face,
-                           local_sums *sums, double *vertices) {
-    const int64_t *moments = faces->moments + 4 * face;
-    const int parallel = faces->camera->parallel;
-    seen_face f;
-    if (!(moments[0] | moments[1] | moments[2])) return SKG_OK;
-    if (moments[0] == SKG_EDGE_ON) return add_edge_on(faces, face, &sums->of_edge_on, vertices);
-    if (!see_face(faces, camera, face, &f)) return SKG_OK;
-    if (vertices) add_vertices(faces, camera, face, &f, vertices);
-    /* 1 / t = n . D / h; with a parallel beam t - 1 = n . (v_0 - p) / h, and hits lie behind their pixels by as much. */
-    const double depth = skg_dot(f.normal, f.place) * f.inverse;
-    const double behind = parallel ? f.moment * f.height * f.inverse - depth : 0;
-    const double force = (parallel ? f.moment : depth) * f.inverse;
-    const double along = (parallel ? behind : f.moment) * f.inverse;
-    if (parallel) skg_add_scaled(f.place, behind, camera->beam, f.place);
-    sums->length += parallel ? behind : depth;
-    for (int r = 0; r < 3; r++) f.place[r] *= f.inverse;
-    for (int c = 0; c < 3; c++) {
-        sums->force[c] += force * f.normal[c];
-        sums->along[c] += along * f.normal[c];
-        for (int r = 0; r < 3; r++) sums->turn[r][c] += f.place[r] * f.normal[c];
+/* Those of a part, whose faces share vertices. */
+static skg_status add_part(const skg_face_moments *faces, const local_camera *camera, double *vertices) {
+    skg_force_sums again; /* of faces that rays contain, which add_faces has */
+    for (int64_t f = 0; f < faces->mesh->triangles; f++) {
+        const int64_t *moments = faces->moments + 4 * f;
+        if (moments[0] == SKG_EDGE_ON)
+            SKG_TRY(add_edge_on(faces, f, &again, vertices));
+        else if (moments[0] | moments[1] | moments[2])
+            add_vertices(faces, camera, f, vertices);
     }
     return SKG_OK;
 }
@@ -223,25 +280,31 @@ static skg_status add_face(const skg_face_moments *faces, const local_camera *ca
 static skg_status add_chunk(void *user, int64_t number) {
     const forces_run *run = user;
     face_chunk *chunk = &run->chunks[number];
-    double *vertices = run->vertices ? run->vertices[chunk->part] : NULL;
-    for (int64_t f = chunk->first; f < chunk->end; f++)
-        SKG_TRY(add_face(&run->parts[chunk->part], &run->cameras[chunk->part], f, &chunk->sums, vertices));
+    const skg_face_moments *faces = &run->parts[chunk->part];
+    const local_camera *camera = &run->cameras[chunk->part];
+    if (chunk->of_vertices) return add_part(faces, camera, run->vertices[chunk->part]);
+    for (int64_t f = chunk->first; f < chunk->end; f += BLOCK)
+        SKG_TRY(add_faces(faces, camera, f, f + BLOCK < chunk->end ? f + BLOCK : chunk->end, &chunk->sums));
     return SKG_OK;
 }
 
 /* --- the parts */
 
-/* Divides the faces of the parts into chunks, which may be NULL. Those of a part whose vertices are wanted are one, since they
- * share vertices. Returns their number. */
+/* Lists what is done by itself, in chunks, which may be NULL: first the vertices of parts, then the sums over faces. Returns its
+ * number. */
 static int64_t divide(int64_t count, const forces_run *run, face_chunk *chunks) {
     int64_t made = 0;
+    for (int64_t p = 0; run->vertices && p < count; p++)
+        if (run->vertices[p] && run->parts[p].moments) {
+            if (chunks) chunks[made] = (face_chunk){.part = p, .of_vertices = 1};
+            made++;
+        }
     for (int64_t p = 0; p < count; p++) {
         const int64_t triangles = run->parts[p].moments ? run->parts[p].mesh->triangles : 0;
-        const int64_t size = run->vertices && run->vertices[p] ? triangles : CHUNK;
-        for (int64_t first = 0; first < triangles; first += size, made++)
+        for (int64_t first = 0; first < triangles; first += CHUNK, made++)
             if (chunks)
                 chunks[made] = (face_chunk){
-                    .part = p, .first = first, .end = first + size < triangles ? first + size : triangles};
+                    .part = p, .first = first, .end = first + CHUNK < triangles ? first + CHUNK : triangles};
     }
     return made;
 }
@@ -250,14 +313,22 @@ static int64_t divide(int64_t count, const forces_run *run, face_chunk *chunks) 
 static void add_sums(const local_sums *more, const skg_face_moments *faces, const local_camera *camera,
                      skg_force_sums *sums) {
     const double unit = faces->unit;
-    double world[3][3], turn[3][3], torque[3], force[3], along[3];
+    const int parallel = faces->camera->parallel;
+    const double *force_of_mesh = parallel ? more->moments[0] : more->push;
+    const double *along_of_mesh = parallel ? more->push : more->moments[0];
+    double world[3][3], local[3][3], turn[3][3], torque[3], force[3], along[3];
+    for (int r = 0; r < 3; r++)
+        for (int k = 0; k < 3; k++)
+            local[r][k] = camera->first[r] * more->moments[0][k] + camera->column[r] * more->moments[1][k] +
+                          camera->row[r] * more->moments[2][k] +
+                          (parallel ? camera->beam[r] * more->push[k] : 0);
     for (int r = 0; r < 3; r++) {
         force[r] = along[r] = 0;
         for (int k = 0; k < 3; k++) {
-            force[r] += camera->inverse[k][r] * more->force[k];
-            along[r] += camera->inverse[k][r] * more->along[k];
-            turn[r][k] = faces->pose[4 * r] * more->turn[0][k] + faces->pose[4 * r + 1] * more->turn[1][k] +
-                         faces->pose[4 * r + 2] * more->turn[2][k];
+            force[r] += camera->inverse[k][r] * force_of_mesh[k];
+            along[r] += camera->inverse[k][r] * along_of_mesh[k];
+            turn[r][k] = faces->pose[4 * r] * local[0][k] + faces->pose[4 * r + 1] * local[1][k] +
+                         faces->pose[4 * r + 2] * local[2][k];
         }
     }
     for (int r = 0; r < 3; r++)

@@ -70,6 +70,15 @@ static inline void skg_mesh_vertex(const skg_mesh *mesh, int64_t vertex, double 
                                             : mesh->positions[3 * vertex + k];
 }
 
+/* The same, taken from a point: in one step, since a position that has just been stored is slow to load again. */
+static inline void skg_mesh_vertex_from(const skg_mesh *mesh, int64_t vertex, const double point[3],
+                                        double position[3]) {
+    for (int k = 0; k < 3; k++)
+        position[k] = (mesh->positions_stale ? mesh->origin[k] + (double)mesh->offsets[3 * vertex + k]
+                                             : mesh->positions[3 * vertex + k]) -
+                      point[k];
+}
+
 /* Bounds of the offsets (mm from the origin) over the finite vertices. *first_bad is the first vertex that is not
  * finite, or -1. Both are kept up to date whenever positions change, so this call costs nothing. */
 void skg_mesh_bounds(const skg_mesh *mesh, float lowest[3], float highest[3], int64_t *first_bad);
