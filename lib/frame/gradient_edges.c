@@ -10,12 +10,18 @@ skg_status skg_edge_weights_create(const skg_pass *pass, skg_edge_weights *w) {
     return skg_alloc(w->layout.planes, sizeof *w->planes, "gradient", &w->planes);
 }
 
-void skg_edge_weights_clear(skg_edge_weights *w) {
-    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) skg_free(&w->planes[k].memory);
+skg_status skg_edge_weights_clear(skg_edge_weights *w) {
+    skg_status status = SKG_OK;
+    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) {
+        const skg_status closed = skg_host_view_close(w->pass->main.raster->context, &w->planes[k]);
+        if (closed != SKG_OK) status = closed;
+    }
+    return status;
 }
 
 void skg_edge_weights_release(skg_edge_weights *w) {
-    skg_edge_weights_clear(w);
+    (void)skg_edge_weights_clear(w);
+    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) skg_host_view_release(&w->planes[k]);
     for (int64_t s = 0; w->competitors && s < w->pass->priority.count; s++)
         skg_crossings_release(&w->competitors[s]);
     skg_free(&w->planes);
@@ -24,13 +30,22 @@ void skg_edge_weights_release(skg_edge_weights *w) {
     skg_free(&w->table);
 }
 
+static int is_double(const skg_edge_weights *w) {
+    return w->pass->kernels.precision == SKG_PRECISION_DOUBLE;
+}
+
+static int64_t real_size(const skg_edge_weights *w) {
+    return (int64_t)(is_double(w) ? sizeof(double) : sizeof(float));
+}
+
 static skg_status read_planes(skg_job *job, int64_t number, skg_edge_weights *w) {
     const skg_geometry_part *part = &w->pass->parts[number];
     for (int32_t c = 0; c < part->contributions; c++) {
         const int64_t plane = part->contribution[c].plane;
-        if (w->planes[plane].memory) continue;
-        SKG_TRY(skg_gradient_read_reals(w->pass, job->machine->gradient.weights.memory,
-                                        plane * w->layout.plane, w->layout.plane, &w->planes[plane]));
+        if (w->planes[plane].bytes) continue;
+        SKG_TRY(skg_host_view_open(job->machine->context, job->machine->gradient.weights.memory,
+                                   plane * w->layout.plane * real_size(w), w->layout.plane * real_size(w),
+                                   "gradient", &w->planes[plane]));
     }
     return SKG_OK;
 }
@@ -78,10 +93,13 @@ skg_status skg_edge_weights_read(skg_job *job, int64_t part, skg_edge_weights *w
 /* d loss / d t of a part that wins. */
 static double weight_of(const skg_edge_weights *w, int64_t number, int64_t column, int64_t row) {
     const skg_geometry_part *part = &w->pass->parts[number];
+    const int64_t at = row * w->layout.stride + column;
     double sum = 0;
-    for (int32_t c = 0; c < part->contributions; c++)
+    for (int32_t c = 0; c < part->contributions; c++) {
+        const void *plane = w->planes[part->contribution[c].plane].bytes;
         sum += part->contribution[c].weight *
-               skg_reals_at(&w->planes[part->contribution[c].plane], row * w->layout.stride + column);
+               (is_double(w) ? ((const double *)plane)[at] : (double)((const float *)plane)[at]);
+    }
     return part->depth > 0 ? sum * w->pass->scale.scale : 0;
 }
 

@@ -15,7 +15,7 @@
 typedef struct {
     const skg_pass *pass;
     skg_weight_layout layout;
-    skg_reals *planes;          /* [layout.planes] without memory: not read */
+    skg_host_view *planes;      /* [layout.planes] not open: not read */
     skg_crossings *competitors; /* [pass->priority.count] NULL: no competitor has had such a face so far */
     int32_t *slots, *table;     /* of skg_priority_tables, with competitors */
 } skg_edge_weights;
@@ -28,8 +28,8 @@ typedef struct {
 
 skg_status skg_edge_weights_create(const skg_pass *pass, skg_edge_weights *w);
 
-/* Forgets the weights that were read, because those on the device change. */
-void skg_edge_weights_clear(skg_edge_weights *w);
+/* Forgets the weights that were read. It has to be called before those on the device change; release calls it, too. */
+skg_status skg_edge_weights_clear(skg_edge_weights *w);
 void skg_edge_weights_release(skg_edge_weights *w);
 
 /* Reads what skg_edge_weigh needs for a part, if it is not read. */

@@ -188,11 +188,13 @@ static skg_status gather(skg_job *job, const skg_pass *pass, const skg_surroundi
         SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, drawn, pass->scale.scale));
     SKG_TRY(skg_gradient_gather(&other, geometry, &machine->hits, around, &machine->gradient, &job->staging,
                                 gathered));
-    if (drawn != pass->parts)
-        SKG_TRY(
-            skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, pass->scale.scale));
+    const skg_status status =
+        drawn == pass->parts
+            ? SKG_OK
+            : skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, pass->scale.scale);
+    if (status != SKG_OK) (void)skg_gradient_close(pass, &machine->gradient);
     geometry->state = state; /* the sums of the pass stand as before */
-    return SKG_OK;
+    return status;
 }
 
 /* Everything but the densities that need path lengths. */
@@ -203,12 +205,14 @@ static skg_status add_gathered(skg_job *job, const skg_frame_work *work, int64_t
     skg_gathered gathered;
     skg_force_sums all = {0};
     SKG_TRY(gather(job, pass, around, drawn, &gathered));
-    SKG_TRY(skg_gradient_add_faces(job, pass, &gathered, gradient->wanted.vertices, of_parts));
+    skg_status status = skg_gradient_add_faces(job, pass, &gathered, gradient->wanted.vertices, of_parts);
+    if (status == SKG_OK && around) skg_gradient_add_densities(job, work, pass, &gathered, of_parts);
+    const skg_status closed = skg_gradient_close(pass, &job->machine->gradient);
+    SKG_TRY(status);
+    SKG_TRY(closed);
     add_sums(pass->scene->count, of_parts, gradient->poses, &all);
-    if (gradient->wanted.source || gradient->wanted.detector)
-        SKG_TRY(add_view(job, work, number, pass, &all));
-    if (around) skg_gradient_add_densities(job, work, pass, &gathered, of_parts);
-    return SKG_OK;
+    return gradient->wanted.source || gradient->wanted.detector ? add_view(job, work, number, pass, &all)
+                                                                : SKG_OK;
 }
 
 skg_status skg_gradient_add_pass(skg_job *job, const skg_frame_work *work, int64_t number,

@@ -16,7 +16,7 @@ void skg_gradient_memory_release(skg_gradient_memory *memory) {
                                    &memory->lengths, &memory->faces,   &memory->node,   &memory->of_rays,
                                    &memory->wanted};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
-    skg_free(&memory->gathered);
+    skg_host_view_release(&memory->sums);
     skg_free(&memory->reals);
     skg_free(&memory->corners);
     skg_free(&memory->planes);
@@ -244,9 +244,6 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "gradient", &most));
     SKG_TRY(skg_staging_take(staging, 2 * parts, sizeof *scales, "gradient", &scales));
     SKG_TRY(skg_staging_take(staging, 2 * parts, sizeof *units, "gradient", &units));
-    if (!memory->gathered)
-        SKG_TRY(
-            skg_alloc(4 * geometry->triangles + 4, sizeof *memory->gathered, "gradient", &memory->gathered));
     if (around) SKG_TRY(send_around(&run)); /* while the weights are made, which the next call waits for */
     SKG_TRY(skg_gather_find_max(&run, most));
     skg_gradient_find_scales(&run, most, around, scales, units);
@@ -256,13 +253,13 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     SKG_TRY(skg_gather_clear(&run, run.workers > 0 ? faces : 0, faces + 4));
     if (run.workers > 0) SKG_TRY(run_batches(&run));
     SKG_TRY(skg_gather_faces(&run));
-    SKG_CL_TRY(clEnqueueReadBuffer(run.context->device->queue, memory->moments.memory, CL_TRUE, 0,
-                                   4 * (size_t)(geometry->triangles + 1) * sizeof *memory->gathered,
-                                   memory->gathered, 0, NULL, NULL));
-    *gathered = (skg_gathered){.moments = memory->gathered,
+    SKG_TRY(skg_host_view_open(run.context, memory->moments.memory, 0,
+                               (faces + 4) * (int64_t)sizeof *gathered->moments, "gradient", &memory->sums));
+    const int64_t *moments = memory->sums.bytes;
+    *gathered = (skg_gathered){.moments = moments,
                                .units = units,
                                .around_units = units + parts,
-                               .has_edges = memory->gathered[4 * geometry->triangles] != 0,
+                               .has_edges = moments[faces] != 0,
                                .layout = layout_of(pass)};
     return SKG_OK;
 }
@@ -272,18 +269,8 @@ skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first,
     return read_reals(pass->main.raster, memory, first, count, numbers);
 }
 
-skg_status skg_gradient_read_reals(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
-                                   skg_reals *reals) {
-    const size_t size = real_size(pass->main.raster);
-    reals->is_double = size == sizeof(double);
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(count, size, "gradient", &reals->memory));
-    SKG_CL_CLEANUP(clEnqueueReadBuffer(pass->main.raster->context->device->queue, memory, CL_TRUE,
-                                       (size_t)first * size, (size_t)count * size, reals->memory, 0, NULL,
-                                       NULL));
-cleanup:
-    if (status != SKG_OK) skg_free(&reals->memory);
-    return status;
+skg_status skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory) {
+    return skg_host_view_close(pass->main.raster->context, &memory->sums);
 }
 
 /* corners: NULL after a failure, so that the next call reads them again */

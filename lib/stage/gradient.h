@@ -7,6 +7,7 @@
 
 #include "stage/attenuate.h"
 #include "stage/hits.h"
+#include "stage/host_view.h"
 
 /* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
@@ -14,9 +15,9 @@ typedef struct {
         first_around;
     int32_t *wanted_now; /* [wanted_count] what the device has in `wanted` */
     int64_t wanted_count;
-    int64_t *gathered; /* [triangles + 1][4] the moments on the host */
-    void *reals;       /* [triangles][3] slopes on their way to the device */
-    int32_t *corners;  /* [triangles of all meshes][3] as the device has them */
+    skg_host_view sums; /* of `moments` */
+    void *reals;        /* [triangles][3] slopes on their way to the device */
+    int32_t *corners;   /* [triangles of all meshes][3] as the device has them */
     double *
         planes; /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
     int64_t *versions;
@@ -35,7 +36,7 @@ typedef struct {
 
 /* What the gather of a pass leaves. */
 typedef struct {
-    const int64_t *moments; /* [triangles][4] of the memory, in the device's order of triangles */
+    const int64_t *moments; /* [triangles][4] in the device's order of triangles, until skg_gradient_close */
     const double *units;    /* [parts] staged: what a moment of 1 is worth; 0: the part has none */
     const double
         *around_units; /* [parts] of the fourth moments: sums of length times weight by what stands around */
@@ -85,15 +86,13 @@ typedef struct {
     int32_t is_double;
 } skg_reals;
 
-static inline double skg_reals_at(const skg_reals *reals, int64_t index) {
-    return reals->is_double ? ((const double *)reals->memory)[index]
-                            : (double)((const float *)reals->memory)[index];
-}
-
 /* Memory for the slopes of a geometry's faces, on their way to the device: [triangles][3] of the path parameter over the square of t, at the
  * corners, times the part's reference; in the device's order. */
 skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradient_memory *memory,
                                        skg_reals *slopes);
+
+/* Ends the use of moments. */
+skg_status skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory);
 
 /* Adds up the derivatives of the rays of a pass by these slopes, and waits for them.
  *
@@ -103,10 +102,6 @@ skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradien
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
                                 skg_staging *staging, const uint8_t *moves, double largest, double *values);
-
-/* Reads reals, from number `first` on, and waits. The caller frees their memory. */
-skg_status skg_gradient_read_reals(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
-                                   skg_reals *reals);
 
 /* Reads reals in the precision of the pass as doubles, from number `first` on, and waits. */
 skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,

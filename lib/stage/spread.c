@@ -111,17 +111,14 @@ static skg_status add_row(void *user, int64_t row) {
 
 /* Adds the sums of all copies as derivatives. */
 static skg_status read_pixels(const skg_gather_run *run, int64_t copies, double scale, double *values) {
-    cl_command_queue queue = run->context->device->queue;
-    const size_t bytes = (size_t)(copies * sums_of(run)) * sizeof(int64_t);
-    pixel_sums sums = {.run = run, .copies = copies, .unit = 1 / scale, .values = values};
-    cl_int code = CL_SUCCESS;
-    void *mapped = clEnqueueMapBuffer(queue, run->memory->moments.memory, CL_TRUE, CL_MAP_READ, 0, bytes, 0,
-                                      NULL, NULL, &code);
-    SKG_CL_TRY(code);
-    sums.sums = mapped;
+    const int64_t bytes = copies * sums_of(run) * (int64_t)sizeof(int64_t);
+    skg_host_view *view = &run->memory->sums;
+    SKG_TRY(skg_host_view_open(run->context, run->memory->moments.memory, 0, bytes, "derivative", view));
+    pixel_sums sums = {
+        .run = run, .copies = copies, .unit = 1 / scale, .sums = view->bytes, .values = values};
     const skg_status status = skg_parallel(run->pass->camera.rows, add_row, &sums);
-    SKG_CL_TRY(clEnqueueUnmapMemObject(queue, run->memory->moments.memory, mapped, 0, NULL, NULL));
-    return status;
+    const skg_status closed = skg_host_view_close(run->context, view);
+    return status != SKG_OK ? status : closed;
 }
 
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
