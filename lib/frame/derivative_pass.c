@@ -209,7 +209,7 @@ static skg_status add_channel(pass_run *r, const skg_sums *sums, double factor, 
         if (changes_rays(r, d)) wanted.rays = SKG_RAYS_PLANES;
     SKG_TRY(skg_gradient_weigh(r->job, r->pass, sums, &wanted));
     for (int64_t d = 0; d < count; d++) SKG_TRY(add_direction(r, d, channel));
-    SKG_TRY(skg_edge_weights_clear(&r->moving.of_edges));
+    skg_edge_weights_clear(&r->moving.of_edges);
     return skg_derivative_add_changes(r->job, r->pass, sums, factor, channel);
 }
 

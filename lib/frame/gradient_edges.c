@@ -10,18 +10,13 @@ skg_status skg_edge_weights_create(const skg_pass *pass, skg_edge_weights *w) {
     return skg_alloc(w->layout.planes, sizeof *w->planes, "gradient", &w->planes);
 }
 
-skg_status skg_edge_weights_clear(skg_edge_weights *w) {
-    skg_status status = SKG_OK;
-    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) {
-        const skg_status closed = skg_host_view_close(w->pass->main.raster->context, &w->planes[k]);
-        if (closed != SKG_OK) status = closed;
-    }
-    return status;
+void skg_edge_weights_clear(skg_edge_weights *w) {
+    for (int64_t k = 0; w->planes && k < w->layout.planes; k++)
+        skg_host_view_close(w->pass->main.raster->context, &w->planes[k]);
 }
 
 void skg_edge_weights_release(skg_edge_weights *w) {
-    (void)skg_edge_weights_clear(w);
-    for (int64_t k = 0; w->planes && k < w->layout.planes; k++) skg_host_view_release(&w->planes[k]);
+    skg_edge_weights_clear(w);
     for (int64_t s = 0; w->competitors && s < w->pass->priority.count; s++)
         skg_crossings_release(&w->competitors[s]);
     skg_free(&w->planes);
@@ -45,7 +40,7 @@ static skg_status read_planes(skg_job *job, int64_t number, skg_edge_weights *w)
         if (w->planes[plane].bytes) continue;
         SKG_TRY(skg_host_view_open(job->machine->context, job->machine->gradient.weights.memory,
                                    plane * w->layout.plane * real_size(w), w->layout.plane * real_size(w),
-                                   "gradient", &w->planes[plane]));
+                                   &w->planes[plane]));
     }
     return SKG_OK;
 }

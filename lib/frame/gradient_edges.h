@@ -29,7 +29,7 @@ typedef struct {
 skg_status skg_edge_weights_create(const skg_pass *pass, skg_edge_weights *w);
 
 /* Forgets the weights that were read. It has to be called before those on the device change; release calls it, too. */
-skg_status skg_edge_weights_clear(skg_edge_weights *w);
+void skg_edge_weights_clear(skg_edge_weights *w);
 void skg_edge_weights_release(skg_edge_weights *w);
 
 /* Reads what skg_edge_weigh needs for a part, if it is not read. */

@@ -80,8 +80,7 @@ skg_status skg_gradient_add_faces(skg_job *job, const skg_pass *pass, const skg_
     SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *w.edges, "gradient", &w.edges));
     SKG_TRY_CLEANUP(skg_edge_weights_create(pass, &w.of_edges));
     SKG_TRY_CLEANUP(list_faces(job, pass, gathered, &w));
-    SKG_TRY_CLEANUP(skg_forces_find(parts, w.faces, vertices, sums));
-    status = skg_edge_weights_clear(&w.of_edges);
+    status = skg_forces_find(parts, w.faces, vertices, sums);
 cleanup:
     skg_edge_weights_release(&w.of_edges);
     skg_free(&w.faces);

@@ -192,7 +192,7 @@ static skg_status gather(skg_job *job, const skg_pass *pass, const skg_surroundi
         drawn == pass->parts
             ? SKG_OK
             : skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, pass->scale.scale);
-    if (status != SKG_OK) (void)skg_gradient_close(pass, &machine->gradient);
+    if (status != SKG_OK) skg_gradient_close(pass, &machine->gradient);
     geometry->state = state; /* the sums of the pass stand as before */
     return status;
 }
@@ -207,9 +207,8 @@ static skg_status add_gathered(skg_job *job, const skg_frame_work *work, int64_t
     SKG_TRY(gather(job, pass, around, drawn, &gathered));
     skg_status status = skg_gradient_add_faces(job, pass, &gathered, gradient->wanted.vertices, of_parts);
     if (status == SKG_OK && around) skg_gradient_add_densities(job, work, pass, &gathered, of_parts);
-    const skg_status closed = skg_gradient_close(pass, &job->machine->gradient);
+    skg_gradient_close(pass, &job->machine->gradient);
     SKG_TRY(status);
-    SKG_TRY(closed);
     add_sums(pass->scene->count, of_parts, gradient->poses, &all);
     return gradient->wanted.source || gradient->wanted.detector ? add_view(job, work, number, pass, &all)
                                                                 : SKG_OK;

@@ -5,7 +5,7 @@
 
 #include <skiagraph/plan.h>
 
-#include <math.h>
+#include <float.h>
 #include <string.h>
 
 enum { GROUP = 64, SLICES = 32, CLAIM = 1024 }; /* CLAIM: triangles of a work-item of a processor */
@@ -16,7 +16,6 @@ void skg_gradient_memory_release(skg_gradient_memory *memory) {
                                    &memory->lengths, &memory->faces,   &memory->node,   &memory->of_rays,
                                    &memory->wanted};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
-    skg_host_view_release(&memory->sums);
     skg_free(&memory->reals);
     skg_free(&memory->corners);
     skg_free(&memory->planes);
@@ -95,15 +94,17 @@ skg_status skg_gather_find_max(const skg_gather_run *run, double *most) {
     double *of_items = NULL;
     SKG_TRY(skg_staging_take(run->staging, planes * items, sizeof *of_items, "gradient", &of_items));
     SKG_TRY(read_reals(run->raster, run->memory->most.memory, 0, planes * items, of_items));
-    for (int64_t i = 0; i < planes * items; i++) {
-        if (!isfinite(of_items[i])) {
-            skg_buffer_release(&run->memory->weights); /* later ones begin with 0 again */
-            return skg_fail(SKG_RANGE, "gradient: the derivative of the loss by a path length is not finite; "
-                                       "give a smaller derivative by the image, or take precision double");
+    int finite = 1;
+    for (int64_t p = 0; p < planes; p++)
+        for (int64_t i = 0; i < items; i++) {
+            const double here = of_items[p * items + i];
+            finite &= here <= DBL_MAX; /* NaN is not */
+            most[p] = here > most[p] ? here : most[p];
         }
-        most[i / items] = fmax(most[i / items], of_items[i]);
-    }
-    return SKG_OK;
+    if (finite) return SKG_OK;
+    skg_buffer_release(&run->memory->weights); /* later ones begin with 0 again */
+    return skg_fail(SKG_RANGE, "gradient: the derivative of the loss by a path length is not finite; "
+                               "give a smaller derivative by the image, or take precision double");
 }
 
 void skg_gather_round(const skg_gather_run *run, int64_t first, int64_t count, const double *numbers,
@@ -254,7 +255,7 @@ skg_status skg_gradient_gather(const skg_pass *pass, const skg_geometry *geometr
     if (run.workers > 0) SKG_TRY(run_batches(&run));
     SKG_TRY(skg_gather_faces(&run));
     SKG_TRY(skg_host_view_open(run.context, memory->moments.memory, 0,
-                               (faces + 4) * (int64_t)sizeof *gathered->moments, "gradient", &memory->sums));
+                               (faces + 4) * (int64_t)sizeof *gathered->moments, &memory->sums));
     const int64_t *moments = memory->sums.bytes;
     *gathered = (skg_gathered){.moments = moments,
                                .units = units,
@@ -269,8 +270,8 @@ skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first,
     return read_reals(pass->main.raster, memory, first, count, numbers);
 }
 
-skg_status skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory) {
-    return skg_host_view_close(pass->main.raster->context, &memory->sums);
+void skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory) {
+    skg_host_view_close(pass->main.raster->context, &memory->sums);
 }
 
 /* corners: NULL after a failure, so that the next call reads them again */

@@ -92,7 +92,7 @@ skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradien
                                        skg_reals *slopes);
 
 /* Ends the use of moments. */
-skg_status skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory);
+void skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory);
 
 /* Adds up the derivatives of the rays of a pass by these slopes, and waits for them.
  *

@@ -4,24 +4,19 @@
 
 #include "device/device.h"
 
-/* All zero: nothing is open. */
+/* All zero: it is not open. */
 typedef struct {
-    const void *bytes; /* NULL: it is not open */
-    cl_mem mapped;     /* NULL: `copy` is shown */
-    void *unmap;       /* the bytes of `mapped` */
-    void *copy;        /* of a GPU's memory; kept for the next time */
-    int64_t capacity;  /* of the copy, bytes */
+    const void *bytes;
+    void *mapped; /* the same */
+    cl_mem buffer;
 } skg_host_view;
 
-/* Opens `bytes` bytes of a buffer from byte `first` on, when all that was enqueued is done. The memory of a processor is the
- * host's: it is mapped, and nothing may be written to it until skg_host_view_close. what: for the message. */
+/* Opens bytes of a buffer from byte `first` on, when all that was enqueued is done. They are mapped: the memory of a processor is
+ * the host's, and is not copied. Nothing may be written to the buffer until skg_host_view_close. */
 skg_status skg_host_view_open(skg_context *context, cl_mem buffer, int64_t first, int64_t bytes,
-                              const char *what, skg_host_view *view);
+                              skg_host_view *view);
 
 /* Does nothing if it is not open. */
-skg_status skg_host_view_close(skg_context *context, skg_host_view *view);
-
-/* Frees the memory of a view that is closed. */
-void skg_host_view_release(skg_host_view *view);
+void skg_host_view_close(skg_context *context, skg_host_view *view);
 
 #endif

@@ -113,12 +113,12 @@ static skg_status add_row(void *user, int64_t row) {
 static skg_status read_pixels(const skg_gather_run *run, int64_t copies, double scale, double *values) {
     const int64_t bytes = copies * sums_of(run) * (int64_t)sizeof(int64_t);
     skg_host_view *view = &run->memory->sums;
-    SKG_TRY(skg_host_view_open(run->context, run->memory->moments.memory, 0, bytes, "derivative", view));
+    SKG_TRY(skg_host_view_open(run->context, run->memory->moments.memory, 0, bytes, view));
     pixel_sums sums = {
         .run = run, .copies = copies, .unit = 1 / scale, .sums = view->bytes, .values = values};
     const skg_status status = skg_parallel(run->pass->camera.rows, add_row, &sums);
-    const skg_status closed = skg_host_view_close(run->context, view);
-    return status != SKG_OK ? status : closed;
+    skg_host_view_close(run->context, view);
+    return status;
 }
 
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,

@@ -3,6 +3,7 @@
 #include "gradients.h"
 
 #include <math.h>
+#include <string.h>
 
 /* Everything that a gradient can be of, for a part of at most 8 vertices. */
 typedef struct {
@@ -161,11 +162,53 @@ START_TEST(a_job_that_is_not_done) {
 }
 END_TEST
 
+/* A gradient takes the projection of the frame before over, if it is that of its own frame: with the vertices that could not be
+ * projected. */
+START_TEST(a_vertex_that_cannot_be_projected) {
+    static double adjoint[PIXELS], once[PARTS][6], again[PARTS][6];
+    static float image[PIXELS];
+    const setting set = {.colours = 1};
+    skg_gradient gradient;
+    skg_output output;
+    skg_part part;
+    result r;
+    make_scene(&set);
+    allocate(&r);
+    const skg_view view = make_view(&set);
+    skg_plan *plan = make_plan(&set, &view, SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
+    fill_adjoint(PIXELS, adjoint);
+    const skg_adjoint given = adjoint_of(adjoint);
+    skg_output_init(&output);
+    output.data = image;
+    skg_part_init(&part);
+    ck_skg(skg_scene_part_get(scene, 1, &part));
+    const double kept = part.pose[3];
+    for (int turn = 0; turn < 8; turn++) {
+        const int far = turn & 1, shows = turn & 2;
+        part.pose[3] = far ? 1e60 : kept;
+        ck_skg(skg_scene_part_pose_set(scene, 1, part.pose));
+        const skg_status status = shows ? skg_plan_image(plan, &output) : SKG_OK;
+        ck_assert_int_eq(status, shows && far ? SKG_ERR_MESH : SKG_OK);
+        for (int time = 0; time < 2; time++) {
+            skg_gradient_init(&gradient);
+            gradient.poses = turn == 0 ? once[0] : again[0];
+            const skg_status found = skg_plan_gradient(plan, NULL, &given, &gradient);
+            ck_assert_msg(found == (far ? SKG_ERR_MESH : SKG_OK), "turn %d, time %d: %d", turn, time, found);
+            if (far) ck_assert_ptr_nonnull(strstr(skg_last_error(), "cannot be projected"));
+        }
+        if (!far && turn > 0) ck_assert_mem_eq(again, once, sizeof once);
+    }
+    skg_plan_release(&plan);
+    release(&r);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_test(tests, a_part_without_a_mesh);
     tcase_add_test(tests, parts_that_show_nothing);
     tcase_add_test(tests, a_job_that_is_not_done);
+    tcase_add_test(tests, a_vertex_that_cannot_be_projected);
 }
 
 SKG_SUITE_MAIN("bad gradients", add_tests)

@@ -254,6 +254,20 @@ OBJECT(cl_program, clCreateProgramWithBinary,
 OBJECT(cl_kernel, clCreateKernel, (cl_program program, const char *name, cl_int *code), (program, name, code))
 OBJECT(cl_mem, clCreateBuffer, (cl_context context, cl_mem_flags flags, size_t size, void *host, cl_int *code),
        (context, flags, size, host, code))
+/* A mapping is held until it is given back, which does not fail. */
+OBJECT(void *, clEnqueueMapBuffer,
+       (cl_command_queue queue, cl_mem memory, cl_bool blocking, cl_map_flags how, size_t offset, size_t size,
+        cl_uint count, const cl_event *waits, cl_event *event, cl_int *code),
+       (queue, memory, blocking, how, offset, size, count, waits, event, code))
+cl_int __real_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem memory, void *mapped, cl_uint count,
+                                      const cl_event *waits, cl_event *event);
+cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem memory, void *mapped, cl_uint count,
+                                      const cl_event *waits, cl_event *event);
+cl_int __wrap_clEnqueueUnmapMemObject(cl_command_queue queue, cl_mem memory, void *mapped, cl_uint count,
+                                      const cl_event *waits, cl_event *event) {
+    live_objects--;
+    return __real_clEnqueueUnmapMemObject(queue, memory, mapped, count, waits, event);
+}
 CODE(clCreateSubDevices, (cl_device_id device, const cl_device_partition_property *how, cl_uint most,
                           cl_device_id *devices, cl_uint *count), (device, how, most, devices, count))
 CODE(clBuildProgram, (cl_program program, cl_uint count, const cl_device_id *devices, const char *options,
