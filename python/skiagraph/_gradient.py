@@ -141,7 +141,7 @@ class _Direction:
 
     def __init__(self, state: State, direction: Mapping[str, Any], given: Any) -> None:
         parts = state.parts()
-        self._labels, self._number, self._direction, self._given = len(parts), state.number, direction, given
+        self._count, self._number, self._direction, self._given = len(parts), state.number, direction, given
         poses, vertices = np.zeros((len(parts), 6)), ffi.new("double *[]", len(parts))
         self._keep: list[Any] = [poses, vertices]
         for label, twist in direction.get("poses", {}).items():
@@ -169,7 +169,7 @@ class _Direction:
         self._given.nodes = nodes
         if "mu" not in self._direction:
             return
-        coefficients = np.zeros((self._labels, nodes))
+        coefficients = np.zeros((self._count, nodes))
         for label, change in self._direction["mu"].items():
             coefficients[self._number(label)] = _vector(change, (nodes,), f"mu[{label!r}]")
         self._given.attenuations = self._take(coefficients)
