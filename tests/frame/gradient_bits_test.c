@@ -81,6 +81,42 @@ START_TEST(single_precision_agrees_with_double) {
 }
 END_TEST
 
+/* A lane of a processor's vector adds up many hits of a wide face before they become integers: rounding grows with their number, and has
+ * to stay below that of the places of corners. */
+START_TEST(wide_faces_agree_with_double) {
+    enum { COLUMNS = 1024, ROWS = 12, COUNT = COLUMNS * ROWS };
+    static const double tilted[16] = {0.96, 0.1, 0.26, 3, -0.1, 0.995, 0, 2, -0.26, 0, 0.96, 5, 0, 0, 0, 1};
+    static double adjoint[COUNT];
+    double poses[2][6], source[2][3], detector[2][6];
+    if (!run_has_double()) return;
+    for (int i = 0; i < COUNT; i++) adjoint[i] = 1 + 0.5 * sin(i);
+    solid slab = solid_box(1400, 60, 7);
+    scene = run_scene(&slab, tilted);
+    skg_view view = run_view(COLUMNS, 1);
+    view.rows = ROWS;
+    skg_adjoint given = adjoint_of(adjoint);
+    given.rows = ROWS, given.columns = COLUMNS;
+    for (int d = 0; d < 2; d++) {
+        skg_gradient gradient;
+        skg_plan *plan = run_plan(scene, &view,
+                                  (run_choice){.precision = d ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
+                                               .quantity = SKG_QUANTITY_ATTENUATION});
+        skg_gradient_init(&gradient);
+        gradient.poses = poses[d], gradient.source = source[d], gradient.detector = detector[d];
+        ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
+        skg_plan_release(&plan);
+    }
+    /* As above: corners are known to 6e-8 of the face's size, and the slab's two sides nearly cancel in its translations. */
+    const double change = 2e-5;
+    ck_assert_double_le(difference_of(poses[0], poses[1], 3), change * size_of(poses[1], 3));
+    ck_assert_double_le(difference_of(poses[0] + 3, poses[1] + 3, 3), change * size_of(poses[1] + 3, 3));
+    ck_assert_double_le(difference_of(source[0], source[1], 3), change * size_of(source[1], 3));
+    ck_assert_double_le(difference_of(detector[0], detector[1], 3), change * size_of(detector[1], 3));
+    skg_scene_release(&scene);
+    solid_free(&slab);
+}
+END_TEST
+
 /* Noise is constant: the gradient is that of the mean. */
 START_TEST(noise_is_constant) {
     static double vertices[2][3 * VERTICES_MAX];
@@ -329,6 +365,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_loop_test(tests, strategies_give_the_same_bits, 0, 2);
     tcase_add_test(tests, single_precision_agrees_with_double);
+    tcase_add_test(tests, wide_faces_agree_with_double);
     tcase_add_test(tests, noise_is_constant);
     tcase_add_loop_test(tests, a_whole_that_moves_changes_nothing, 0, 3);
     tcase_add_loop_test(tests, sums_that_stand_are_those_of_the_frame, 0, 2 * CHANGES);
