@@ -76,7 +76,7 @@ class Differentiable:
         (2, 64, 64)
         """
         is_one = isinstance(direction, Mapping)
-        directions = [direction] if is_one else list(direction)
+        directions: list[Mapping[str, Any]] = [direction] if isinstance(direction, Mapping) else list(direction)
         for one in directions:
             for name in one:
                 if name not in NAMES:
