@@ -86,7 +86,7 @@ START_TEST(what_is_wrong_is_said) {
     static double found[3 * PIXELS];
     const setting set = {.name = "one energy"};
     skg_direction directions[3];
-    double bad[6] = {0, 0, 0, 0, NAN, 0};
+    double bad[6] = {0, 0, 0, 0, (double)NAN, 0};
     skg_job *job = NULL;
     result r;
     make_scene(&set);
