@@ -266,7 +266,7 @@ static void add_vertices(const skg_face_moments *faces, const local_camera *came
 
 /* Those of a part, whose faces share vertices. */
 static skg_status add_part(const skg_face_moments *faces, const local_camera *camera, double *vertices) {
-    skg_force_sums again; /* of faces that rays contain, which add_faces has */
+    skg_force_sums again = {.force = {0}}; /* of faces that rays contain, which add_faces has */
     for (int64_t f = 0; f < faces->mesh->triangles; f++) {
         const int64_t *moments = faces->moments + 4 * f;
         if (moments[0] == SKG_EDGE_ON)
