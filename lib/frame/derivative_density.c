@@ -19,25 +19,17 @@ static void add_products(const skg_job *job, const skg_pass *pass, int64_t count
         }
 }
 
-/* Of all directions: by the mm of planes. */
-static void add_planes(skg_job *job, const skg_pass *pass, int64_t channel, int64_t size) {
-    struct skg_gradient_work *gradient = job->gradient;
+/* Adds those of all directions to a channel: by the mm of planes, or by the exponents of nodes. */
+static void add_all(const skg_job *job, const skg_pass *pass, int64_t channel, int of_nodes) {
+    const struct skg_gradient_work *gradient = job->gradient;
+    const skg_model *model = &job->recipe->model;
+    const int64_t size = job->recipe->view.rows * job->recipe->view.columns;
     for (int64_t d = 0; d < gradient->direction_count; d++) {
         const skg_derivative_work *of = &gradient->directions[d];
-        if (of->plane_changes)
-            add_products(job, pass, job->recipe->model.planes, gradient->planes, of->plane_changes,
-                         of->image + channel * size);
-    }
-}
-
-/* By the exponents of nodes. */
-static void add_nodes(skg_job *job, const skg_pass *pass, int64_t channel, int64_t size) {
-    struct skg_gradient_work *gradient = job->gradient;
-    for (int64_t d = 0; d < gradient->direction_count; d++) {
-        const skg_derivative_work *of = &gradient->directions[d];
-        if (of->node_changes)
-            add_products(job, pass, job->recipe->model.nodes, gradient->nodes, of->node_changes,
-                         of->image + channel * size);
+        const double *rates = of_nodes ? of->node_changes : of->plane_changes;
+        if (rates)
+            add_products(job, pass, of_nodes ? model->nodes : model->planes,
+                         of_nodes ? gradient->nodes : gradient->planes, rates, of->image + channel * size);
     }
 }
 
@@ -56,12 +48,12 @@ skg_status skg_derivative_add_changes(skg_job *job, const skg_pass *pass, const 
             .factor = factor, .channel = (int32_t)channel, .of = SKG_WEIGHTS_OF_PLANES};
         SKG_TRY(skg_gradient_weigh(job, pass, sums, &wanted));
         SKG_TRY(skg_gradient_keep_planes(job, pass));
-        add_planes(job, pass, channel, size);
+        add_all(job, pass, channel, 0);
     }
     if (!of_nodes) return SKG_OK;
     for (int64_t k = 0; k < model->channels; k++)
         for (int64_t i = 0; i < size; i++) gradient->adjoint[k * size + i] = k == channel;
     SKG_TRY(skg_gradient_keep_nodes(job, pass, sums, factor));
-    add_nodes(job, pass, channel, size);
+    add_all(job, pass, channel, 1);
     return SKG_OK;
 }

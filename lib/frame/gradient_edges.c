@@ -25,22 +25,14 @@ void skg_edge_weights_release(skg_edge_weights *w) {
     skg_free(&w->table);
 }
 
-static int is_double(const skg_edge_weights *w) {
-    return w->pass->kernels.precision == SKG_PRECISION_DOUBLE;
-}
-
-static int64_t real_size(const skg_edge_weights *w) {
-    return (int64_t)(is_double(w) ? sizeof(double) : sizeof(float));
-}
-
 static skg_status read_planes(skg_job *job, int64_t number, skg_edge_weights *w) {
     const skg_geometry_part *part = &w->pass->parts[number];
+    const int64_t bytes = w->layout.plane * skg_gradient_real_size(w->pass->kernels.precision);
     for (int32_t c = 0; c < part->contributions; c++) {
         const int64_t plane = part->contribution[c].plane;
         if (w->planes[plane].bytes) continue;
         SKG_TRY(skg_host_view_open(job->machine->context, job->machine->gradient.weights.memory,
-                                   plane * w->layout.plane * real_size(w), w->layout.plane * real_size(w),
-                                   &w->planes[plane]));
+                                   plane * bytes, bytes, &w->planes[plane]));
     }
     return SKG_OK;
 }
@@ -89,11 +81,12 @@ skg_status skg_edge_weights_read(skg_job *job, int64_t part, skg_edge_weights *w
 static double weight_of(const skg_edge_weights *w, int64_t number, int64_t column, int64_t row) {
     const skg_geometry_part *part = &w->pass->parts[number];
     const int64_t at = row * w->layout.stride + column;
+    const int is_double = w->pass->kernels.precision == SKG_PRECISION_DOUBLE;
     double sum = 0;
     for (int32_t c = 0; c < part->contributions; c++) {
         const void *plane = w->planes[part->contribution[c].plane].bytes;
         sum += part->contribution[c].weight *
-               (is_double(w) ? ((const double *)plane)[at] : (double)((const float *)plane)[at]);
+               (is_double ? ((const double *)plane)[at] : (double)((const float *)plane)[at]);
     }
     return part->depth > 0 ? sum * w->pass->scale.scale : 0;
 }

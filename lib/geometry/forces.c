@@ -5,7 +5,6 @@
 
 #include <float.h>
 #include <math.h>
-
 #include <string.h>
 
 /* Faces that are added up together. The sums of chunks are added in their order, so that the number of threads changes no bit. */
@@ -244,7 +243,8 @@ static void add_vertices(const skg_face_moments *faces, const local_camera *came
     if (!(fabs(height) >= DBL_MIN)) return;
     for (int k = 0; k < 3; k++) {
         number[k] = vertex_of(faces, face, k);
-        skg_mesh_vertex_from(faces->mesh, number[k], camera->origin, corner[k]);
+        for (int c = 0; c < 3; c++) /* a position that has just been stored would be slow to load again */
+            corner[k][c] = skg_mesh_coordinate(faces->mesh, number[k], c) - camera->origin[c];
         place[k] = moment * camera->first[k] + (double)moments[1] * camera->column[k] +
                    (double)moments[2] * camera->row[k];
     }

@@ -63,20 +63,15 @@ skg_status skg_mesh_components(const skg_mesh *mesh, int32_t *number, int64_t *c
 /* Volume (times orientation), area, bounds and degenerate triangles for the present positions. */
 void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health);
 
-/* The present position of a vertex, mm. */
-static inline void skg_mesh_vertex(const skg_mesh *mesh, int64_t vertex, double position[3]) {
-    for (int k = 0; k < 3; k++)
-        position[k] = mesh->positions_stale ? mesh->origin[k] + (double)mesh->offsets[3 * vertex + k]
-                                            : mesh->positions[3 * vertex + k];
+/* A coordinate of the present position of a vertex, mm. */
+static inline double skg_mesh_coordinate(const skg_mesh *mesh, int64_t vertex, int axis) {
+    return mesh->positions_stale ? mesh->origin[axis] + (double)mesh->offsets[3 * vertex + axis]
+                                 : mesh->positions[3 * vertex + axis];
 }
 
-/* The same, taken from a point: in one step, since a position that has just been stored is slow to load again. */
-static inline void skg_mesh_vertex_from(const skg_mesh *mesh, int64_t vertex, const double point[3],
-                                        double position[3]) {
-    for (int k = 0; k < 3; k++)
-        position[k] = (mesh->positions_stale ? mesh->origin[k] + (double)mesh->offsets[3 * vertex + k]
-                                             : mesh->positions[3 * vertex + k]) -
-                      point[k];
+/* All three. */
+static inline void skg_mesh_vertex(const skg_mesh *mesh, int64_t vertex, double position[3]) {
+    for (int k = 0; k < 3; k++) position[k] = skg_mesh_coordinate(mesh, vertex, k);
 }
 
 /* Bounds of the offsets (mm from the origin) over the finite vertices. *first_bad is the first vertex that is not

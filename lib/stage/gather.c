@@ -30,10 +30,6 @@ int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
            memory->wanted.bytes;
 }
 
-static size_t real_size(const skg_raster *raster) {
-    return raster->options.kernels.precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float);
-}
-
 static skg_weight_layout layout_of(const skg_pass *pass) {
     return skg_attenuate_weight_layout(pass->main.raster, pass->fine);
 }
@@ -76,7 +72,8 @@ skg_status skg_gather_begin(skg_gather_run *run) {
 /* Reads reals of the device as doubles, and waits. Floats are read into the end of the doubles' memory. */
 static skg_status read_reals(const skg_raster *raster, cl_mem memory, int64_t first, int64_t count,
                              double *numbers) {
-    const size_t size = real_size(raster), behind = (size_t)count * (sizeof *numbers - size);
+    const size_t size = (size_t)skg_gradient_real_size(raster->options.kernels.precision),
+                 behind = (size_t)count * (sizeof *numbers - size);
     char *raw = (char *)numbers + behind;
     SKG_CL_TRY(clEnqueueReadBuffer(raster->context->device->queue, memory, CL_TRUE, (size_t)first * size,
                                    (size_t)count * size, raw, 0, NULL, NULL));
@@ -114,7 +111,7 @@ void skg_gather_round(const skg_gather_run *run, int64_t first, int64_t count, c
 }
 
 skg_status skg_gather_upload_scales(const skg_gather_run *run, int64_t count, const double *scales) {
-    const size_t size = real_size(run->raster);
+    const size_t size = (size_t)skg_gradient_real_size(run->geometry->precision);
     void *reals = NULL;
     SKG_TRY(skg_staging_take(run->staging, count, size, "gradient", &reals));
     skg_gather_round(run, 0, count, scales, reals);

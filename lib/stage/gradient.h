@@ -45,6 +45,11 @@ typedef struct {
     int32_t reserved;
 } skg_gathered;
 
+/* Bytes of a real of weights, moments and slopes. precision: of the pass */
+static inline int64_t skg_gradient_real_size(int32_t precision) {
+    return (int64_t)(precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float));
+}
+
 /* What weights are of. */
 enum {
     SKG_WEIGHTS_OF_PARTS,  /* what hits of parts are worth */

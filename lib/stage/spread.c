@@ -24,7 +24,7 @@ static int64_t count_workers(const skg_gather_run *run, const skg_weight_layout 
 skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradient_memory *memory,
                                        skg_reals *slopes) {
     slopes->is_double = geometry->precision == SKG_PRECISION_DOUBLE;
-    const size_t row = 3 * (slopes->is_double ? sizeof(double) : sizeof(float));
+    const size_t row = 3 * (size_t)skg_gradient_real_size(geometry->precision);
     if (!memory->reals) SKG_TRY(skg_alloc(geometry->triangles, row, "derivative", &memory->reals));
     slopes->memory = memory->reals;
     return SKG_OK;
@@ -34,7 +34,7 @@ skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradien
 static skg_status upload_slopes(const skg_gather_run *run, const uint8_t *moves) {
     const skg_geometry *geometry = run->geometry;
     skg_gradient_memory *m = run->memory;
-    const size_t row = 3 * (run->is_double ? sizeof(double) : sizeof(float));
+    const size_t row = 3 * (size_t)skg_gradient_real_size(geometry->precision);
     SKG_TRY(skg_gather_reserve(run, &m->faces, geometry->triangles * (int64_t)row));
     for (int64_t p = 0, first = 0, end; p < geometry->parts; p++, first = end) {
         end = skg_gradient_part_end(geometry, p, first);

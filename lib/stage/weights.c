@@ -5,10 +5,6 @@
 
 #include <string.h>
 
-static int64_t real_size(const skg_pass *pass) {
-    return pass->kernels.precision == SKG_PRECISION_DOUBLE ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
-}
-
 /* Weights that are new memory are 0: parts that only displace others weigh hits by 0 times what stands there, which has to be
  * finite. */
 static skg_status reserve_weights(const skg_pass *pass, int64_t bytes, skg_gradient_memory *memory) {
@@ -25,15 +21,16 @@ static skg_status reserve_weights(const skg_pass *pass, int64_t bytes, skg_gradi
 
 skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradient_memory *memory) {
     skg_context *context = pass->main.raster->context;
+    const int64_t size = skg_gradient_real_size(pass->kernels.precision);
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     const int64_t most = planes > layout.planes + 2 ? planes : layout.planes + 2;
     /* Lanes without a hit read behind their rows. */
     const int64_t behind = SKG_SPARE_ROWS * layout.stride + SKG_SPARE_COLUMNS;
-    SKG_TRY(skg_buffer_reserve(context, &memory->most, layout.planes * layout.items * real_size(pass),
+    SKG_TRY(skg_buffer_reserve(context, &memory->most, layout.planes * layout.items * size, CL_MEM_READ_WRITE,
+                               "weights of a gradient"));
+    SKG_TRY(skg_buffer_reserve(context, &memory->of_rays, SKG_RAY_SUMS * layout.items * size,
                                CL_MEM_READ_WRITE, "weights of a gradient"));
-    SKG_TRY(skg_buffer_reserve(context, &memory->of_rays, SKG_RAY_SUMS * layout.items * real_size(pass),
-                               CL_MEM_READ_WRITE, "weights of a gradient"));
-    return reserve_weights(pass, (most * layout.plane + behind) * real_size(pass), memory);
+    return reserve_weights(pass, (most * layout.plane + behind) * size, memory);
 }
 
 /* Which planes of accumulators are wanted. */

@@ -1,4 +1,4 @@
-/* Gradients of scenes that show nothing, and jobs that are not done: zeros or a sentence, and no crash. Adjoints of another size or with
+/* Gradients of scenes that show nothing or cannot be projected, and jobs that are not done: zeros or a sentence, and no crash. Adjoints of another size or with
  * values that are not finite are in gradient_bits_test.c and gradient_job_test.c. */
 #include "gradients.h"
 

@@ -4,7 +4,7 @@
 #include <math.h>
 #include <string.h>
 
-enum { DIRECTIONS = 8, NODES_MAX = 32 };
+enum { DIRECTIONS = 8, NODES_MAX = 32, VERTICES_MAX = 4096 };
 
 static const setting settings[] = {
     {.name = "one energy"},
@@ -21,17 +21,19 @@ enum { SETTINGS = sizeof settings / sizeof *settings };
 /* What the directions have. */
 static double poses[DIRECTIONS][PARTS][6], coefficients[PARTS * NODES_MAX], changes[PARTS];
 static double source[3] = {0.3, -0.2, 1}, detector[6] = {0, 0, 1, 1e-3, 0, 2e-3};
-static double moves[3 * 4096];
+static double moves[3 * VERTICES_MAX];
 static const double *vertices[PARTS];
 
 /* A part, another one with the source, the detector, vertices, matter, both with a pose, nothing, and the first once more. */
 static void make_directions(skg_plan *plan, skg_direction *directions) {
-    int64_t nodes = 0;
+    int64_t nodes = 0, count = 0, triangles = 0;
     ck_skg(skg_plan_node_count(plan, &nodes));
     ck_assert_int_le(nodes, NODES_MAX);
+    ck_skg(skg_mesh_count(meshes[1], &count, &triangles));
+    ck_assert_int_le(count, VERTICES_MAX);
     memset(poses, 0, sizeof poses);
     memset(vertices, 0, sizeof vertices);
-    for (int i = 0; i < 3 * 4096; i++) moves[i] = sin(i);
+    for (int i = 0; i < 3 * VERTICES_MAX; i++) moves[i] = sin(i);
     for (int i = 0; i < PARTS * NODES_MAX; i++) coefficients[i] = 1e-3 * cos(i);
     for (int d = 0; d < DIRECTIONS; d++) skg_direction_init(&directions[d]);
     poses[0][0][0] = poses[1][1][4] = poses[5][0][2] = poses[7][0][0] = 1;

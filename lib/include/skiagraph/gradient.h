@@ -149,6 +149,8 @@ SKG_INIT(skg_direction)
  *                   the direction. The job writes there until then. Undefined if it fails or was cancelled
  *     saturated     result: [directions] number of slopes of faces at their corners that were cut off at 2^24 times the mean
  *                   slope, because the sums over hits are 64-bit integers; may be NULL
+ *     memory        while the job runs, 8 bytes for each ray and plane of a direction with densities, and for each ray and energy of
+ *                   one with attenuations
  *     limits        as above: faces that contain rays change the means of their pixels
  *     job           result
  *     errors        as of skg_plan_gradient_submit; SKG_ERR_ARGUMENT for fewer than one direction and for numbers that are not
