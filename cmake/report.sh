@@ -25,7 +25,7 @@ skg_test() {
     build=$1
     shift
     rm -f "$build/passed"
-    { ctest --test-dir "$build" -j "$(nproc)" --output-on-failure "$@" && touch "$build/passed"; } 2>&1 | tee "$build/tests.log"
+    { ctest --test-dir "$build" -j "${skg_jobs:-$(nproc)}" --output-on-failure "$@" && touch "$build/passed"; } 2>&1 | tee "$build/tests.log"
     counts=$(awk '/^ *[0-9]+\/[0-9]+ Test +#/ { if (/ Passed /) passed++; else if (/\*\*\*Skipped/) skipped++; else failed++ }
         END { print passed + 0, failed + 0, skipped + 0 }' "$build/tests.log")
     skg_count "$counts"

@@ -11,6 +11,12 @@ skg_optional_packages="libhdf5-dev libgif-dev ffmpeg libmeshoptimizer-dev libciv
 # shellcheck disable=SC2034
 skg_mpi_packages="libopenmpi-dev openmpi-bin"
 
+# What tests need. libxrl-dev: an independent table of cross sections. chromium: pages work in it. groff-base: the pages of the
+# manual.
+# shellcheck disable=SC2034
+skg_test_packages="check gfortran g++ python3 python3-numpy python3-cffi python3-pytest python3-scipy python3-venv oclgrind libxrl-dev \
+doxygen chromium groff-base locales"
+
 # skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {
     if ! command -v dpkg-query >/dev/null 2>&1 || ! command -v apt-get >/dev/null 2>&1; then
@@ -47,23 +53,29 @@ skg_need() {
 }
 
 # skg_python_packages: what tests need and Debian lacks, in an environment in the build folder on top of Debian's Python:
-# the toolbox (on SciPy) of the authors of CTSimU scenarios. Without network that test is skipped.
+# the toolbox (on SciPy) of the authors of CTSimU scenarios. Where that fails, build/venv.missing holds the reason for the test that
+# is skipped: a registry that is not reached is one of tests/skips.txt, anything else is not.
 skg_python_packages() {
     [ "$skg_install" = yes ] && [ -x /usr/bin/python3 ] || return 0
     venv=build/venv
     [ -e $venv/complete ] && return 0
     mkdir -p build
     { /usr/bin/python3 -m venv --system-site-packages $venv && $venv/bin/python -m pip install -q ctsimu; } \
-        >build/venv.log 2>&1 && touch $venv/complete && return 0
+        >build/venv.log 2>&1 && touch $venv/complete && rm -f build/venv.missing && return 0
+    if grep -qE 'from versions: none|Failed to establish a new connection|Could not fetch URL|Read timed out' build/venv.log; then
+        echo "the registry of Python is not reached" >build/venv.missing
+    else
+        echo "pip does not install ctsimu" >build/venv.missing
+    fi
     tail -n 2 build/venv.log
-    echo "The Python package ctsimu cannot be installed; the whole log is in build/venv.log"
+    echo "The Python package ctsimu cannot be installed: $(cat build/venv.missing); the whole log is in build/venv.log"
 }
 
 # skg_build PRESET [TARGET...]: configures one of CMakePresets.json, and builds these targets or all.
 skg_build() {
     preset=$1
     shift
-    if ! { cmake --preset "$preset" && cmake --build --preset "$preset" -j "$(nproc)" ${1:+--target "$@"}; } \
+    if ! { cmake --preset "$preset" && cmake --build --preset "$preset" -j "${skg_jobs:-$(nproc)}" ${1:+--target "$@"}; } \
         >"build-$preset.log" 2>&1; then
         tail -n 40 "build-$preset.log"
         echo "The build failed; the whole log is in build-$preset.log"

@@ -12,7 +12,7 @@ done
 cat "$build/validation.log" # of the last Python: another one's lack is no reason for a skipped test
 kernels_of() { sed -n 's/^Made .*, kernels \([0-9a-f]*\)\..*/\1/p' "$1"; }
 if [ "$status" -eq 0 ] && [ "$(kernels_of "$build/validation.md")" != "$(kernels_of "$here/../../docs/validation.md")" ]; then
-    echo "docs/validation.md was made with other kernels: run bench/validate/run"
+    echo "docs/validation.md was made with other kernels; make it again: bench/validate/run"
     status=1
 fi
 exit "$status"

@@ -25,8 +25,8 @@ Every claim of this project that has a reference outside it: ours, the reference
 
 SpekPy and xraylib serve as references where Python has them, otherwise the tables of `bench/validate/tables` that they gave
 do (`bench/validate/packages.py` makes them again). Data that are not part of the repository lie in the folder `$SKG_DATA`.
-The line below names the first digits of the SHA-256 of all files of `kernels/`; the test `bench_validate_holds` fails when
-they have changed and this page was not made again.
+The line below names a digest of the tokens of `kernels/`; the test `bench_validate_holds` fails when they have changed and this
+page was not made again. Comments and formatting do not count.
 """
 
 

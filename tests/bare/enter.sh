@@ -1,9 +1,9 @@
 #!/bin/sh
-# usage: enter.sh WORK SHARED SOURCE..., in a namespace of its own for mounts and processes. Fills WORK/root from the
+# usage: enter.sh WORK SHARED FULL SOURCE..., in a namespace of its own for mounts and processes. Fills WORK/root from the
 # sources of packages, moves WORK/project into it, and runs inside.sh there. SHARED: the folder of measured data, if any.
 set -eu
-work=$1 shared=$2
-shift 2
+work=$1 shared=$2 full=$3
+shift 3
 root=$work/root
 began=$(date +%s)
 export TMPDIR="$work"
@@ -38,6 +38,6 @@ echo "A bare Debian 12: $(($(date +%s) - began)) s"
 status=0
 # A background process of a shell ignores these signals, and so would everything inside.
 env -i --default-signal=INT,QUIT HOME=/root PATH=/usr/local/sbin:/usr/local/bin:/usr/sbin:/usr/bin:/sbin:/bin \
-    LANG=C.UTF-8 CI="${CI:-true}" chroot "$root" sh /root/project/tests/bare/inside.sh || status=$?
+    LANG=C.UTF-8 CI="${CI:-true}" chroot "$root" sh /root/project/tests/bare/inside.sh "$full" || status=$?
 if [ -n "${SKG_TALLY-}" ] && [ -e "$root/root/tally" ]; then cat "$root/root/tally" >>"$SKG_TALLY"; fi
 exit $status

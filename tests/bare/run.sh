@@ -1,8 +1,9 @@
 #!/bin/sh
-# usage: run.sh, from the project's folder, as root. Makes a Debian 12 with nothing in it in a folder, copies the project
+# usage: run.sh FULL, from the project's folder, as root. FULL: yes for every test. Makes a Debian 12 with nothing in it in a folder, copies the project
 # with its history into it, and runs inside.sh there. The mounts belong to a namespace, so they end with its processes,
 # however this script ends. Exit status 3: no such Debian can be made on this machine.
 set -eu
+full=$1
 impossible() {
     echo "check: no bare Debian can be made here: $1" >&2
     exit 3
@@ -50,6 +51,6 @@ git clone -q . "$work/project"
 if [ -n "$(git status --porcelain)" ]; then echo "What is not committed is not tested."; fi
 
 mkdir "$work/root"
-unshare --mount --pid --fork --kill-child sh tests/bare/enter.sh "$work" "$(dirname "$PWD")/shared" "$@" &
+unshare --mount --pid --fork --kill-child sh tests/bare/enter.sh "$work" "$(dirname "$PWD")/shared" "$full" "$@" &
 child=$!
 wait $child

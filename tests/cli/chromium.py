@@ -8,7 +8,7 @@ import tempfile
 import time
 import urllib.parse
 
-from live_client import Socket
+from live_client import LIMIT, Socket
 
 
 def program():
@@ -27,7 +27,7 @@ class Browser:
         self.folder = tempfile.mkdtemp(prefix="skg-browser-")
         words = [program(), "--headless", "--no-sandbox", "--remote-debugging-port=0", "--remote-allow-origins=*",
                  f"--user-data-dir={self.folder}", f"--window-size={size[0]},{size[1]}", "--use-gl=angle",
-                 "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--hide-scrollbars", "about:blank"]
+                 "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-dev-shm-usage", "--hide-scrollbars", "about:blank"]
         self.process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL,
                                         env={**os.environ, "HOME": self.folder})
         port, path = self.wait_for_port()
@@ -41,7 +41,8 @@ class Browser:
         self.go(url)
 
     def wait_for_port(self):
-        for _ in range(600):
+        end = time.monotonic() + LIMIT
+        while time.monotonic() < end and self.process.poll() is None:
             try:
                 with open(os.path.join(self.folder, "DevToolsActivePort"), encoding="ascii") as file:
                     lines = file.read().split("\n")
@@ -81,7 +82,7 @@ class Browser:
             raise RuntimeError(json.dumps(result["exceptionDetails"])[:1500])
         return result["result"].get("value")
 
-    def until(self, script, seconds=60):
+    def until(self, script, seconds=LIMIT):
         """Waits until an expression is true, also of a page that is being loaded."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:

@@ -43,12 +43,19 @@ static int stop_within_a_file(pid_t child, const char *place) {
     }
 }
 
+/* A command that is stopped while a file is unfinished. A busy machine may show no such moment of a run; then it is run again. */
+static pid_t start_and_stop(const char *place) {
+    pid_t child;
+    do child = start(place);
+    while (!stop_within_a_file(child, place));
+    return child;
+}
+
 START_TEST(nothing_unfinished_is_left) {
     static const int numbers[] = {SIGINT, SIGTERM, SIGHUP, SIGUSR1, SIGXCPU};
     const int number = numbers[_i];
     int status = 0;
-    const pid_t child = start(folder);
-    ck_assert_msg(stop_within_a_file(child, folder), "the command was never seen within a file");
+    const pid_t child = start_and_stop(folder);
     kill(child, number);
     kill(child, SIGCONT);
     ck_assert_int_eq(waitpid(child, &status, 0), child);
@@ -60,9 +67,8 @@ END_TEST
 START_TEST(what_was_ignored_stays_so) {
     signal(SIGHUP, SIG_IGN);
     int status = 0;
-    const pid_t child = start(folder);
+    const pid_t child = start_and_stop(folder);
     signal(SIGHUP, SIG_DFL);
-    ck_assert_msg(stop_within_a_file(child, folder), "the command was never seen within a file");
     kill(child, SIGHUP);
     kill(child, SIGCONT);
     ck_assert_int_eq(waitpid(child, &status, 0), child);

@@ -9,6 +9,7 @@ import subprocess
 import time
 import urllib.parse
 
+LIMIT = 120  # seconds that anything may take before it is a failure
 HEADER = struct.Struct("<4sIIHHdddfHBB")  # live_header of host/cli/live/frame.h
 
 
@@ -40,7 +41,7 @@ class Server:
 
     def get(self, path, headers=(), method="GET"):
         """Status and text of an answer."""
-        with socket.create_connection(("127.0.0.1", self.port), timeout=60) as connection:
+        with socket.create_connection(("127.0.0.1", self.port), timeout=LIMIT) as connection:
             lines = [f"{method} {path} HTTP/1.1", f"Host: 127.0.0.1:{self.port}", "Connection: close", *headers, "", ""]
             connection.sendall("\r\n".join(lines).encode())
             data = b""
@@ -48,12 +49,18 @@ class Server:
                 data += chunk
         return int(data.split()[1]), data.decode("utf-8", "replace")
 
+    def processor_seconds(self):
+        """Time that processors have worked for it."""
+        with open(f"/proc/{self.process.pid}/stat", encoding="ascii") as file:
+            fields = file.read().rpartition(")")[2].split()
+        return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
+
     def memory(self):
         """Resident memory, in MiB."""
         with open(f"/proc/{self.process.pid}/statm", encoding="ascii") as file:
             return int(file.read().split()[1]) * os.sysconf("SC_PAGE_SIZE") / 2**20
 
-    def end(self, timeout=60):
+    def end(self, timeout=LIMIT):
         """Exit status after Ctrl-C."""
         self.process.send_signal(2)
         return self.process.wait(timeout)
@@ -75,7 +82,7 @@ class Socket:
         self.socket = socket.socket()
         if receive_buffer:
             self.socket.setsockopt(socket.SOL_SOCKET, socket.SO_RCVBUF, receive_buffer)
-        self.socket.settimeout(60)
+        self.socket.settimeout(LIMIT)
         self.socket.connect(("127.0.0.1", port))
         lines = [f"GET {path} HTTP/1.1", f"Host: 127.0.0.1:{port}", "Upgrade: websocket", "Connection: Upgrade",
                  f"Sec-WebSocket-Key: {key}", "Sec-WebSocket-Version: 13"]
@@ -170,7 +177,7 @@ class Page(Socket):
             self.send({"ack": struct.unpack_from("<I", data, 4)[0]})
         return Frame(data)
 
-    def find(self, what, seconds=60):
+    def find(self, what, seconds=LIMIT):
         """The next message for which what(message) is true."""
         end = time.monotonic() + seconds
         while time.monotonic() < end:

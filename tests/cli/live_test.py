@@ -13,7 +13,7 @@ import tempfile
 import threading
 import time
 
-from live_client import Frame, Page, Server
+from live_client import LIMIT, Frame, Page, Server
 
 SCENE = {
     "Source": {"Position": [0, -40, 0, "cm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
@@ -52,7 +52,7 @@ def differ(a, b):
 
 def join(server, **keys):
     """A page, as soon as the server has seen that pages before it have gone: it takes eight."""
-    end = time.monotonic() + 60
+    end = time.monotonic() + LIMIT
     while (page := Page(server, **keys)).status == 503 and time.monotonic() < end:
         page.close()
         time.sleep(0.01)
@@ -293,13 +293,15 @@ def interrupted(path):
             wish = page.wish(settings=beam | {"Scatter": 1e-4, "Detector.Position": [0, 10 + i, 0, "cm"]})
             shot = page.find(lambda m: isinstance(m, dict) and m.get("wish") == wish and (m.get("scatter") or {}).get("histories", 0) > 2**21)
             page.send({"ack": shot["shot"]})
-            time.sleep(1)  # the last step takes minutes
+            worked, end = server.processor_seconds(), time.monotonic() + LIMIT
+            while server.processor_seconds() < worked + 0.5 and time.monotonic() < end:  # of the last step, which takes minutes
+                time.sleep(0.01)
             if i == 0:
-                begun = time.monotonic()
-                page.frame(page.wish())
-                assert time.monotonic() - begun < 10
-        begun = time.monotonic()
-        assert server.end() == 0 and time.monotonic() - begun < 10
+                newer = page.wish()
+                last = page.find(lambda m: isinstance(m, Frame) and m.wish >= newer or
+                                 isinstance(m, dict) and (m.get("scatter") or {}).get("sigma", 1) < 1e-4 * (m.get("scatter") or {}).get("mean", 0))
+                assert isinstance(last, Frame)  # the step was not followed to its end
+        assert server.end() == 0
 
 
 def looks(path):
@@ -371,9 +373,11 @@ def lost_pages(path):
 
 def ends(path):
     with Server(command, path, "--idle", "4") as server:
-        page = Page(server)
-        page.frame()
-        assert server.process.wait(60) == 0 and "--idle" in server.process.stderr.read()
+        try:
+            Page(server).frame()
+        except (OSError, EOFError):
+            pass  # the machine is so busy that the page came too late
+        assert server.process.wait(LIMIT) == 0 and "--idle" in server.process.stderr.read()
     with Server(command, path) as server:
         pages = [Page(server) for _ in range(8)]
         pages[0].frame()
@@ -381,7 +385,7 @@ def ends(path):
         assert server.end() == 0
     with Server(command, path) as server:
         server.process.send_signal(1)  # its terminal is closed
-        assert server.process.wait(60) == 0
+        assert server.process.wait(LIMIT) == 0
 
 
 def prints_json(path):
@@ -396,7 +400,7 @@ def prints_json(path):
             assert len(text) < 2000
     assert found["url"] == f"http://127.0.0.1:{found['port']}/?token={found['token']}" and len(found["token"]) == 32
     process.send_signal(15)
-    assert process.wait(60) == 0
+    assert process.wait(LIMIT) == 0
 
 
 def changed_file(path):
@@ -418,10 +422,10 @@ def fails(path):
     """Command lines that are refused."""
     for words, status, word in ((["-"], 2, "standard input"), ([path, "--bind", "a b"], 2, "--bind"), ([path, "--port", "70000"], 2, "--port"),
                                 ([path, "--set", "Nonsense=1"], 3, "Nonsense"), ([path + "x"], 3, "cannot be read")):
-        run = subprocess.run([command, "live", *words, "--no-open"], capture_output=True, text=True, timeout=60)
+        run = subprocess.run([command, "live", *words, "--no-open"], capture_output=True, text=True, timeout=LIMIT)
         assert run.returncode == status and word in run.stderr, (words, run)
     with Server(command, path) as server:
-        run = subprocess.run([command, "live", path, "--no-open", "--port", str(server.port)], capture_output=True, text=True, timeout=60)
+        run = subprocess.run([command, "live", path, "--no-open", "--port", str(server.port)], capture_output=True, text=True, timeout=LIMIT)
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
@@ -429,7 +433,7 @@ TESTS = [token_and_origin, wishes, bands, answers, looks, scatter, interrupted, 
 
 
 def has_server(path):
-    run = subprocess.run([command, "live", path, "--no-open", "--idle", "0.1"], capture_output=True, text=True, timeout=60)
+    run = subprocess.run([command, "live", path, "--no-open", "--idle", "0.1"], capture_output=True, text=True, timeout=LIMIT)
     return "libcivetweb-dev" not in run.stderr
 
 
@@ -444,7 +448,7 @@ def main():
                 print("this build has no CivetWeb")
                 return 77
             began = time.monotonic()
-            watchdog = threading.Timer(120, lambda: (faulthandler.dump_traceback(), os._exit(3)))
+            watchdog = threading.Timer(5 * LIMIT, lambda: (faulthandler.dump_traceback(), os._exit(3)))
             watchdog.daemon = True
             watchdog.start()
             test(path)

@@ -16,7 +16,11 @@ from pathlib import Path
 try:
     from ctsimu.scenario import Scenario
 except ImportError:
-    print("skipped: no Python package ctsimu")
+    try:
+        with open(sys.argv[2], encoding="ascii") as file:
+            print("skipped: no Python package ctsimu:", file.read().strip())
+    except OSError:
+        print("skipped: no Python package ctsimu, which ./check installs")
     sys.exit(77)
 
 # Both compute in double; coordinates are below 1e3 mm and pass some ten rotations, 1e3 * 1e-16 * 1e2.

@@ -27,7 +27,10 @@ live = scene.live()
 live"""
 READ = "print('pose', scene['block'].pose[:3, 3].tolist())"
 ASSIGN = "scene['block'].pose = sk.translate(0, -7, 0)\nprint('assigned')"
-BUSY = "import time; time.sleep(4); print('slept', scene['ball'].pose[0, 3])"
+BUSY = """import pathlib, time
+while not pathlib.Path("go-on").exists():
+    time.sleep(0.05)
+print('slept', scene['ball'].pose[0, 3])"""
 SOURCE = "print('source', scene.view.source.tolist(), scene.beam)"
 failures = []
 
@@ -51,7 +54,7 @@ class Jupyter:
     """JupyterLab, running, with a notebook of these cells."""
 
     def __init__(self, folder, cells):
-        self.folder, self.port, self.token = pathlib.Path(folder), free_port(), secrets.token_hex(16)
+        self.folder, self.token = pathlib.Path(folder), secrets.token_hex(16)
         self.folder.mkdir(parents=True, exist_ok=True)
         notebook = {"cells": [cell(i, source) for i, source in enumerate(cells)], "nbformat": 4, "nbformat_minor": 5, "metadata": {
             "kernelspec": {"name": "python3", "display_name": "Python 3", "language": "python"}}}
@@ -59,26 +62,35 @@ class Jupyter:
         settings = self.folder / "settings" / "@jupyterlab" / "apputils-extension" / "notification.jupyterlab-settings"
         settings.parent.mkdir(parents=True, exist_ok=True)
         settings.write_text('{"fetchNews": "false"}', encoding="utf-8")
+        self.log = (self.folder / "jupyter.log").open("w", encoding="utf-8")
+        for _ in range(10):  # another process may take the port before it does
+            self.start()
+            if self.is_there():
+                return
+        raise RuntimeError("JupyterLab does not start: " + (self.folder / "jupyter.log").read_text(encoding="utf-8")[-2000:])
+
+    def start(self):
+        self.port = free_port()
         words = ["-m", "jupyterlab", "--no-browser", "--allow-root", "--ip=127.0.0.1", f"--port={self.port}", "--ServerApp.port_retries=0",
                  f"--IdentityProvider.token={self.token}", f"--ServerApp.root_dir={self.folder}", "--LabApp.expose_app_in_browser=True",
                  "--LabApp.check_for_updates_class=jupyterlab.NeverCheckForUpdate"]
         home = {f"JUPYTER_{name}_DIR": str(self.folder / name.lower()) for name in ("CONFIG", "DATA", "RUNTIME")}
-        self.log = (self.folder / "jupyter.log").open("w", encoding="utf-8")
         self.process = subprocess.Popen([sys.executable, *words], env={**os.environ, **home, "IPYTHONDIR": str(self.folder / "ipython"),
             "JUPYTERLAB_SETTINGS_DIR": str(self.folder / "settings"), "JUPYTERLAB_WORKSPACES_DIR": str(self.folder / "workspaces")},
             stdout=self.log, stderr=self.log)
-        self.wait()
 
-    def wait(self):
-        for _ in range(600):
+    def is_there(self):
+        """Waits until it answers. False: it has ended."""
+        end = time.monotonic() + 120
+        while time.monotonic() < end and self.process.poll() is None:
             try:
                 urllib.request.urlopen(f"http://127.0.0.1:{self.port}/api?token={self.token}", timeout=10).close()
-                return
+                return True
             except OSError:
                 time.sleep(0.1)
-            if self.process.poll() is not None:
-                break
-        raise RuntimeError("JupyterLab does not start: " + (self.folder / "jupyter.log").read_text(encoding="utf-8")[-2000:])
+        self.process.kill()
+        self.process.wait()
+        return False
 
     @property
     def url(self):
@@ -127,7 +139,7 @@ class Lab:
         """The value of an expression in the page of the widget."""
         return self.browser.run(f"(() => {{ const f = document.querySelector('.jp-OutputArea iframe'); return f && f.contentWindow.eval({json.dumps(script)}); }})()")
 
-    def until(self, script, seconds=60):
+    def until(self, script, seconds=120):
         end = time.monotonic() + seconds
         while time.monotonic() < end:
             try:
@@ -163,8 +175,8 @@ def tried(lab, pictures):
     check("3D by the kernel", lab.run("isServed() && !byId('picture').hidden && byId('drawer').options[0].textContent.endsWith('the kernel')"))
     check("a picture", lab.run(COLOURS) > 20, str(lab.run(COLOURS)))
     lab.browser.run("document.querySelector('.jp-OutputArea iframe').scrollIntoView({block: 'end'})")
-    time.sleep(0.5)
     if pictures:
+        time.sleep(0.5)  # the picture is for people
         lab.browser.picture(os.path.join(pictures, "notebook-begin.png"))
     lab.run("choose('part', 0)")
     before, (x, y) = lab.run(SUM), lab.place(ARROW)
@@ -182,8 +194,8 @@ def tried(lab, pictures):
     check("what Python assigns is shown", lab.run(SUM) != before)
 
 
-def busy(lab):
-    """While a cell runs, what is changed waits, and the page says so. Keys move what is chosen."""
+def busy(lab, folder):
+    """While a cell runs, which ends when a file is there, what is changed waits, and the page says so. Keys move what is chosen."""
     lab.run("choose('part', 1)")
     lab.start(3)
     lab.browser.until("jupyterapp.shell.currentWidget.sessionContext.session.kernel.status === 'busy'")
@@ -192,6 +204,7 @@ def busy(lab):
         lab.browser.key("ArrowRight", 1)
     lab.until("byId('role').textContent.includes('the kernel is busy')")
     check("it waits", "slept" not in lab.text(3))
+    (pathlib.Path(folder) / "go-on").touch()
     lab.until("byId('role').textContent === ''")
     lab.until(SETTLED)
     check("nothing moved meanwhile", "slept 0.0" in lab.text(3), lab.text(3))
@@ -236,7 +249,7 @@ def main():
         lab = Lab(browser)
         try:
             tried(lab, pictures)
-            busy(lab)
+            busy(lab, folder)
             looks(lab, pictures)
             check("no exception", not browser.events, json.dumps(browser.events)[:800])
         finally:
