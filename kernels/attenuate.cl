@@ -2,11 +2,6 @@
  * plane's weights. The exponent of node n is the sum over planes of coefficient[n][p] * x_p, and channel c shows the sum over
  * nodes of weight[n][c] * exp(-exponent_n). The host multiplies coefficients by -log2(e), because powers of two are computed. */
 
-#if SKG_ENERGIES
-#define SKG_HALF_UNIT 0.001f
-#else
-#define SKG_HALF_UNIT 1.0f
-#endif
 #if SKG_DOUBLE
 #define SKG_LN2 0.693147180559945309417
 #else
@@ -15,13 +10,24 @@
 
 #define SKG_OUT_TO_REAL_V SKG_CAT(SKG_CAT(convert_, SKG_SCALAR), SKG_WIDE)
 
-/* Values as the image has them: of its type; with half precision rounded to binary16, energies in MeV. */
-static void skg_of_image(skg_realv value, skg_out *lanes) {
+/* Values as the image has them: of its type; with half precision rounded to binary16, in a unit of which 1 is half_unit (energies are
+ * rounded in MeV). */
+static void skg_of_image(skg_realv value, float half_unit, skg_out *lanes) {
     SKG_STORE_V(outv, SKG_TO_OUT_V(value), lanes);
 #if SKG_HALF
-    for (int k = 0; k < SKG_WIDE; k++)
-        lanes[k] = (skg_out)(skg_to_half((float)lanes[k] * SKG_HALF_UNIT) / SKG_HALF_UNIT);
+    for (int k = 0; k < SKG_WIDE; k++) lanes[k] = (skg_out)(skg_to_half((float)lanes[k] * half_unit) / half_unit);
 #endif
+}
+
+/* What the stores of an image need of the arguments: how values are rounded, and whether they are added to what is there. */
+typedef struct {
+    float half_unit;
+    int add;
+} skg_storing;
+
+static skg_storing skg_storing_of(const skg_strip *strip) {
+    const skg_storing storing = {strip->args.energies ? 0.001f : 1.0f, strip->args.add};
+    return storing;
 }
 
 #if SKG_FINE > 1
@@ -30,11 +36,11 @@ static void skg_of_image(skg_realv value, skg_out *lanes) {
 
 /* Adds one row of rays to the pixels of the image from `place` on, in the order of passes: along the row, then down.
  * row: of the pixels' rows of rays; pixels: how many the image has from there on. */
-static void skg_show_rays(const skg_realv *values, __global skg_out *place, int row, int pixels) {
+static void skg_show_rays(const skg_realv *values, skg_storing storing, __global skg_out *place, int row, int pixels) {
     skg_out rays[SKG_RUNS * SKG_WIDE], sums[SKG_SHOWN];
     const int count = min(pixels, SKG_SHOWN);
-    SKG_EACH_RUN skg_of_image(values[r], rays + r * SKG_WIDE);
-    for (int k = 0; k < SKG_SHOWN; k++) sums[k] = (SKG_ADD || row > 0) && k < count ? place[k] : (skg_out)(0);
+    SKG_EACH_RUN skg_of_image(values[r], storing.half_unit, rays + r * SKG_WIDE);
+    for (int k = 0; k < SKG_SHOWN; k++) sums[k] = (storing.add || row > 0) && k < count ? place[k] : (skg_out)(0);
     for (int k = 0; k < SKG_SHOWN; k++)
         for (int a = 0; a < SKG_FINE; a++) sums[k] += rays[k * SKG_FINE + a];
     for (int k = 0; k < count; k++) place[k] = sums[k];
@@ -45,33 +51,34 @@ static void skg_show_rays(const skg_realv *values, __global skg_out *place, int 
  * is reached by an address or a variable index stays in memory. */
 
 /* What skg_show does at the end of a row; with SKG_HALF, everywhere. */
-SKG_APART void skg_show_some(const skg_realv *values, __global skg_out *place, int pixels) {
+SKG_APART void skg_show_some(const skg_realv *values, const skg_storing *storing, __global skg_out *place, int pixels) {
     for (int r = 0; r * SKG_WIDE < pixels && r < SKG_RUNS; r++) {
         skg_out lanes[SKG_WIDE];
-        skg_of_image(values[r], lanes);
+        skg_of_image(values[r], storing->half_unit, lanes);
         for (int k = 0; k < min(pixels - r * SKG_WIDE, SKG_WIDE); k++, place++)
-            *place = SKG_ADD ? *place + lanes[k] : lanes[k];
+            *place = storing->add ? *place + lanes[k] : lanes[k];
     }
 }
 
 /* Writes the pixels of all runs, as far as there are any. */
-static void skg_show(const skg_realv *values, __global skg_out *place, int pixels) {
+static void skg_show(const skg_realv *values, skg_storing storing, __global skg_out *place, int pixels) {
     if (!SKG_HALF && pixels >= SKG_RUNS * SKG_WIDE) {
         SKG_EACH_RUN {
-            const skg_outv shown = SKG_TO_OUT_V(values[r]);
+            skg_outv shown = SKG_TO_OUT_V(values[r]);
             __global skg_out *to = place + r * SKG_WIDE;
-            SKG_STORE_GLOBAL_V(outv, SKG_ADD ? SKG_LOAD_GLOBAL_V(outv, to) + shown : shown, to);
+            if (storing.add) shown += SKG_LOAD_GLOBAL_V(outv, to);
+            SKG_STORE_GLOBAL_V(outv, shown, to);
         }
         return;
     }
     skg_realv kept[SKG_RUNS];
     SKG_EACH_RUN kept[r] = values[r];
-    skg_show_some(kept, place, pixels);
+    skg_show_some(kept, &storing, place, pixels);
 }
 
 /* The exponent of one node for each run: the sum over planes of coefficient times mm. */
 static void skg_exponents(__constant const skg_real *coefficient, const skg_pixels *pixels, skg_realv *exponent) {
-#if SKG_SPARSE
+#if SKG_GENERAL
     SKG_EACH_RUN exponent[r] = (skg_realv)(0);
     for (int k = 0; k < pixels->filled; k++)
         SKG_EACH_RUN exponent[r] = fma((skg_realv)(coefficient[pixels->plane[k]]), pixels->mm[k][r], exponent[r]);
@@ -102,15 +109,14 @@ static void skg_count(const skg_realv *values, skg_real limit, int pixels, __glo
 }
 
 /* Counts what is not finite once it is shown: NaN, infinity, and what rounds to infinity in binary16. */
-static void skg_count_infinite(const skg_realv *shown, int pixels, __global int *count) {
-    const skg_realv most = (skg_realv)(SKG_HALF ? (skg_real)65520 / (skg_real)SKG_HALF_UNIT : (skg_real)INFINITY);
+static void skg_count_infinite(const skg_realv *shown, float half_unit, int pixels, __global int *count) {
+    const skg_realv most = (skg_realv)(SKG_HALF ? (skg_real)65520 / (skg_real)half_unit : (skg_real)INFINITY);
     const skg_realv zero = (skg_realv)(0), one = (skg_realv)(1);
     skg_realv infinite[SKG_RUNS];
     SKG_EACH_RUN infinite[r] = fabs(shown[r]) < most ? zero : one;
     skg_count(infinite, 0, pixels, count);
 }
 
-#if SKG_RANGED
 /* Pixels that have a plane outside range[plane]. */
 static void skg_count_outside(const skg_strip *strip, const skg_pixels *pixels) {
     __constant const skg_real *range = strip->range;
@@ -126,147 +132,161 @@ static void skg_count_outside(const skg_strip *strip, const skg_pixels *pixels) 
     }
     skg_count(most, 0, strip->args.layout.columns - strip->column, strip->negative + 1);
 }
-#endif
 
 /* shown = sum over nodes of weight * 2^power. For the logarithm it is divided by 2^highest, so that nothing underflows. */
 static void skg_add_nodes(const skg_strip *strip, skg_pixels *pixels) {
     skg_realv power[SKG_RUNS];
     SKG_EACH_CHANNEL SKG_EACH_RUN pixels->shown[c][r] = (skg_realv)(0);
-#if SKG_NOISE
+#if SKG_GENERAL
     SKG_EACH_CHANNEL SKG_EACH_RUN pixels->spread[c][r] = (skg_realv)(0);
 #endif
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-    for (int n = 1; n < strip->args.nodes; n++) {
-        skg_exponents(strip->coefficients + n * SKG_PLANES, pixels, power);
+    const int logarithm = strip->args.shown == SKG_SHOW_LOGARITHM;
+    for (int n = 1; logarithm && n < strip->args.nodes; n++) {
+        skg_exponents(strip->coefficients + n * SKG_PLANE_COUNT, pixels, power);
         SKG_EACH_RUN pixels->highest[r] = power[r] > pixels->highest[r] ? power[r] : pixels->highest[r];
     }
-#endif
     for (int n = 0; n < strip->args.nodes; n++) {
-        skg_exponents(strip->coefficients + n * SKG_PLANES, pixels, power);
+        skg_exponents(strip->coefficients + n * SKG_PLANE_COUNT, pixels, power);
+        if (logarithm) SKG_EACH_RUN power[r] -= pixels->highest[r];
         SKG_EACH_RUN {
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-            const skg_realv passed = skg_exp2_v(power[r] - pixels->highest[r]);
-#else
             const skg_realv passed = skg_exp2_v(power[r]);
-#endif
             SKG_EACH_CHANNEL pixels->shown[c][r] =
                 fma((skg_realv)(strip->weights[n * SKG_CHANNELS + c]), passed, pixels->shown[c][r]);
-#if SKG_NOISE
-            SKG_EACH_CHANNEL pixels->spread[c][r] =
+#if SKG_GENERAL
+            if (strip->args.noise) SKG_EACH_CHANNEL pixels->spread[c][r] =
                 fma((skg_realv)(strip->variances[n * SKG_CHANNELS + c]), passed, pixels->spread[c][r]);
 #endif
         }
     }
 }
 
-#if SKG_RATIO
+/* The amounts of the shades of run r. */
+static void skg_copy_shades(const skg_strip *strip, const skg_pixels *pixels, int r, skg_realv *amounts) {
+    amounts[0] = (skg_realv)(0); /* there may be none */
+    SKG_EACH_PLANE(SKG_SUMMED) amounts[p - SKG_SUMMED] = pixels->x[p][r];
+}
+
 /* The power of two of node n in the flat field, in which there are the world and the shades alone, less `base`. */
-static skg_realv skg_open_power(const skg_strip *strip, const skg_pixels *pixels, int n, int r, skg_realv base) {
+static skg_realv skg_open_power(const skg_strip *strip, const skg_realv *amounts, int n, int r, skg_realv base) {
     skg_realv power = -base;
-#if SKG_SHADES
-    power += skg_shade_power(strip, pixels, n, r);
+#if SKG_GENERAL
+    if (strip->args.shades.count > 0) power += skg_shade_power(strip, amounts, n);
 #endif
-#if SKG_WORLD
-    power = fma((skg_realv)(strip->coefficients[n * SKG_PLANES + strip->args.world_plane]), pixels->world[r], power);
-#endif
+    if (strip->args.world_plane >= 0)
+        power = fma((skg_realv)(strip->coefficients[n * SKG_PLANE_COUNT + strip->args.world_plane]), skg_world_v(strip, r), power);
     return power;
 }
 
 /* The greatest power of two of the flat field. */
-static skg_realv skg_highest_flat_field(const skg_strip *strip, const skg_pixels *pixels, int r) {
+static skg_realv skg_highest_flat_field(const skg_strip *strip, const skg_realv *amounts, int r) {
     const skg_realv zero = (skg_realv)(0);
-    skg_realv highest = skg_open_power(strip, pixels, 0, r, zero);
+    skg_realv highest = skg_open_power(strip, amounts, 0, r, zero);
     for (int n = 1; n < strip->args.nodes; n++) {
-        const skg_realv power = skg_open_power(strip, pixels, n, r, zero);
+        const skg_realv power = skg_open_power(strip, amounts, n, r, zero);
         highest = power > highest ? power : highest;
     }
     return highest;
 }
 
 /* The sum over nodes of weight * 2^(power - base) for one channel of the flat field. */
-static skg_realv skg_flat_field(const skg_strip *strip, const skg_pixels *pixels, int channel, int r, skg_realv base) {
+static skg_realv skg_flat_field(const skg_strip *strip, const skg_realv *amounts, int channel, int r, skg_realv base) {
     skg_realv flat = (skg_realv)(0);
     for (int n = 0; n < strip->args.nodes; n++)
         flat = fma((skg_realv)(strip->weights[n * SKG_CHANNELS + channel]),
-                   skg_exp2_v(skg_open_power(strip, pixels, n, r, base)), flat);
+                   skg_exp2_v(skg_open_power(strip, amounts, n, r, base)), flat);
     return flat;
 }
-#endif
+
+/* What intensities of run r are multiplied by. */
+static skg_realv skg_factor_v(const skg_strip *strip, int r) {
+    const skg_realv factor = (skg_realv)(strip->args.factor);
+    if (!strip->args.falloff) return factor;
+    const skg_realv near =
+        strip->args.foot / skg_ray_lengths_v(&strip->args.ray, strip->column + r * SKG_WIDE, strip->row);
+    return near * near * near * factor;
+}
+
+/* The logarithm of a sum over nodes, whose factor cancels, or its ratio to a flat field that differs from pixel to pixel, or both.
+ * value: in and out; highest: that the sum was divided by the power of two of. */
+SKG_APART void skg_compare(const skg_strip *strip, const skg_realv *amounts, const skg_realv *highest, int channel, int r,
+                           skg_realv *value) {
+    const int logarithm = strip->args.shown == SKG_SHOW_LOGARITHM;
+    if (logarithm) *value = -fma(*highest, (skg_realv)(SKG_LN2), skg_log_v(*value));
+    if (!strip->args.ratio) return;
+    const skg_realv top = skg_highest_flat_field(strip, amounts, r);
+    const skg_realv flat = skg_flat_field(strip, amounts, channel, r, top);
+    if (logarithm)
+        *value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(flat));
+    else
+        *value = *value / flat * skg_exp2_v(-top) * skg_factor_v(strip, r);
+}
 
 /* From sums over nodes to what is shown of run r. */
 static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
-#if SKG_SHOW == SKG_SHOW_LOGARITHM && !SKG_NOISE /* the factor cancels */
-#elif SKG_FALLOFF
-    const skg_realv near =
-        strip->args.foot / skg_ray_lengths_v(&strip->args.ray, strip->column + r * SKG_WIDE, strip->row);
-    const skg_realv all = near * near * near * strip->args.factor;
-#else
-    const skg_realv all = (skg_realv)(strip->args.factor);
+    if (strip->args.shown == SKG_SHOW_LOGARITHM || strip->args.ratio) {
+        skg_realv amounts[SKG_SHADES_MAX], highest = pixels->highest[r];
+        skg_copy_shades(strip, pixels, r, amounts);
+        SKG_EACH_CHANNEL {
+            skg_realv value = pixels->shown[c][r];
+            skg_compare(strip, amounts, &highest, c, r, &value);
+            pixels->shown[c][r] = value;
+        }
+    } else {
+        const skg_realv all = skg_factor_v(strip, r);
+        SKG_EACH_CHANNEL {
+            pixels->shown[c][r] *= all;
+#if SKG_GENERAL
+            if (!strip->args.noise) continue;
+            const skg_realv noisy = skg_noisy_v(strip, pixels, r, c, all);
+            if (strip->args.noise == SKG_NOISE_APART)
+                pixels->spread[c][r] = noisy - pixels->shown[c][r];
+            else
+                pixels->shown[c][r] = noisy;
 #endif
-#if SKG_RATIO
-    const skg_realv top = skg_highest_flat_field(strip, pixels, r);
-#endif
-    SKG_EACH_CHANNEL {
-        skg_realv value = pixels->shown[c][r];
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-        value = -fma(pixels->highest[r], (skg_realv)(SKG_LN2), skg_log_v(value));
-#if SKG_RATIO
-        value += fma(top, (skg_realv)(SKG_LN2), skg_log_v(skg_flat_field(strip, pixels, c, r, top)));
-#endif
-#elif SKG_RATIO
-        value = value / skg_flat_field(strip, pixels, c, r, top) * skg_exp2_v(-top) * all;
-#else
-        value *= all;
-#endif
-        pixels->shown[c][r] = value;
-#if SKG_NOISE_APART
-        pixels->spread[c][r] = skg_noisy_v(strip, pixels, r, c, all) - value;
-#elif SKG_NOISE
-        pixels->shown[c][r] = skg_noisy_v(strip, pixels, r, c, all);
-#endif
+        }
     }
     /* Only what the parts subtract is counted as negative. */
-#if SKG_SHADES
-    pixels->highest[r] = (skg_realv)(0);
-    SKG_EACH_SUMMED
-    pixels->highest[r] = fma((skg_realv)(strip->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
+#if SKG_GENERAL
+    if (strip->args.shades.count > 0) {
+        pixels->highest[r] = (skg_realv)(0);
+        SKG_EACH_SUMMED
+        pixels->highest[r] = fma((skg_realv)(strip->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
+    }
 #endif
-#if SKG_WORLD
-    pixels->highest[r] -= strip->coefficients[strip->args.world_plane] * pixels->world[r];
-#endif
+    if (strip->args.world_plane >= 0)
+        pixels->highest[r] -= strip->coefficients[strip->args.world_plane] * skg_world_v(strip, r);
 }
-
-#if SKG_COLLIMATED
-/* What a ray that does not arrive shows: the logarithm is that of skg_logarithm. */
-#define SKG_STOPPED (SKG_SHOW == SKG_SHOW_INTENSITY ? (skg_real)(0) : 126 * (skg_real)SKG_LN2)
 
 /* Rays outside the window do not arrive. What noise has drawn for them is dropped. */
 static void skg_collimate(const skg_strip *strip, skg_pixels *pixels) {
+    /* The logarithm is that of skg_logarithm. */
+    const skg_realv stopped =
+        (skg_realv)(strip->args.shown == SKG_SHOW_INTENSITY ? (skg_real)(0) : 126 * (skg_real)SKG_LN2);
     const int in_rows = strip->row >= strip->args.window[2] && strip->row < strip->args.window[3];
     const int from = strip->args.window[0], to = in_rows ? strip->args.window[1] : from;
     SKG_EACH_RUN {
         const skg_intv column = strip->column + r * SKG_WIDE + SKG_TO_INT_V(SKG_LANES);
         const skg_maskv arrives = SKG_TO_MASK_V((column >= from) & (column < to));
         SKG_EACH_CHANNEL {
-            pixels->shown[c][r] = arrives ? pixels->shown[c][r] : (skg_realv)(SKG_STOPPED);
-#if SKG_NOISE_APART
+            pixels->shown[c][r] = arrives ? pixels->shown[c][r] : stopped;
+#if SKG_GENERAL
             pixels->spread[c][r] = arrives ? pixels->spread[c][r] : (skg_realv)(0);
 #endif
         }
     }
 }
-#endif
 
 /* Writes the values of a channel of the runs. */
 static void skg_show_channel(const skg_strip *strip, const skg_realv *values, int channel) {
     __global skg_out *place = strip->output + strip->args.image.offset + channel * strip->args.image.channel_stride +
                               strip->row / SKG_FINE * strip->args.image.row_stride + strip->column / SKG_FINE;
     const int left = strip->args.layout.columns - strip->column;
-    skg_count_infinite(values, left, strip->negative + 2);
+    const skg_storing storing = skg_storing_of(strip);
+    skg_count_infinite(values, storing.half_unit, left, strip->negative + 2);
 #if SKG_FINE > 1
-    skg_show_rays(values, place, strip->row % SKG_FINE, left / SKG_FINE);
+    skg_show_rays(values, storing, place, strip->row % SKG_FINE, left / SKG_FINE);
 #else
-    skg_show(values, place, left);
+    skg_show(values, storing, place, left);
 #endif
 }
 
@@ -291,31 +311,25 @@ static void skg_count_negative(const skg_strip *strip, const skg_pixels *pixels)
 static void skg_attenuate_runs(const skg_strip *strip) {
     skg_pixels pixels;
     skg_read_planes(strip, &pixels);
-#if SKG_RANGED
-    skg_count_outside(strip, &pixels);
-#endif
-#if SKG_SPARSE
-    skg_list_planes(&pixels);
+    if (strip->args.ranged) skg_count_outside(strip, &pixels);
+#if SKG_GENERAL
+    skg_list_planes(strip, &pixels);
 #endif
     skg_exponents(strip->coefficients, &pixels, pixels.highest);
-#if SKG_SHOW == SKG_SHOW_EXPONENT
-    SKG_EACH_RUN {
-        pixels.shown[0][r] = pixels.highest[r];
-        pixels.highest[r] = -pixels.highest[r];
+    if (strip->args.shown == SKG_SHOW_EXPONENT) {
+        SKG_EACH_RUN {
+            pixels.shown[0][r] = pixels.highest[r];
+            pixels.highest[r] = -pixels.highest[r];
+        }
+    } else {
+        skg_add_nodes(strip, &pixels);
+        SKG_EACH_RUN skg_finish(strip, &pixels, r);
     }
-#else
-    skg_add_nodes(strip, &pixels);
-    SKG_EACH_RUN skg_finish(strip, &pixels, r);
+    if (strip->args.collimated) skg_collimate(strip, &pixels);
+    SKG_EACH_CHANNEL skg_show_channel(strip, pixels.shown[c], c);
+#if SKG_GENERAL
+    if (strip->args.noise == SKG_NOISE_APART) SKG_EACH_CHANNEL skg_show_channel(strip, pixels.spread[c], SKG_CHANNELS + c);
 #endif
-#if SKG_COLLIMATED
-    skg_collimate(strip, &pixels);
-#endif
-    SKG_EACH_CHANNEL {
-        skg_show_channel(strip, pixels.shown[c], c);
-#if SKG_NOISE_APART
-        skg_show_channel(strip, pixels.spread[c], SKG_CHANNELS + c);
-#endif
-    }
     skg_count_negative(strip, &pixels);
 }
 
@@ -333,9 +347,9 @@ SKG_APART void skg_attenuate_strip(const skg_strip *whole) {
  *
  * args           skg_shared.h says what each member is
  * coefficients   of -exponent * log2(e), or of the exponent if that is shown
- * variances      of the nodes, as weights; SKG_NOISE
- * lists          [accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p; SKG_SUMS
- * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range; SKG_RANGED
+ * variances      of the nodes, as weights; with noise
+ * lists          [args.sums accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p
+ * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range; NULL unless args.ranged
  * polynomials    [shades of heel and oblique scintillator][SKG_TERMS] coefficients of 1, z, z^2, ...
  * tables         of bow-tie and grid (lib/spectral/shading.h)
  * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `args.limit` (the exponent

@@ -54,37 +54,24 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
     float weights[SKG_WIDE];
     int places[SKG_WIDE], wanted[SKG_WIDE];
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_SIGNAL, arrival.place, &signal);
-#if SKG_GRID
-    weight *= skg_through_grid(s->args, &signal, u, v, way, arrival.facing);
-#endif
+    if (s->args->grid) weight *= skg_through_grid(s->args, &signal, u, v, way, arrival.facing);
     SKG_STORE_V(intv, plane * cells + cell, places);
-#if SKG_NOISE
     int powers[SKG_WIDE];
     SKG_STORE_V(intv, SKG_SCATTER_KINDS * cells + cell, powers);
-#endif
     SKG_STORE_V(intv, who & (weight > (skg_fv)(0.0f)), wanted);
-#if SKG_BANDS
     int bands[SKG_WIDE];
     skg_find_bands(s->args, s->detector, kev, bands);
-#endif
-    for (int layer = 0; layer < SKG_LAYERS; layer++) {
-#if SKG_LAYERED
-        const skg_fv part = weight * skg_layer_share(s->args, s->detector + s->args->edges, layer, &arrival);
-#else
-        const skg_fv part = weight;
-#endif
+    for (int layer = 0; layer < s->args->layers; layer++) {
+        skg_fv part = weight;
+        if (s->args->cosines > 0) part *= skg_layer_share(s->args, s->detector + s->args->edges, layer, &arrival);
         SKG_STORE_V(realv, part * (skg_fv)(s->args->scale), weights);
         for (int l = 0; l < SKG_WIDE; l++) {
             int image = layer * s->args->bands;
             if (!wanted[l]) continue;
-#if SKG_BANDS
             if (bands[l] < 0) continue;
             image += bands[l];
-#endif
             skg_deposit(s->sums, image * images + places[l], weights[l] * signal.of[l].x);
-#if SKG_NOISE
-            skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].y);
-#endif
+            if (s->args->noise) skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].y);
         }
     }
 }
@@ -133,9 +120,7 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
         const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
         skg_march(s->args, s->cells, p->at, way, enter, length, jitter, &sums);
-#if SKG_WORLD
-        skg_add_world(s->args, distance - length, &sums);
-#endif
+        if (s->args->world_around) skg_add_world(s->args, distance - length, &sums);
         skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
         const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
@@ -165,7 +150,7 @@ static void skg_fly_on(const skg_scattering *s, __global const float *angles, sk
     for (int l = 0; l < SKG_WIDE; l++) low[l] = angles[from[l]], wide[l] = angles[from[l] + 1] - low[l];
     const skg_fv width = SKG_LOAD_V(realv, wide);
     const skg_fv cosine = fma(place - SKG_TO_FLOAT_V(bin), width, SKG_LOAD_V(realv, low));
-    skg_fv compton, rayleigh, left, u, v, distance;
+    skg_fv compton, rayleigh, left, u, v;
     skg_likely(s, i, p->kev, cosine, &compton, &rayleigh, &left);
     const skg_fv sum = max(compton + rayleigh, (skg_fv)(1e-30f));
     p->weight *= sum * width * (skg_fv)(SKG_SCATTER_ANGLES * 6.28318531f);
@@ -213,12 +198,8 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     const skg_fv energy = skg_lattice(s, lattice, batch, p->history, 2),
                  spot = skg_lattice(s, lattice, batch, p->history, 12);
     float at[SKG_WIDE], kev[SKG_WIDE], weight[SKG_WIDE], x[SKG_WIDE], y[SKG_WIDE], z[SKG_WIDE];
-#if SKG_HEEL
     int bins[SKG_WIDE];
-#endif
-#if SKG_BOWTIE
     float per_mm[SKG_WIDE];
-#endif
     SKG_STORE_V(realv, energy, at);
     SKG_STORE_V(realv, spot * (skg_fv)((float)args->spots), x);
     for (int l = 0; l < SKG_WIDE; l++) {
@@ -232,12 +213,8 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
         }
         kev[l] = beam[low].x;
         weight[l] = beam[low].z;
-#if SKG_HEEL
         bins[l] = low;
-#endif
-#if SKG_BOWTIE
         per_mm[l] = beam[low].w;
-#endif
         const float4 point = spots[min((int)x[l], args->spots - 1)];
         x[l] = point.x, y[l] = point.y, z[l] = point.z;
     }
@@ -258,12 +235,8 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     /* Photons per sr: the field's area as the source sees it, over that at its middle. */
     const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
     skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
-#if SKG_HEEL
-    share *= skg_heel_share(args, profiles, bins, way);
-#endif
-#if SKG_BOWTIE
-    share *= skg_filter_share(args, profiles, per_mm, way);
-#endif
+    if (args->heel_rows > 0) share *= skg_heel_share(args, profiles, bins, way);
+    if (args->fan_rows > 0) share *= skg_filter_share(args, profiles, per_mm, way);
 #endif
     p->at.x = fresh ? begin.x : p->at.x, p->at.y = fresh ? begin.y : p->at.y,
     p->at.z = fresh ? begin.z : p->at.z;
@@ -278,7 +251,6 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     p->alive |= fresh;
 }
 
-#if SKG_WORLD
 /* The share of photons that come to the cells: those that start within them have no way there. */
 static skg_fv skg_reach_cells(const skg_scattering *s, const skg_photons *p, skg_fv enter) {
     skg_mixtures before;
@@ -291,7 +263,6 @@ static skg_fv skg_reach_cells(const skg_scattering *s, const skg_photons *p, skg
     skg_add_world(s->args, mm, &before);
     return skg_passes(s, &before, p->kev);
 }
-#endif
 
 /* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
 static void skg_flight(const skg_scattering *s, __constant const uint *lattice, __global const float *angles,
@@ -316,16 +287,14 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
     const skg_fv passed = skg_exp(-depth);
     skg_fv arrives = passed;
-#if SKG_WORLD
-    skg_mixtures around = sums;
-    skg_add_world(s->args, p->reach - length, &around);
-    arrives = skg_passes(s, &around, p->kev);
-#endif
+    if (s->args->world_around) {
+        skg_mixtures around = sums;
+        skg_add_world(s->args, p->reach - length, &around);
+        arrives = skg_passes(s, &around, p->kev);
+    }
     skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,
               p->weight * p->share * arrives);
-#if SKG_WORLD
-    p->weight *= skg_reach_cells(s, p, enter);
-#endif
+    if (s->args->world_around) p->weight *= skg_reach_cells(s, p, enter);
     /* Somewhere within the object. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
     p->alive &= depth > (skg_fv)(1e-7f);
@@ -363,11 +332,11 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
  * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy; momenta: [momenta][2] S and F^2
  * angles    [rows][SKG_SCATTER_ANGLES + 1] cosines between which scattering is equally likely
  * beam      [bins] energy, share of the bins up to this one, weight, 1/mm of a bow-tie filter
- * profiles  with SKG_HEEL or SKG_BOWTIE: their tables (profile.clh); else NULL
+ * profiles  of the heel effect and a bow-tie filter: their tables (profile.clh); else NULL
  * spots     [spots] points of the source, or the direction of a parallel beam
  * lattice   [SKG_SCATTER_DIMENSIONS] generating vector; then for each batch its shift
- * detector  with SKG_BANDS [bands + 1] their edges, keV; then with SKG_LAYERED what layers record (arrive.clh); else NULL
- * sums      [batches][SKG_LAYERS][bands][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
+ * detector  [args.edges] edges of the bands, keV; then with args.cosines what layers record (arrive.clh); else NULL
+ * sums      [batches][args.layers][bands][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
  * Work-items: those of a batch, then batches. */
 __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
                           __global const float4 *energies, __global const float4 *momenta,
@@ -377,7 +346,7 @@ __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
     const uint batch = (uint)get_global_id(1);
     uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
     const uint end = min(next + (uint)args.each, (uint)args.end);
-    const int images = SKG_LAYERS * args.bands * SKG_SCATTER_PLANES * args.rows * args.columns;
+    const int images = args.layers * args.bands * SKG_SCATTER_PLANES * args.rows * args.columns;
     const skg_scattering s = {&args, cells, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images};
     skg_photons p = {
         .alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};

@@ -1,6 +1,5 @@
 typedef skg_floatv skg_loose_floatv __attribute__((aligned(sizeof(float))));
 
-#if SKG_NOISE
 /* The noise of one channel: photons that arrive by different ways are independent. pixel: the first one's number. */
 static skg_floatv skg_scattered_noise(const skg_scattered_args *args, skg_floatv value, __global const float *variance, int pixel,
                                       int pixels, int channel) {
@@ -16,7 +15,6 @@ static skg_floatv skg_scattered_noise(const skg_scattered_args *args, skg_floatv
     const skg_floatv counted = skg_poisson_v(some & ~many ? expected : (skg_floatv)(0.0f), draw[1]);
     return some ? (many ? normal : counted * (spread / max(value, (skg_floatv)(1e-30f)))) : value;
 }
-#endif
 
 /* Writes values to the pixels of a channel. */
 static void skg_show_scattered(const skg_scattered_args *args, skg_floatv value, int channel, int pixels, __global skg_real *image) {
@@ -30,7 +28,7 @@ static void skg_show_scattered(const skg_scattered_args *args, skg_floatv value,
  * exponential.clh, random.clh and noise.clh.
  *
  * mean      [channels][rows][columns] what is added on average
- * variance  [channels][rows][columns] with SKG_NOISE; else NULL
+ * variance  [channels][rows][columns] with args.noise; else NULL
  * image     with SKG_NOISE_APART, deviations follow behind the means of all channels */
 __kernel void skg_scattered(skg_scattered_args args, __global const float *mean, __global const float *variance,
                             __global skg_real *image) {
@@ -42,17 +40,11 @@ __kernel void skg_scattered(skg_scattered_args args, __global const float *mean,
         float means[SKG_WIDE];
         for (int k = 0; k < SKG_WIDE; k++) means[k] = mean[channel * all + pixel + min(k, pixels - 1)];
         const skg_floatv value = SKG_LOAD_V(floatv, means) * (skg_floatv)(args.scale);
-#if SKG_NOISE
-        const skg_floatv noisy =
-            skg_scattered_noise(&args, value, variance + channel * all + pixel, pixel, pixels, channel);
-#endif
-#if SKG_NOISE_APART
-        skg_show_scattered(&args, value, channel, pixels, image);
-        skg_show_scattered(&args, noisy - value, args.image.channels + channel, pixels, image);
-#elif SKG_NOISE
-        skg_show_scattered(&args, noisy, channel, pixels, image);
-#else
-        skg_show_scattered(&args, value, channel, pixels, image);
-#endif
+        skg_floatv noisy = value;
+        if (args.noise)
+            noisy = skg_scattered_noise(&args, value, variance + channel * all + pixel, pixel, pixels, channel);
+        const int apart = args.noise == SKG_NOISE_APART;
+        skg_show_scattered(&args, apart ? value : noisy, channel, pixels, image);
+        if (apart) skg_show_scattered(&args, noisy - value, args.image.channels + channel, pixels, image);
     }
 }

@@ -173,8 +173,11 @@ typedef struct {
     real fan[6];   /* across and along the central ray, whose quotient is the tangent of the fan's angle */  \
     real tilt[4];  /* of the ray against the strips: tilt[0..2]; tilt[3]: cells of the table for 1 */        \
     real path[4];  /* mm through the grid / |ray|; obliquity / |ray|; the least of the table; cells for 1 */ \
-    SKG_INT rows;  /* of the bow-tie, whose table is the first */                                            \
-    SKG_INT table; /* where that of the grid begins */
+    SKG_INT rows;  /* of the bow-tie, whose table is the first; 0: there is none */                          \
+    SKG_INT table; /* where that of the grid begins */                                                       \
+    SKG_INT count; /* of shades */                                                                           \
+    SKG_INT heels, obliques,                                                                                 \
+        grids; /* how many of them are of the heel effect, an oblique scintillator, a grid */
 
 /* An image in its buffer: the place of its first pixel and its strides, in elements, and its size. */
 typedef struct {
@@ -205,7 +208,7 @@ typedef struct {
     real factor;               /* of intensities */                                                          \
     real limit;                /* exponents below -limit are counted */                                      \
     real foot;                 /* mm from the source to the foot of its perpendicular on the detector; */    \
-                               /* SKG_FALLOFF: intensities are multiplied by the cube of foot / |ray| */     \
+                               /* with falloff, intensities are multiplied by the cube of foot / |ray| */    \
     real photons;              /* if fewer are detected in a pixel they are drawn one by one; */             \
                                /* mean^2 / variance, never more than their number, decides */                \
     real world[4];             /* world[0] is added to world_plane for each mm of path, which is */          \
@@ -213,9 +216,38 @@ typedef struct {
     skg_shade_##suffix shades; /* last of the reals, because it ends in integers */                          \
     skg_raster_layout layout;                                                                                \
     skg_noise_args key;                                                                                      \
-    SKG_INT nodes, world_plane;                                                                              \
-    SKG_INT window[4]; /* SKG_COLLIMATED: columns from, to, rows from, to */                                 \
+    SKG_INT planes; /* shades included */                                                                    \
+    SKG_INT sums;   /* accumulators that planes are mixed from; 0: accumulators are planes */                \
+    SKG_INT nodes;                                                                                           \
+    SKG_INT world_plane; /* that the world's path adds to; -1: vacuum */                                     \
+    SKG_INT shown;       /* SKG_SHOW_... */                                                                  \
+    SKG_INT ratio;       /* 1: divided by a flat field that differs from pixel to pixel */                   \
+    SKG_INT falloff;     /* 1: intensities fall with the distance from the source */                         \
+    SKG_INT energies;    /* 1: shows energies, which SKG_HALF rounds in MeV */                               \
+    SKG_INT add;         /* 1: values are added to those of earlier passes */                                \
+    SKG_INT ranged;      /* 1: pixels are counted whose planes leave a range */                              \
+    SKG_INT noise;       /* 0: none; SKG_NOISE_... */                                                        \
+    SKG_INT collimated;  /* 1: rays outside the window of pixels are stopped by jaws */                      \
+    SKG_INT window[4];   /* columns from, to, rows from, to */                                               \
     skg_image_args image;
+
+/* What skg_attenuate shows: the sum of weight * exp(-exponent); -ln of that; the exponent of the only node, which is a path length
+ * or an attenuation of one energy. */
+#define SKG_SHOW_INTENSITY 0
+#define SKG_SHOW_LOGARITHM 1
+#define SKG_SHOW_EXPONENT 2
+
+/* Quantum noise is drawn in the image, or its deviations from the mean have channels of their own. */
+#define SKG_NOISE_DRAWN 1
+#define SKG_NOISE_APART 2
+
+/* Up to this number of planes, and without shades and noise, a program of skg_attenuate is made for their number. Else it is a
+ * general one for up to a multiple of SKG_PLANES_STEP planes. */
+#define SKG_FEW_PLANES 6
+#define SKG_PLANES_STEP 16
+
+/* The most shades of a plan. */
+#define SKG_SHADES_MAX 14
 
 /* Of skg_detect (detect.cl). */
 #define SKG_DETECT_MEMBERS(real)                                                                             \
@@ -257,18 +289,21 @@ typedef struct {
     float angle_rows;     /* rows of the table of angles for one of that by energy */
     float min_kev, scale; /* photons below are given up; of sums */
     float strips[3],
-        focus; /* SKG_GRID: across the strips; 1 / mm to the line where their planes meet, or 0 */
+        focus; /* with a grid: across the strips; 1 / mm to the line where their planes meet, or 0 */
     float strips_u, strips_v;    /* mm across the strips along the sides of the detector */
     float period, strip, height; /* of the strips, mm */
     float anode[3], heel_low,
-        heel_per; /* SKG_HEEL: across its face; cosine of the first row of the table, rows for a cosine of 1 */
+        heel_per; /* heel_rows > 0: across its face; cosine of the first row of the table, rows for a cosine of 1 */
     float world[4],
-        world_start; /* SKG_WORLD: coefficients around the cells; of a parallel beam where it begins, mm along it */
-    float central[3], fan[3]; /* SKG_BOWTIE: to the detector's middle; where the angles of the fan grow */
+        world_start; /* world_around: coefficients around the cells; of a parallel beam where it begins, mm along it */
+    float central[3], fan[3]; /* fan_rows > 0: to the detector's middle; where the angles of the fan grow */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
     SKG_INT heel_rows, fan_rows; /* of the table of the heel effect and of the filter's; 0: none */
     SKG_INT bands, edges,
-        cosines;              /* channels of the image; numbers before the table of layers; its cosines */
+        cosines;          /* channels of the image; numbers before the table of layers; its cosines, or 0 */
+    SKG_INT layers;       /* of the scintillator, each of which has an image of scattered photons */
+    SKG_INT grid, noise;  /* 1: there is an anti-scatter grid; the variance of the signal is added up, too */
+    SKG_INT world_around; /* 1: the cells stand in a material */
     SKG_INT first, end, each; /* histories of a batch; of a work-item */
     SKG_INT seed[2];          /* low word first */
 } skg_scatter_args;
@@ -278,7 +313,8 @@ typedef struct {
     skg_noise_args key;
     skg_image_args image;
     SKG_INT add;
-    float scale; /* of what is added */
+    float scale;             /* of what is added */
+    SKG_INT noise, reserved; /* 0: none; SKG_NOISE_... */
 } skg_scattered_args;
 
 /* The structs whose reals have the precision of the program. The kernels' have the suffix `args`. */
@@ -324,8 +360,8 @@ _Static_assert(sizeof(skg_part_double) == 21 * 8 + 12 * 4, "layout of a part, do
 _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");
-_Static_assert(sizeof(skg_shade_float) == 22 * 4 && sizeof(skg_shade_double) == 21 * 8, "layout of shades");
-_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 168 && sizeof(skg_attenuate_double) == 40 * 8 + 168,
+_Static_assert(sizeof(skg_shade_float) == 26 * 4 && sizeof(skg_shade_double) == 23 * 8, "layout of shades");
+_Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 224 && sizeof(skg_attenuate_double) == 40 * 8 + 224,
                "layout of the arguments of skg_attenuate");
 _Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_double) == 4 * 8 + 64,
                "layout of the arguments of skg_detect");
@@ -338,7 +374,7 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 63 * 4 + 20 * 4 && sizeof(skg_scattered_args) == 72,
+_Static_assert(sizeof(skg_scatter_args) == 63 * 4 + 24 * 4 && sizeof(skg_scattered_args) == 80,
                "layout of scatter");
 #endif
 #endif

@@ -1,20 +1,20 @@
 /* The transpose of attenuate.cl: from the derivative of a loss by the image to those by the sums. With x_p the mm of plane p,
  * the intensity of a channel is sum over n of weight_n 2^(power_n), and d 2^(power_n) / d x_p = ln 2 coefficient_np 2^(power_n). */
 
-/* Planes of accumulators. */
-#if SKG_SUMS
-#define SKG_WEIGHED SKG_SUMS
-#else
-#define SKG_WEIGHED SKG_SUMMED
-#endif
+/* Planes of accumulators: SKG_WEIGHED of them, from which args.sums are mixed if that is not 0. */
 
 /* What is asked of the weights, by the kernel's names. */
 typedef struct {
     __global const skg_real *adjoint;
     __global const int *wanted;
     __global skg_real *weights;
-    int channel, rays;
+    int channel, rays, of_planes;
 } skg_weighing;
+
+/* Planes of accumulators that weights are made for. */
+static int skg_weighed(const skg_strip *strip) {
+    return strip->args.sums == 0 ? SKG_SUMMED : strip->args.sums;
+}
 
 /* What a work-item finds of its rays: see `most` and `of_rays` of the kernel. */
 typedef struct {
@@ -52,7 +52,6 @@ static void skg_read_adjoint(const skg_strip *strip, __global const skg_real *ad
     }
 }
 
-#if SKG_COLLIMATED
 /* Rays that jaws stop do not depend on the parts. */
 static void skg_collimate_adjoint(const skg_strip *strip, skg_realv slope[SKG_CHANNELS][SKG_RUNS]) {
     const int in_rows = strip->row >= strip->args.window[2] && strip->row < strip->args.window[3];
@@ -63,27 +62,31 @@ static void skg_collimate_adjoint(const skg_strip *strip, skg_realv slope[SKG_CH
         SKG_EACH_CHANNEL slope[c][r] = arrives ? slope[c][r] : (skg_realv)(0);
     }
 }
-#endif
 
-#if SKG_SHOW != SKG_SHOW_EXPONENT
+/* Divides a derivative by the flat field, which differs from pixel to pixel. */
+SKG_APART void skg_uncompare(const skg_strip *strip, const skg_realv *amounts, int channel, int r, skg_realv *value) {
+    const skg_realv top = skg_highest_flat_field(strip, amounts, r);
+    *value *= skg_exp2_v(-top) / skg_flat_field(strip, amounts, channel, r, top);
+}
+
 /* From derivatives by what is shown to those by the sums over nodes, of run r. */
 static void skg_unfinish(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS], int r) {
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-    SKG_EACH_CHANNEL slope[c][r] = pixels->shown[c][r] > (skg_realv)(0) ? -slope[c][r] / pixels->shown[c][r] : (skg_realv)(0);
-#else
-#if SKG_FALLOFF
-    const skg_realv near =
-        strip->args.foot / skg_ray_lengths_v(&strip->args.ray, strip->column + r * SKG_WIDE, strip->row);
-    const skg_realv all = near * near * near * strip->args.factor;
-#else
-    const skg_realv all = (skg_realv)(strip->args.factor);
-#endif
-#if SKG_RATIO
-    const skg_realv top = skg_highest_flat_field(strip, pixels, r);
-    SKG_EACH_CHANNEL slope[c][r] *= skg_exp2_v(-top) / skg_flat_field(strip, pixels, c, r, top);
-#endif
+    if (strip->args.shown == SKG_SHOW_LOGARITHM) {
+        SKG_EACH_CHANNEL slope[c][r] =
+            pixels->shown[c][r] > (skg_realv)(0) ? -slope[c][r] / pixels->shown[c][r] : (skg_realv)(0);
+        return;
+    }
+    if (strip->args.ratio) {
+        skg_realv amounts[SKG_SHADES_MAX];
+        skg_copy_shades(strip, pixels, r, amounts);
+        SKG_EACH_CHANNEL {
+            skg_realv value = slope[c][r];
+            skg_uncompare(strip, amounts, c, r, &value);
+            slope[c][r] = value;
+        }
+    }
+    const skg_realv all = skg_factor_v(strip, r);
     SKG_EACH_CHANNEL slope[c][r] *= all;
-#endif
 }
 
 /* Nodes that are added to the planes together, so that sums of many planes are loaded and stored more seldom. */
@@ -94,11 +97,9 @@ static void skg_slopes_of_nodes(const skg_strip *strip, const skg_pixels *pixels
                                 int first, int count, skg_realv node[SKG_TOGETHER][SKG_RUNS], skg_realv *shown) {
     for (int n = 0; n < count; n++) {
         skg_realv power[SKG_RUNS];
-        skg_exponents(strip->coefficients + (first + n) * SKG_PLANES, pixels, power);
+        skg_exponents(strip->coefficients + (first + n) * SKG_PLANE_COUNT, pixels, power);
+        if (strip->args.shown == SKG_SHOW_LOGARITHM) SKG_EACH_RUN power[r] -= pixels->highest[r];
         SKG_EACH_RUN {
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-            power[r] -= pixels->highest[r];
-#endif
             skg_realv weight = (skg_realv)(0);
             SKG_EACH_CHANNEL
             weight = fma((skg_realv)(strip->weights[(first + n) * SKG_CHANNELS + c]), slope[c][r], weight);
@@ -111,23 +112,22 @@ static void skg_slopes_of_nodes(const skg_strip *strip, const skg_pixels *pixels
 
 /* Adds up the derivatives by the mm of the planes that are needed, and by the logarithm of the intensity. */
 static void skg_add_slopes(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS],
-                           const uchar *needed, skg_realv total[SKG_SUMMED][SKG_RUNS], skg_realv *shown) {
+                           const uchar *needed, skg_realv total[SKG_PLANES][SKG_RUNS], skg_realv *shown) {
     for (int first = 0; first < strip->args.nodes; first += SKG_TOGETHER) {
         const int count = min(SKG_TOGETHER, strip->args.nodes - first);
         skg_realv node[SKG_TOGETHER][SKG_RUNS];
         skg_slopes_of_nodes(strip, pixels, slope, first, count, node, shown);
         SKG_EACH_SUMMED {
             if (!needed[p]) continue;
-            __constant const skg_real *coefficient = strip->coefficients + first * SKG_PLANES + p;
+            __constant const skg_real *coefficient = strip->coefficients + first * SKG_PLANE_COUNT + p;
             skg_realv sum[SKG_RUNS];
             SKG_EACH_RUN sum[r] = total[p][r];
             for (int n = 0; n < count; n++)
-                SKG_EACH_RUN sum[r] = fma((skg_realv)(coefficient[n * SKG_PLANES]), node[n][r], sum[r]);
+                SKG_EACH_RUN sum[r] = fma((skg_realv)(coefficient[n * SKG_PLANE_COUNT]), node[n][r], sum[r]);
             SKG_EACH_RUN total[p][r] = sum[r];
         }
     }
 }
-#endif
 
 /* Writes a plane of the runs. Rows of weights are as long as whole runs. */
 static void skg_put_weights(const skg_strip *strip, int plane, const skg_realv *values, __global skg_real *weights) {
@@ -163,15 +163,14 @@ static void skg_put_sums(const skg_strip *strip, int plane, const skg_realv *val
  * world's. Returns 0 if there are none. */
 static int skg_find_needed(const skg_strip *strip, const skg_weighing *weighing, uchar *needed) {
     int any = 0;
-    for (int p = 0; p < SKG_SUMMED; p++) needed[p] = SKG_WEIGH_PLANES || (SKG_WORLD && p == strip->args.world_plane);
-    for (int s = 0; s < SKG_WEIGHED; s++) {
+    for (int p = 0; p < SKG_SUMMED; p++) needed[p] = weighing->of_planes || p == strip->args.world_plane;
+    for (int s = 0; s < skg_weighed(strip); s++) {
         if ((weighing->rays == SKG_RAYS_NONE && !weighing->wanted[s]) || !skg_meets(strip, s)) continue;
         any = 1;
-#if SKG_SUMS
-        for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= strip->lists[s * SKG_SUMMED + p] != 0;
-#else
-        needed[s] = 1;
-#endif
+        if (strip->args.sums == 0)
+            needed[s] = 1;
+        else
+            for (int p = 0; p < SKG_SUMMED; p++) needed[p] |= strip->lists[s * SKG_SUMMED + p] != 0;
     }
     return any;
 }
@@ -180,11 +179,11 @@ static int skg_find_needed(const skg_strip *strip, const skg_weighing *weighing,
 static void skg_put_rays(const skg_strip *strip, const skg_weighing *weighing, const skg_realv *length, const skg_realv *path,
                          const skg_realv *shown, skg_found *found) {
     if (weighing->rays == SKG_RAYS_PLANES) {
-        skg_put_weights(strip, SKG_WEIGHED, path, weighing->weights);
-        skg_put_weights(strip, SKG_WEIGHED + 1, shown, weighing->weights);
+        skg_put_weights(strip, skg_weighed(strip), path, weighing->weights);
+        skg_put_weights(strip, skg_weighed(strip) + 1, shown, weighing->weights);
     } else if (weighing->rays == SKG_RAYS_SUMS) {
         SKG_EACH_RUN {
-            const skg_realv falls = SKG_FALLOFF ? 3 * shown[r] : (skg_realv)(0);
+            const skg_realv falls = strip->args.falloff ? 3 * shown[r] : (skg_realv)(0);
             const skg_realv share = (path[r] - falls) / (length[r] * length[r]);
             found->lengths += share;
             found->across = fma(share, (skg_real)(strip->column + r * SKG_WIDE) + SKG_LANES, found->across);
@@ -196,46 +195,50 @@ static void skg_put_rays(const skg_strip *strip, const skg_weighing *weighing, c
 
 static void skg_weigh_runs(const skg_strip *strip, const skg_weighing *weighing, skg_found *found) {
     skg_pixels pixels;
-    skg_realv slope[SKG_CHANNELS][SKG_RUNS], total[SKG_SUMMED][SKG_RUNS], unit[SKG_RUNS], length[SKG_RUNS];
+    skg_realv slope[SKG_CHANNELS][SKG_RUNS], total[SKG_PLANES][SKG_RUNS], unit[SKG_RUNS], length[SKG_RUNS];
     skg_realv path[SKG_RUNS], shown[SKG_RUNS];
-    uchar needed[SKG_SUMMED];
-    if (!skg_find_needed(strip, weighing, needed) && !SKG_WEIGH_PLANES && weighing->rays == SKG_RAYS_NONE) return;
+    uchar needed[SKG_PLANES];
+    if (!skg_find_needed(strip, weighing, needed) && !weighing->of_planes && weighing->rays == SKG_RAYS_NONE) return;
     skg_read_planes(strip, &pixels);
     if (weighing->channel < 0)
         skg_read_adjoint(strip, weighing->adjoint, slope);
     else
         skg_choose_channel(strip, weighing->channel, slope);
-#if SKG_COLLIMATED
-    skg_collimate_adjoint(strip, slope);
-#endif
+    if (strip->args.collimated) skg_collimate_adjoint(strip, slope);
     SKG_EACH_RUN shown[r] = path[r] = (skg_realv)(0);
     SKG_EACH_SUMMED SKG_EACH_RUN total[p][r] = (skg_realv)(0);
-#if SKG_SHOW == SKG_SHOW_EXPONENT
-    SKG_EACH_SUMMED SKG_EACH_RUN total[p][r] = strip->coefficients[p] * slope[0][r];
-#else
-#if SKG_SPARSE
-    skg_list_planes(&pixels);
+    if (strip->args.shown == SKG_SHOW_EXPONENT) {
+        SKG_EACH_SUMMED SKG_EACH_RUN total[p][r] = strip->coefficients[p] * slope[0][r];
+    } else {
+#if SKG_GENERAL
+        skg_list_planes(strip, &pixels);
 #endif
-#if SKG_SHOW == SKG_SHOW_LOGARITHM
-    skg_exponents(strip->coefficients, &pixels, pixels.highest);
-    skg_add_nodes(strip, &pixels);
-#endif
-    SKG_EACH_RUN skg_unfinish(strip, &pixels, slope, r);
-    skg_add_slopes(strip, &pixels, slope, needed, total, shown);
-#endif
+        if (strip->args.shown == SKG_SHOW_LOGARITHM) {
+            skg_exponents(strip->coefficients, &pixels, pixels.highest);
+            skg_add_nodes(strip, &pixels);
+        }
+        SKG_EACH_RUN skg_unfinish(strip, &pixels, slope, r);
+        skg_add_slopes(strip, &pixels, slope, needed, total, shown);
+    }
     SKG_EACH_SUMMED SKG_EACH_RUN path[r] = fma(total[p][r], pixels.x[p][r], path[r]);
-#if SKG_WEIGH_PLANES
-    SKG_EACH_SUMMED skg_put_weights(strip, p, total[p], weighing->weights);
-    return;
-#endif
+    if (weighing->of_planes) {
+        SKG_EACH_SUMMED skg_put_weights(strip, p, total[p], weighing->weights);
+        return;
+    }
     SKG_EACH_RUN {
         const int at = min(strip->column + r * SKG_WIDE, strip->args.layout.columns - 1);
         length[r] = skg_ray_lengths_v(&strip->args.ray, at, strip->row);
         unit[r] = length[r] * strip->args.ray.unit;
     }
     skg_put_rays(strip, weighing, length, path, shown, found);
-#if SKG_SUMS
-    for (int s = 0; s < SKG_SUMS; s++) {
+    if (strip->args.sums == 0) {
+        SKG_EACH_SUMMED {
+            if (!weighing->wanted[p] || !skg_meets(strip, p)) continue;
+            skg_put_sums(strip, p, total[p], unit, weighing->weights, found->most);
+        }
+        return;
+    }
+    for (int s = 0; s < strip->args.sums; s++) {
         if (!weighing->wanted[s] || !skg_meets(strip, s)) continue;
         skg_realv sum[SKG_RUNS];
         SKG_EACH_RUN sum[r] = (skg_realv)(0);
@@ -246,12 +249,6 @@ static void skg_weigh_runs(const skg_strip *strip, const skg_weighing *weighing,
         }
         skg_put_sums(strip, s, sum, unit, weighing->weights, found->most);
     }
-#else
-    SKG_EACH_SUMMED {
-        if (!weighing->wanted[p] || !skg_meets(strip, p)) continue;
-        skg_put_sums(strip, p, total[p], unit, weighing->weights, found->most);
-    }
-#endif
 }
 
 static skg_real skg_sum_lanes(skg_realv v) {
@@ -279,7 +276,7 @@ SKG_APART void skg_weigh_strip(const skg_strip *whole, const skg_weighing *weigh
         of_rays[2 * (long)step] = skg_sum_lanes(found.down);
         of_rays[3 * (long)step] = skg_sum_lanes(found.intensity);
     }
-    for (int p = 0; p < SKG_WEIGHED && !SKG_WEIGH_PLANES; p++) {
+    for (int p = 0; p < skg_weighed(&strip) && !own.of_planes; p++) {
         skg_real lanes[SKG_WIDE], result = 0;
         SKG_STORE_V(realv, found.most[p], lanes);
         for (int k = 0; k < SKG_WIDE; k++) result = lanes[k] <= result ? result : lanes[k];
@@ -295,7 +292,7 @@ SKG_APART void skg_weigh_strip(const skg_strip *whole, const skg_weighing *weigh
  * rays      SKG_RAYS_...: what is made of the rays. NONE: nothing
  * weights   [planes + 2][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators that is wanted, within its extent;
  *           with SKG_RAYS_PLANES then the sum over planes of mm times d loss / d mm; then d loss / d logarithm of the
- *           intensity. With SKG_WEIGH_PLANES instead: d loss / d mm of each plane that is mixed from accumulators, and nothing else
+ *           intensity. With of_planes instead: d loss / d mm of each plane that is mixed from accumulators, and nothing else
  * most      [planes][work-items] the largest magnitudes of the weights of accumulators
  * of_rays   [SKG_RAY_SUMS][work-items] SKG_RAYS_SUMS: sums over rays of what changes with their length, over its square: of what those two
  *           planes would have, the first less three times the second if intensities fall with the distance; of that times
@@ -304,7 +301,7 @@ __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copie
                           __constant const skg_real *coefficients, __constant const skg_real *weights_of_nodes,
                           __constant const skg_real *lists, __constant const skg_real *polynomials,
                           __global const skg_real *tables, __global const skg_real *adjoint, int channel,
-                          __global const int *wanted, int rays, __global skg_real *weights, __global skg_real *most,
+                          __global const int *wanted, int rays, int of_planes, __global skg_real *weights, __global skg_real *most,
                           __global skg_real *of_rays) {
     const int strips = (args.layout.columns + SKG_WIDE * SKG_RUNS * SKG_STRIP - 1) / (SKG_WIDE * SKG_RUNS * SKG_STRIP);
     skg_strip strip;
@@ -320,6 +317,6 @@ __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copie
     strip.polynomials = polynomials;
     strip.tables = tables;
     const long item = (long)get_global_id(1) * strips + get_global_id(0);
-    const skg_weighing weighing = {adjoint, wanted, weights, channel, rays};
+    const skg_weighing weighing = {adjoint, wanted, weights, channel, rays, of_planes};
     skg_weigh_strip(&strip, &weighing, most + item, of_rays + item, strips * (args.layout.rows / SKG_FINE));
 }

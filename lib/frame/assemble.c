@@ -55,7 +55,7 @@ static skg_status make_lengths(const skg_recipe *recipe, skg_machine *machine) {
     const double one = 1;
     const skg_attenuation_tables tables = {.coefficients = &one, .weights = &one};
     const skg_attenuation length = {
-        .planes = 1, .nodes = 1, .channels = 1, .layers = 1, .shown = SKG_SHOWN_EXPONENT, .world_plane = -1};
+        .planes = 1, .nodes = 1, .channels = 1, .layers = 1, .shown = SKG_SHOW_EXPONENT, .world_plane = -1};
     return skg_attenuation_create(machine->context, recipe->options.precision, &length, &tables,
                                   &machine->lengths);
 }

@@ -88,11 +88,7 @@ static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machi
     skg_free(&extents);
     SKG_TRY(status);
     if (pass->priority.count) SKG_TRY(skg_hits_prefetch(machine->context, pass));
-    const int more = skg_recipe_averages(recipe) && skg_samples_passes(&recipe->samples) > 1;
-    for (place.add = 0; place.add <= more; place.add++)
-        SKG_TRY(skg_attenuate_prefetch(machine->attenuator, &options, &sums, &pass->camera, &shape,
-                                       recipe->model.range != NULL, &place));
-    return SKG_OK;
+    return skg_attenuate_prefetch(machine->attenuator, &options, &sums, &shape, &place);
 }
 
 void skg_frame_prefetch(const skg_recipe *recipe, const skg_machine *machine) {

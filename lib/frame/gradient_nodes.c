@@ -96,16 +96,16 @@ skg_status skg_gradient_keep_nodes(skg_job *job, const skg_pass *pass, const skg
     double *intensities = NULL;
     skg_status status = SKG_OK;
     memcpy(w.attenuation.window, pass->window, sizeof w.attenuation.window);
-    w.attenuation.shown = SKG_SHOWN_INTENSITY;
+    w.attenuation.shown = SKG_SHOW_INTENSITY;
     w.layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     if (!gradient->nodes)
         SKG_TRY(skg_alloc(w.attenuation.nodes * w.layout.plane, sizeof *gradient->nodes, "gradient",
                           &gradient->nodes));
-    if (shown == SKG_SHOWN_EXPONENT) {
+    if (shown == SKG_SHOW_EXPONENT) {
         take_exponents(&w, gradient->nodes);
         return SKG_OK;
     }
-    if (shown == SKG_SHOWN_LOGARITHM) {
+    if (shown == SKG_SHOW_LOGARITHM) {
         SKG_TRY_CLEANUP(skg_alloc(count, sizeof *intensities, "gradient", &intensities));
         SKG_TRY_CLEANUP(undo_logarithm(&w, intensities));
     }

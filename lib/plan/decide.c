@@ -24,9 +24,9 @@ void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape) {
     const int is_ratio = has_ratio_weights(options);
     /* The attenuation of one energy is the exponent itself. */
     const int32_t shown = options->quantity != SKG_QUANTITY_ATTENUATION || is_late(recipe)
-                              ? SKG_SHOWN_INTENSITY
-                          : model->nodes == 1 ? SKG_SHOWN_EXPONENT
-                                              : SKG_SHOWN_LOGARITHM;
+                              ? SKG_SHOW_INTENSITY
+                          : model->nodes == 1 ? SKG_SHOW_EXPONENT
+                                              : SKG_SHOW_LOGARITHM;
     /* In a ratio of one energy the world cancels. */
     const int has_world = model->world_plane >= 0 && !(is_ratio && model->nodes == 1);
     *shape = (skg_attenuation){.planes = skg_model_width(model),

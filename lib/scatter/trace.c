@@ -119,7 +119,6 @@ static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *
 
 static void fill_profile(const skg_beam_profile *p, skg_tracing *t) {
     skg_scatter_args *args = &t->args;
-    t->heel = p->heel, t->bowtie = p->bowtie;
     for (int k = 0; k < 3; k++) {
         args->anode[k] = (float)p->anode[k];
         args->central[k] = (float)p->central[k];
@@ -134,18 +133,15 @@ static void fill_profile(const skg_beam_profile *p, skg_tracing *t) {
 }
 
 static void fill_images(const skg_recipe *recipe, const skg_scatter_tables *tables, skg_tracing *t) {
-    t->bands = recipe->options.bands > 0;
-    t->layers = tables->layers;
-    t->oblique = tables->oblique;
-    t->layered = tables->cosines > 0;
     t->args.bands = tables->bands;
-    t->args.edges = t->bands ? tables->bands + 1 : 0;
+    t->args.edges = recipe->options.bands > 0 ? tables->bands + 1 : 0;
+    t->args.layers = tables->layers;
     t->args.cosines = tables->cosines;
 }
 
 static skg_status clear(skg_context *context, skg_tracing *t) {
     static const cl_int none = 0;
-    t->sums_count = (int64_t)SKG_SCATTER_BATCHES * t->layers * t->args.bands * SKG_SCATTER_PLANES *
+    t->sums_count = (int64_t)SKG_SCATTER_BATCHES * t->args.layers * t->args.bands * SKG_SCATTER_PLANES *
                     t->args.rows * t->args.columns;
     const int64_t bytes = t->sums_count * (int64_t)sizeof(int64_t);
     SKG_TRY(skg_buffer_reserve(context, &t->sums, bytes, CL_MEM_READ_WRITE, "scatter"));
@@ -162,14 +158,14 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     t->progress = work->progress;
     t->args.seed[0] = (SKG_INT)(uint32_t)(uint64_t)seed;
     t->args.seed[1] = (SKG_INT)(uint32_t)((uint64_t)seed >> 32);
-    t->noise = work->recipe->options.noise;
-    t->grid = work->recipe->options.grid != NULL;
+    t->args.noise = work->recipe->options.noise != 0;
+    t->args.grid = work->recipe->options.grid != NULL;
     t->parallel = work->view->projection != SKG_PROJECTION_POINT;
     SKG_TRY(skg_sight_fill(work, &object->cells, &t->args));
     fill_tables(&object->physics, tables, &t->args);
     fill_profile(&tables->profile, t);
     fill_images(work->recipe, tables, t);
-    t->world = work->recipe->options.world != NULL;
+    t->args.world_around = work->recipe->options.world != NULL;
     for (int k = 0; k < SKG_SCATTER_RANK; k++) t->args.world[k] = (float)object->world[k];
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
@@ -183,12 +179,7 @@ static skg_status get_program(skg_context *context, const skg_tracing *t, cl_pro
                                         "arrive.clh",      "profile.clh", "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
-    const skg_define defines[] = {
-        {"SKG_NOISE", t->noise != 0}, {"SKG_GRID", t->grid},       {"SKG_HEEL", t->heel},
-        {"SKG_BOWTIE", t->bowtie},    {"SKG_BANDS", t->bands},     {"SKG_LAYERS", t->layers},
-        {"SKG_LAYERED", t->layered},  {"SKG_OBLIQUE", t->oblique}, {"SKG_WORLD", t->world}};
-    return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
-                           SKG_DEFINES(defines), program);
+    return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files, NULL, program);
 }
 
 /* Enqueues histories args.first to args.end of all batches. */

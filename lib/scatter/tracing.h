@@ -43,9 +43,7 @@ enum { SKG_SCATTER_BATCHES = 32 };
 typedef struct {
     skg_buffer cells, energies, momenta, angles, beam, profiles, spots, lattice, detector, sums;
     skg_scatter_args args; /* `end`: so many histories of each batch were followed */
-    int32_t noise, parallel, grid, heel, bowtie;
-    int32_t layers, bands, oblique, layered; /* bands: 1: there are some */
-    int32_t world;
+    int32_t parallel, reserved;
     int64_t sums_count;
     skg_progress *progress; /* of the frame, whose caller owns it; NULL: none */
 } skg_tracing;

@@ -50,7 +50,8 @@ static skg_status render(skg_context *context, const double *edges, const skg_vi
     options.scatter = &scatter;
     options.collimation = jaws;
     options.falloff = SKG_FALLOFF_ON;
-    options.strategy = SKG_STRATEGY_ATOMICS;
+    /* The program of a first image, which is there in any case; a GPU has none of this strategy. */
+    options.strategy = context->device->info.gpu ? SKG_STRATEGY_ATOMICS : SKG_STRATEGY_COPIES;
     SKG_TRY(make_scene(context, edges, run));
     SKG_TRY(skg_plan_create(context, run->scene, view, run->beam, &options, &run->plan));
     for (int k = 0; k < 2; k++) {

@@ -39,7 +39,8 @@ static void along(const skg_camera *camera, const double *vector, double scale, 
 void skg_shades_see(const skg_shades *shades, const skg_camera *camera, skg_shade_double *args) {
     double central[3], axis[3];
     const double foot = skg_camera_foot(camera);
-    *args = (skg_shade_double){0};
+    *args = (skg_shade_double){
+        .count = shades->count, .heels = shades->heel, .obliques = shades->oblique, .grids = shades->grid};
     if (shades->heel) {
         skg_heel_axis(shades, camera, axis);
         along(camera, axis, 1 / shades->heel_extent.half, args->heel);

@@ -40,12 +40,13 @@ double skg_polynomial_fit(const double values[SKG_FIT_POINTS], double terms[SKG_
 /* --- The list of a plan's shades, and what the effects that have shades share. */
 
 enum {
-    SKG_SHADES_MAX = 3 * SKG_DIRECTIONS_MAX + 2,
     SKG_SHADE_TERMS = SKG_FIT_TERMS,
     /* Of the table of a grid: rows by tilt, and terms of polynomials of the obliquity. */
     SKG_GRID_TILTS = 257,
     SKG_GRID_TERMS = 3
 };
+
+_Static_assert(SKG_SHADES_MAX == 3 * SKG_DIRECTIONS_MAX + 2, "shades of all effects");
 
 /* The z of polynomials. */
 typedef struct {

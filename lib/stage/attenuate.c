@@ -30,28 +30,13 @@ static const double LOG2_E = 1.4426950408889634;
 /* The -D names of the program: X(name, value, value in the program of skg_kernels_get_first). Everything that tells programs of
  * this stage apart stands here and in the options of its kernels. */
 #define DEFINES(X)                                                                                           \
-    X(PLANES, attenuation->planes, 1)                                                                        \
+    X(PLANES, planes_of(attenuation), 1)                                                                     \
     X(CHANNELS, attenuation->channels, 1)                                                                    \
-    X(SHOW, attenuation->shown, SKG_SHOWN_INTENSITY)                                                         \
-    X(WORLD, attenuation->world_plane >= 0, 0)                                                               \
-    X(RATIO, attenuation->ratio, 0)                                                                          \
-    X(FALLOFF, attenuation->falloff && !camera->parallel, 0)                                                 \
-    X(COLLIMATED, attenuation->collimated, 0)                                                                \
-    X(NOISE, attenuation->noise, 0)                                                                          \
-    X(NOISE_APART, attenuation->noise && attenuation->apart, 0)                                              \
     X(OUTPUT_DOUBLE, place->output_double, 0)                                                                \
-    X(ENERGIES, raster->options.kernels.half && attenuation->energies, 0)                                    \
-    X(ADD, place->add, 0)                                                                                    \
     X(RUNS, shape.runs, SKG_CPU_RUNS)                                                                        \
     X(STRIP, shape.strip, SKG_CPU_STRIP)                                                                     \
-    X(RANGED, attenuation->range.memory != NULL, 0)                                                          \
-    X(SUMS, sums->mixed, 0)                                                                                  \
     X(FINE, sums->fine, 1)                                                                                   \
-    X(SHADES, shades->count, 0)                                                                              \
-    X(HEEL, shades->heel, 0)                                                                                 \
-    X(OBLIQUE, shades->oblique, 0)                                                                           \
-    X(BOWTIE, shades->bowtie, 0)                                                                             \
-    X(GRID, shades->grid, 0)
+    X(GENERAL, is_general(attenuation), 0)
 #define DEFINE_NUMBER(name, value, first) DEFINE_##name,
 #define DEFINE(name, value, first) {"SKG_" #name, value},
 #define DEFINE_FIRST(name, value, first) {"SKG_" #name, first},
@@ -86,6 +71,15 @@ static int32_t shades_of(const skg_attenuation *attenuation) {
     return attenuation->shades ? attenuation->shades->count : 0;
 }
 
+/* Whether a general program is needed (kernels/planes.clh), and the planes that a program has memory for. */
+static int is_general(const skg_attenuation *attenuation) {
+    return attenuation->planes > SKG_FEW_PLANES || shades_of(attenuation) > 0 || attenuation->noise;
+}
+
+static int64_t planes_of(const skg_attenuation *attenuation) {
+    return is_general(attenuation) ? skg_round_up(attenuation->planes, SKG_PLANES_STEP) : attenuation->planes;
+}
+
 static skg_status upload_shades(skg_context *context, int32_t is_double, skg_attenuation *attenuation) {
     const skg_shades *shades = attenuation->shades;
     if (shades_of(attenuation) == 0) return SKG_OK;
@@ -105,7 +99,7 @@ skg_status skg_attenuation_create(skg_context *context, int32_t precision, const
     SKG_TRY(skg_alloc(count, sizeof *scaled, "attenuation", &scaled));
     /* The kernel takes powers of two: exp(-x) = 2^(-x log2 e). */
     for (int64_t i = 0; i < count; i++)
-        scaled[i] = tables->coefficients[i] * (shape->shown == SKG_SHOWN_EXPONENT ? 1 : -LOG2_E);
+        scaled[i] = tables->coefficients[i] * (shape->shown == SKG_SHOW_EXPONENT ? 1 : -LOG2_E);
     *attenuation = *shape;
     skg_status status = upload(context, is_double, count, scaled, &attenuation->coefficients);
     skg_free(&scaled);
@@ -157,30 +151,29 @@ static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
     return is_same(key, &first) && skg_kernels_are_first(attenuator->context, &key->options);
 }
 
-/* weights: NULL, or with the kernel skg_weights, whose option SKG_WEIGH_PLANES it is. */
-static skg_status get_files(const skg_attenuator *attenuator, const kernel_key *key, const int64_t *weights,
+/* weighed: 0, or with the kernel skg_weights: its option SKG_WEIGHED. */
+static skg_status get_files(const skg_attenuator *attenuator, const kernel_key *key, int64_t weighed,
                             cl_program *program) {
     skg_define defines[DEFINE_COUNT + 1];
-    const int64_t noise = key->defines[DEFINE_NOISE].value, shades = key->defines[DEFINE_SHADES].value;
+    const int64_t general = key->defines[DEFINE_GENERAL].value;
     const char *files[8] = {"exponential.clh"};
     int count = 1;
-    if (noise) files[count++] = "random.clh", files[count++] = "noise.clh";
-    if (shades) files[count++] = "shades.clh";
+    if (general) files[count++] = "random.clh", files[count++] = "noise.clh", files[count++] = "shades.clh";
     files[count++] = "planes.clh";
-    if (noise) files[count++] = "quantum.clh";
+    if (general) files[count++] = "quantum.clh";
     files[count++] = "attenuate.cl";
-    if (!weights)
+    if (weighed == 0)
         return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
                                program);
     files[count++] = "weights.cl";
     memcpy(defines, key->defines, sizeof key->defines);
-    defines[DEFINE_COUNT] = (skg_define){"SKG_WEIGH_PLANES", *weights};
+    defines[DEFINE_COUNT] = (skg_define){"SKG_WEIGHED", weighed};
     return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(defines), program);
 }
 
 static skg_status get_program(const skg_attenuator *attenuator, const kernel_key *key, cl_program *program) {
     if (is_first(attenuator, key)) return skg_kernels_get_first(attenuator->context, program);
-    return get_files(attenuator, key, NULL, program);
+    return get_files(attenuator, key, 0, program);
 }
 
 static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, cl_kernel *kernel) {
@@ -210,12 +203,10 @@ static void find_world(const skg_camera *camera, const skg_attenuation *attenuat
     world[3] = -camera->start[2];
 }
 
-static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const skg_attenuation *attenuation,
+static kernel_key key_of(const skg_sums *sums, const skg_attenuation *attenuation,
                          const skg_image_place *place) {
     /* Of the raster's options only the type of its sums changes this kernel; the others stay 0, so that rasters which differ
  * elsewhere share a kernel. */
-    static const skg_shades none = {0};
-    const skg_shades *shades = attenuation->shades ? attenuation->shades : &none;
     const skg_raster *raster = sums->raster;
     const work_shape shape = shape_of(raster->context, sums->fine);
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
@@ -225,14 +216,12 @@ static kernel_key key_of(const skg_sums *sums, const skg_camera *camera, const s
 }
 
 skg_status skg_attenuate_prefetch(const skg_attenuator *attenuator, const skg_raster_options *options,
-                                  const skg_sums *sums, const skg_camera *camera,
-                                  const skg_attenuation *attenuation, int32_t ranged,
+                                  const skg_sums *sums, const skg_attenuation *attenuation,
                                   const skg_image_place *place) {
     const skg_raster raster = {.context = attenuator->context, .options = *options};
     skg_sums own = *sums;
     own.raster = &raster;
-    kernel_key key = key_of(&own, camera, attenuation, place);
-    key.defines[DEFINE_RANGED].value = ranged;
+    const kernel_key key = key_of(&own, attenuation, place);
     return get_program(attenuator, &key, NULL);
 }
 
@@ -247,13 +236,26 @@ static skg_work_size work_of(const skg_sums *sums, int32_t precision) {
 }
 
 /* The scalar arguments that do not depend on the caller's factor and share. */
-static skg_attenuate_double scalars_of(const kernel_key *key, const skg_sums *sums, const skg_camera *camera,
+static skg_attenuate_double scalars_of(const skg_sums *sums, const skg_camera *camera,
                                        const skg_attenuation *attenuation, const skg_image_place *place) {
+    const int32_t falloff = attenuation->falloff && !camera->parallel;
     skg_attenuate_double args = {
-        .foot = key->defines[DEFINE_FALLOFF].value ? skg_camera_foot(camera) : 0,
+        .foot = falloff ? skg_camera_foot(camera) : 0,
         .layout = sums->raster->layout,
+        .planes = attenuation->planes,
+        .sums = sums->mixed,
         .nodes = attenuation->nodes,
         .world_plane = attenuation->world_plane,
+        .shown = attenuation->shown,
+        .ratio = attenuation->ratio,
+        .falloff = falloff,
+        .energies = attenuation->energies,
+        .add = place->add,
+        .ranged = attenuation->range.memory != NULL,
+        .noise = !attenuation->noise  ? 0
+                 : attenuation->apart ? SKG_NOISE_APART
+                                      : SKG_NOISE_DRAWN,
+        .collimated = attenuation->collimated,
         .image = skg_image_of(place, sums->raster->layout.columns / sums->fine,
                               sums->raster->layout.rows / sums->fine, attenuation->channels),
     };
@@ -270,13 +272,13 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
                          cl_mem negative, const skg_noise_args *noise, const skg_image_place *place,
                          skg_stage_log *log) {
     const skg_raster *raster = sums->raster;
-    const kernel_key key = key_of(sums, camera, attenuation, place);
+    const kernel_key key = key_of(sums, attenuation, place);
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
-    skg_attenuate_double args = scalars_of(&key, sums, camera, attenuation, place);
+    skg_attenuate_double args = scalars_of(sums, camera, attenuation, place);
     skg_attenuate_float rounded;
     cl_kernel kernel = NULL;
     /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
-    args.limit = -least * (attenuation->shown == SKG_SHOWN_EXPONENT ? 1 : LOG2_E);
+    args.limit = -least * (attenuation->shown == SKG_SHOW_EXPONENT ? 1 : LOG2_E);
     args.factor = factor;
     args.photons = SKG_FEW_PHOTONS * share;
     if (noise) args.key = *noise;
@@ -312,6 +314,14 @@ skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t 
                                .items = work.items[0] * work.items[1]};
 }
 
+/* The planes of accumulators that a program of skg_weights has memory for: a power of two, so that few programs serve all scenes. */
+static int64_t weighed_of(const skg_sums *sums, const skg_attenuation *attenuation) {
+    const int32_t needed = sums->mixed ? sums->mixed : attenuation->planes - shades_of(attenuation);
+    int64_t weighed = 4;
+    while (weighed < needed) weighed *= 2;
+    return weighed;
+}
+
 skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                                    const skg_attenuation *attenuation, const skg_transposition *asked,
                                    skg_stage_log *log) {
@@ -321,16 +331,15 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
     skg_attenuation mean = *attenuation;
     mean.noise = 0;
     mean.range = (skg_buffer){0};
-    const kernel_key key = key_of(sums, camera, &mean, &place);
+    const kernel_key key = key_of(sums, &mean, &place);
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
-    skg_attenuate_double args = scalars_of(&key, sums, camera, &mean, &place);
+    skg_attenuate_double args = scalars_of(sums, camera, &mean, &place);
     skg_attenuate_float rounded;
-    const int64_t option = asked->of_planes;
-    const cl_int channel = asked->channel, rays = asked->rays;
+    const cl_int channel = asked->channel, rays = asked->rays, of_planes = asked->of_planes;
     cl_program program = NULL;
     args.factor = asked->factor;
     SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
-    SKG_TRY(get_files(attenuator, &key, &option, &program));
+    SKG_TRY(get_files(attenuator, &key, weighed_of(sums, &mean), &program));
     const skg_argument arguments[] = {
         SKG_ARGUMENT_WITH(WEIGHTS, args, is_double, args, rounded),
         SKG_ARGUMENT(WEIGHTS, copies, raster->sums.memory),
@@ -344,6 +353,7 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
         SKG_ARGUMENT(WEIGHTS, channel, channel),
         SKG_ARGUMENT(WEIGHTS, wanted, asked->wanted),
         SKG_ARGUMENT(WEIGHTS, rays, rays),
+        SKG_ARGUMENT(WEIGHTS, of_planes, of_planes),
         SKG_ARGUMENT(WEIGHTS, weights, asked->weights),
         SKG_ARGUMENT(WEIGHTS, most, asked->most),
         SKG_ARGUMENT(WEIGHTS, of_rays, asked->of_rays),
@@ -379,9 +389,8 @@ skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *s
         SKG_ARGUMENT(LOGARITHM, image, image),
         SKG_ARGUMENT(LOGARITHM, output, place->memory),
     };
-    const skg_camera no_camera = {0};
     const skg_sums plain = {.raster = sums->raster, .fine = 1}; /* the image is finished */
-    const kernel_key key = key_of(&plain, &no_camera, attenuation, place);
+    const kernel_key key = key_of(&plain, attenuation, place);
     cl_program program = NULL;
     SKG_TRY(get_program(attenuator, &key, &program));
     const int64_t lanes = skg_kernel_lanes(attenuator->context, key.options.precision);

@@ -5,16 +5,13 @@
 #include "spectral/shading.h"
 #include "stage/raster.h"
 
-/* The same numbers as SKG_SHOW_... of config.clh. */
-enum { SKG_SHOWN_INTENSITY = 0, SKG_SHOWN_LOGARITHM = 1, SKG_SHOWN_EXPONENT = 2 };
-
 /* How planes become what is shown. The exponent of node n is the sum over planes of coefficient[n][p] times the mm of
  * plane p; a channel shows the sum over nodes of weight[n][c] exp(-exponent). The tables are on the device. */
 typedef struct {
     int32_t planes, nodes; /* planes: the shades are the last, and are not accumulated */
     int32_t channels;      /* layers of a channel of the image included */
     int32_t layers;        /* that add up to a channel of the image */
-    int32_t shown;         /* SKG_SHOWN_... */
+    int32_t shown;         /* SKG_SHOW_... */
     int32_t world_plane;   /* that the world's path adds to; -1: vacuum */
     int32_t ratio;         /* 1: divided by what the world alone transmits */
     int32_t falloff;       /* 1: intensities fall with the distance */
@@ -131,10 +128,9 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
                                    skg_stage_log *log);
 
 /* Prefetches the program of skg_attenuate (skg_prefetch_begin) with sums of a raster with these options. sums: without a
- * raster; attenuation: its shape; ranged: 1: it will have a range. */
+ * raster; attenuation: its shape. */
 skg_status skg_attenuate_prefetch(const skg_attenuator *attenuator, const skg_raster_options *options,
-                                  const skg_sums *sums, const skg_camera *camera,
-                                  const skg_attenuation *attenuation, int32_t ranged,
+                                  const skg_sums *sums, const skg_attenuation *attenuation,
                                   const skg_image_place *place);
 
 /* Enqueues the flat field: what is shown without parts and noise. sums: of a frame of the same shape; they are not

@@ -83,9 +83,9 @@ int64_t skg_layers_bytes(const skg_layers *layers);
 
 /* --- Stage `scattered`: adds scattered photons to an image, with their noise. */
 
-/* The kernels: of images of float and double, without and with noise, and with noise apart; made on demand. All zero: none. */
+/* The kernels of images of float and double, made on demand. All zero: none. */
 typedef struct {
-    cl_kernel kernels[2][3];
+    cl_kernel kernels[2];
 } skg_scattered;
 
 /* What is added: [channels][rows][columns] floats. variance: NULL: no noise. */

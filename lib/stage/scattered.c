@@ -1,19 +1,16 @@
 #include "stage/readout.h"
 
-/* noise: 0: none, 1: in the image, 2: apart */
-static skg_status get_kernel(skg_context *context, skg_scattered *stage, int is_double, int noise,
-                             cl_kernel *kernel) {
+static skg_status get_kernel(skg_context *context, skg_scattered *stage, int is_double, cl_kernel *kernel) {
     static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh", "scattered.cl"};
     const skg_kernel_options options = {.precision = is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
                                         .bits = 32};
-    const skg_define defines[] = {{"SKG_NOISE", noise > 0}, {"SKG_NOISE_APART", noise > 1}};
     cl_program program = NULL;
-    if (!stage->kernels[is_double][noise]) {
-        SKG_TRY(skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
-                                SKG_DEFINES(defines), &program));
-        SKG_TRY(skg_kernel_create(program, "skg_scattered", &stage->kernels[is_double][noise]));
+    if (!stage->kernels[is_double]) {
+        SKG_TRY(skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files, NULL,
+                                &program));
+        SKG_TRY(skg_kernel_create(program, "skg_scattered", &stage->kernels[is_double]));
     }
-    *kernel = stage->kernels[is_double][noise];
+    *kernel = stage->kernels[is_double];
     return SKG_OK;
 }
 
@@ -24,9 +21,12 @@ skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const s
     const skg_scattered_args args = {.key = *key,
                                      .image = skg_image_of(image, columns, rows, what->channels),
                                      .add = what->add,
-                                     .scale = what->scale};
+                                     .scale = what->scale,
+                                     .noise = !what->variance ? 0
+                                              : what->apart   ? SKG_NOISE_APART
+                                                              : SKG_NOISE_DRAWN};
     cl_kernel kernel = NULL;
-    SKG_TRY(get_kernel(context, stage, is_double, !what->variance ? 0 : what->apart ? 2 : 1, &kernel));
+    SKG_TRY(get_kernel(context, stage, is_double, &kernel));
     const skg_argument arguments[] = {
         SKG_ARGUMENT(SCATTERED, args, args),
         SKG_ARGUMENT(SCATTERED, mean, what->mean),
@@ -40,7 +40,7 @@ skg_status skg_scattered_run(skg_context *context, skg_scattered *stage, const s
 }
 
 void skg_scattered_release(skg_scattered *stage) {
-    for (int i = 0; i < 6; i++)
-        if (stage->kernels[i / 3][i % 3]) clReleaseKernel(stage->kernels[i / 3][i % 3]);
+    for (int i = 0; i < 2; i++)
+        if (stage->kernels[i]) clReleaseKernel(stage->kernels[i]);
     *stage = (skg_scattered){0};
 }

@@ -267,7 +267,7 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
         const skg_attenuation of_plane = {.planes = (int32_t)result->planes,
                                           .nodes = 1,
                                           .channels = 1,
-                                          .shown = SKG_SHOWN_EXPONENT,
+                                          .shown = SKG_SHOW_EXPONENT,
                                           .world_plane = -1};
         const skg_attenuation_tables tables = {.coefficients = coefficients, .weights = &weight};
         status = skg_attenuation_create(context, raster->options.kernels.precision, &of_plane, &tables,
