@@ -283,7 +283,7 @@ static skg_status submit_derivatives(const char *call, skg_plan *plan, const skg
     SKG_TRY_CLEANUP(copy_directions(made));
     status = start(plan, frame, &made, job);
 cleanup:
-    skg_job_release(&made);
+    skg_job_end(&made);
     skg_gradient_work_release(&work);
     return status;
 }
@@ -376,7 +376,7 @@ static skg_status submit_gradient(const char *call, skg_plan *plan, const skg_fr
     SKG_TRY_CLEANUP(skg_adjoint_read(made));
     status = start(plan, frame, &made, job);
 cleanup:
-    skg_job_release(&made);
+    skg_job_end(&made);
     skg_gradient_work_release(&work);
     return status;
 }

@@ -13,6 +13,7 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
         return skg_fail(SKG_ERR_ARGUMENT, "%s: there is no output to put images into", call);
     SKG_TRY(skg_alloc(1, sizeof *made, "job", &made));
     skg_results *results = &made->results;
+    atomic_init(&made->references, 1);
     made->recipe = skg_recipe_retain(recipe);
     made->machine = machine;
     skg_work_begin();
@@ -36,13 +37,11 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
     *job = made;
     return SKG_OK;
 cleanup:
-    skg_job_release(&made);
+    skg_job_end(&made);
     return status;
 }
 
-void skg_job_release(skg_job **job) {
-    if (!job || !*job) return;
-    skg_job *done = *job;
+void skg_job_empty(skg_job *done) {
     skg_context *context = done->machine->context;
     if (context->held == done) context->held = NULL;
     /* A submission that failed half way has no event to wait for, but may have enqueued what reads staged memory. */
@@ -58,5 +57,11 @@ void skg_job_release(skg_job **job) {
     skg_recipe_release(&done->recipe);
     skg_plan_release(&done->plan);
     skg_free(&done->sentence);
-    skg_free(job);
+    atomic_store(&done->over, 1);
+}
+
+void skg_job_end(skg_job **job) {
+    if (!job || !*job) return;
+    skg_job_empty(*job);
+    skg_job_release(job);
 }

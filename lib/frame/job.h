@@ -39,7 +39,8 @@ struct skg_job {
     skg_results results; /* staged */
     cl_event last;       /* of the last command; NULL until all that will be enqueued was */
     int32_t finished;    /* 1: everything enqueued is done */
-    atomic_int cancelled;
+    atomic_int cancelled, references;
+    atomic_int over;    /* 1: the job was waited for, and nothing of it is left but these three */
     skg_status failure; /* of a frame that was to be enqueued after the submission */
     char *sentence;     /* of the failure */
 };
@@ -49,7 +50,11 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
                           skg_outcome *outcome, int64_t count, int64_t output_count,
                           const skg_output *outputs, skg_job **job);
 
-/* Waits for everything enqueued, then frees; *job becomes NULL. Also for submissions that failed half way. */
-void skg_job_release(skg_job **job);
+/* Waits for everything enqueued, frees what the job holds, and gives up the reference that it was created with; *job becomes NULL.
+ * Also for submissions that failed half way. */
+void skg_job_end(skg_job **job);
+
+/* The same without giving up a reference. */
+void skg_job_empty(skg_job *job);
 
 #endif

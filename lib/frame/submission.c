@@ -205,7 +205,7 @@ static skg_status start(skg_job *job, const skg_frame *frames, int at_once) {
 
 skg_status skg_submission_enqueue(skg_job **job, const skg_frame *frames, int at_once) {
     const skg_status status = start(*job, frames, at_once);
-    if (status != SKG_OK) skg_job_release(job);
+    if (status != SKG_OK) skg_job_end(job);
     return status;
 }
 

@@ -43,7 +43,7 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
     made->scatterer = &plan->scatterer;
     if (events) {
         const skg_status status = skg_caller_events_wait(plan->context, events);
-        if (status != SKG_OK) skg_job_release(&made);
+        if (status != SKG_OK) skg_job_end(&made);
         SKG_TRY(status);
     }
     SKG_TRY(skg_submission_enqueue(&made, frames, events != NULL));

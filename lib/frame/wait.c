@@ -59,7 +59,7 @@ skg_status skg_job_complete(skg_job **job) {
     } else if (status == SKG_OK) {
         status = skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);
     }
-    skg_job_release(job);
+    skg_job_end(job);
     return status;
 }
 
@@ -80,10 +80,17 @@ static skg_status look(skg_job *job) {
     return SKG_OK;
 }
 
+/* The context of a job; NULL: there is no job, or it is over. */
+static skg_context *context_of(const skg_job *job) {
+    return job && !atomic_load(&job->over) ? job->machine->context : NULL;
+}
+
 static skg_status test(skg_job *job, int32_t *done) {
     int over = 1;
     SKG_NEEDS_OF("skg_job_test", job);
     SKG_NEEDS_OF("skg_job_test", done);
+    *done = 1;
+    if (atomic_load(&job->over)) return SKG_OK;
     SKG_TRY(look(job));
     const int ends_early = job->failure != SKG_OK || atomic_load(&job->cancelled);
     if (job->last) SKG_TRY(is_over(job->last, &over));
@@ -92,21 +99,39 @@ static skg_status test(skg_job *job, int32_t *done) {
 }
 
 skg_status skg_job_test(skg_job *job, int32_t *done) {
-    const skg_error_handler handler = skg_call_begin(job ? job->machine->context : NULL);
+    const skg_error_handler handler = skg_call_begin(context_of(job));
     return skg_call_end(handler, test(job, done));
 }
 
 static skg_status progress(skg_job *job, int64_t *done, int64_t *total) {
     SKG_NEEDS_OF("skg_job_progress", job);
-    SKG_TRY(look(job));
+    if (!atomic_load(&job->over)) SKG_TRY(look(job));
     if (done) *done = job->done;
     if (total) *total = job->count;
     return SKG_OK;
 }
 
 skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total) {
-    const skg_error_handler handler = skg_call_begin(job ? job->machine->context : NULL);
+    const skg_error_handler handler = skg_call_begin(context_of(job));
     return skg_call_end(handler, progress(job, done, total));
+}
+
+skg_status skg_job_retain(skg_job *job) {
+    SKG_NEEDS(job);
+    atomic_fetch_add(&job->references, 1);
+    return SKG_OK;
+}
+
+void skg_job_release(skg_job **job) {
+    if (!job || !*job) return;
+    skg_job *left = *job;
+    *job = NULL;
+    if (atomic_fetch_sub(&left->references, 1) > 1) return;
+    if (!atomic_load(&left->over)) { /* nobody waits for it any more */
+        atomic_store(&left->cancelled, 1);
+        skg_job_empty(left);
+    }
+    skg_free(&left);
 }
 
 skg_status skg_job_cancel(skg_job *job) {
@@ -118,11 +143,14 @@ skg_status skg_job_cancel(skg_job *job) {
 static skg_status wait_for(skg_job **job) {
     SKG_PLAIN;
     if (!job || !*job) return skg_fail(SKG_ERR_ARGUMENT, "skg_job_wait: no job");
+    if (atomic_load(&(*job)->over))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "skg_job_wait: this job was waited for; skg_job_release gives up a retained one");
     SKG_TRY(skg_context_enter((*job)->machine->context));
     return skg_job_complete(job);
 }
 
 skg_status skg_job_wait(skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(job && *job ? (*job)->machine->context : NULL);
+    const skg_error_handler handler = skg_call_begin(job ? context_of(*job) : NULL);
     return skg_call_end(handler, wait_for(job));
 }

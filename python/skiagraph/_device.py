@@ -5,6 +5,7 @@ import atexit
 import contextlib
 import logging
 import os
+import signal
 import sys
 import threading
 import warnings
@@ -14,7 +15,7 @@ from types import TracebackType
 from typing import Any
 
 from . import _pocl
-from ._interface import ArgumentError, ENUMS, Error, NoDeviceError
+from ._interface import OK, ArgumentError, ENUMS, Error, NoDeviceError
 from ._library import as_dict, call, encode, ffi, filled, integer, lib, make, release, struct, text
 
 _log = logging.getLogger("skiagraph")
@@ -82,7 +83,7 @@ class Device:
         self._lock = threading.RLock()
         self._depth = 0
         self._garbage: list[tuple[str, Any]] = []
-        self._unfinished: list[tuple[Callable[[], object], Any]] = []
+        self._unfinished: list[tuple[Any, Callable[[], object], Any]] = []
         self._log = Log()
         self._handle = ffi.NULL
         _all.add(self)
@@ -131,10 +132,12 @@ class Device:
         self.close()
 
     def _collect(self) -> None:
-        """Frees what was dropped meanwhile. Work that nobody waited for has to end first."""
+        """Frees what was dropped meanwhile. Jobs that nobody waited for are cancelled, and have to end first."""
+        for job, _finish, _keep in self._unfinished:
+            if job is not None and job[0] != ffi.NULL:
+                lib.skg_job_cancel(job[0])
         while self._unfinished:
-            finish, _keep = self._unfinished[0]
-            finish()
+            self._unfinished[0][1]()
             self._unfinished.pop(0)
         while self._garbage:
             release(*self._garbage.pop())
@@ -143,9 +146,30 @@ class Device:
         """Releases a handle that belongs to this device, now or with the next call."""
         self._garbage.append((kind, handle))
 
+    def begin(self, keep: Any) -> Any:
+        """A place for a job that is about to be submitted, and what has to stay as long as it runs. It is taken before the submission,
+        so that an interrupt at any moment leaves the job here."""
+        job = ffi.new("skg_job **")
+        self._unfinished.append((job, lambda: self._wait(job), keep))
+        return job
+
     def abandon(self, finish: Callable[[], object], keep: Any) -> None:
         """Takes work that was not waited for: a function that waits, and what has to stay as long as it runs."""
-        self._unfinished.append((finish, keep))
+        self._unfinished.append((None, finish, keep))
+
+    def settle(self, finish: Callable[[], object]) -> None:
+        """The work of this function is over."""
+        self._unfinished[:] = [entry for entry in self._unfinished if entry[1] != finish]
+
+    @staticmethod
+    def _wait(job: Any) -> int:
+        return OK if job[0] == ffi.NULL else int(lib.skg_job_wait(job))
+
+    def end(self, job: Any) -> int:
+        """Waits for a job that was begun; its place may be empty. Gives the status."""
+        status = self._wait(job)
+        self._unfinished[:] = [entry for entry in self._unfinished if entry[0] is not job]
+        return status
 
     def close(self) -> None:
         """Frees the device. Scenes that use it cannot be used any more."""
@@ -211,7 +235,16 @@ def _forget() -> None:
 
 
 def _close() -> None:
-    """At the end of the process, while the library is still there."""
+    """At the end of the process, while the library is still there: what devices still do ends before the memory that they write to. An
+    interrupt is put off, since it would leave them at work."""
+    with contextlib.suppress(ValueError):  # another thread ends the process
+        signal.signal(signal.SIGINT, signal.SIG_IGN)
+    for device in list(_all):
+        if device._handle != ffi.NULL and device._lock.acquire(timeout=1):  # a thread that is in a call keeps what it needs
+            try:
+                device._collect()
+            finally:
+                device._lock.release()
     _shared.clear()
 
 

@@ -1,7 +1,6 @@
 """Batches of frames: submitted a few at a time, so that an interrupt is answered at once. Private."""
 from __future__ import annotations
 
-import functools
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -63,36 +62,36 @@ Submit = Callable[[int, Any, Any, Any], int]
 def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progress: Progress = False) -> None:
     """Computes a batch into out, [frame][channel][row][column]. The device's calls are this thread's."""
     meter = Meter(progress, batch.count)
-    started: list[tuple[Any, list[Any], int, float]] = []
+    started: list[tuple[Any, int, float]] = []
     size, sent, done, ranged = 1, 0, 0, ""
     try:
         while done < batch.count:
             while sent < batch.count and len(started) < 2:
                 count = min(size, batch.count - sent)
                 begun = time.monotonic()  # frames with scatter are computed as they are submitted
-                job, keep = _start(submit, batch, sent, count, out)
-                started.append((job, keep, count, begun))
+                keep: list[Any] = []
+                job = device.begin((keep, out))
+                started.append((job, count, begun))
+                _start(submit, batch, sent, count, out, job, keep)
                 sent += count
-            job, keep, count, begun = started[0]
+            job, count, begun = started[0]
             wait(job)
-            started.pop(0)
-            if check(lib.skg_job_wait(job)) == RANGE:
+            if check(device.end(job)) == RANGE:
                 ranged = text(lib.skg_last_error())
+            started.pop(0)
             seconds = max((time.monotonic() - begun) / (1 + len(started)), 1e-6)
             size = max(1, min(2 * size, int(_CHUNK * count / seconds)))
             done += count
             meter.update(done)
     finally:
-        for job, keep, _, _ in started:
-            lib.skg_job_cancel(job[0])
-            device.abandon(functools.partial(lib.skg_job_wait, job), (keep, out))
+        for job, _, _ in started:
+            cancel(job)
     if ranged:
         warn(ranged, RangeWarning)
 
 
-def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[Any]) -> tuple[Any, list[Any]]:
-    keep: list[Any] = []
-    output, job = struct("skg_output"), ffi.new("skg_job **")
+def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[Any], job: Any, keep: list[Any]) -> None:
+    output = struct("skg_output")
     part = out[first:first + count]
     size = part.itemsize
     output.type = ENUMS["type"][str(part.dtype)]
@@ -107,7 +106,12 @@ def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[An
     if status == STALE:
         raise Stale(text(lib.skg_last_error()))
     assert status in (OK, RANGE)
-    return job, keep
+
+
+def cancel(job: Any) -> None:
+    """Cancels a job that the device has begun, if there is one."""
+    if job[0] != ffi.NULL:
+        lib.skg_job_cancel(job[0])
 
 
 def wait(job: Any) -> None:

@@ -1,14 +1,13 @@
 """Gradients: the derivative of a loss by the scene, from its derivative by an image. Private."""
 from __future__ import annotations
 
-import functools
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._frames import Batch, wait
+from ._frames import Batch, cancel, wait
 from ._images import number_frames
 from ._interface import OK, ArgumentError, SceneError
 from ._library import check, ffi, integer, lib, struct, text
@@ -201,22 +200,22 @@ def _run(state: State, options: dict[str, Any], start: Callable[[Any, Any, Any],
     batch = Batch(1, index=number_frames(state, 1, None, options), complete=state.completer())
     for again in (False, True):
         keep: list[Any] = []
-        plan, frames, job = state.plan(options, None, again), batch.frames(0, 1, keep), ffi.new("skg_job **")
+        plan, frames = state.plan(options, None, again), batch.frames(0, 1, keep)
+        job = state.device.begin((keep, results()))
         nodes = integer("skg_plan_node_count", plan)
         status = start(plan, frames, job)
         if has_nodes and status != OK and integer("skg_plan_node_count", plan) != nodes:
             status = start(plan, frames, job)
-        if check(status) == OK and _finish(state, job, results()) == OK:
+        if check(status) == OK and _finish(state, job) == OK:
             return
     raise SceneError(text(lib.skg_last_error()))
 
 
-def _finish(state: State, job: Any, results: Any) -> int:
+def _finish(state: State, job: Any) -> int:
     """Waits for a job; after an interrupt it is cancelled, and its memory stays until it is over."""
     try:
         wait(job)
     except BaseException:
-        lib.skg_job_cancel(job[0])
-        state.device.abandon(functools.partial(lib.skg_job_wait, job), (results,))
+        cancel(job)
         raise
-    return check(lib.skg_job_wait(job))
+    return check(state.device.end(job))

@@ -193,7 +193,6 @@ class _Work:
         self._words: queue.SimpleQueue[Word] = queue.SimpleQueue()
         self.total = 0
         self._thread = threading.Thread(target=self._work, name="skiagraph scan")
-        self._thread.start()
 
     def _work(self) -> None:
         last: Word = ""
@@ -231,20 +230,24 @@ class _Work:
     def _stop(self) -> None:
         """Cancels the run, and waits for what the device was given of it."""
         call("skg_progress_cancel", self._progress)
-        self._thread.join()
+        if self._thread.ident is not None:
+            self._thread.join()
 
     def follow(self, device: Device, progress: Progress) -> None:
-        """Waits for the end; a signal is answered at once."""
+        """Starts, and waits for the end; a signal is answered at once. The device knows of the work before it begins, so that an
+        interrupt at any moment leaves it there."""
         meter: Meter | None = None
+        device.abandon(self._stop, self)
         try:
+            self._thread.start()
             while isinstance(word := self._words.get(), int):
                 meter = meter or Meter(progress, self.total)
                 meter.update(word)
         except BaseException:
             call("skg_progress_cancel", self._progress)
-            device.abandon(self._stop, self)
             raise
         self._thread.join()
+        device.settle(self._stop)
         if isinstance(word, BaseException):
             raise word
         if word:

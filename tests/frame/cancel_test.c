@@ -281,11 +281,48 @@ START_TEST(several_outputs) {
 }
 END_TEST
 
+/* What a window's thread does while another one waits: it holds a reference, so that the job outlives the wait. */
+static void *cancel_often(void *user) {
+    skg_job *held = user;
+    for (int k = 0; k < 2000; k++)
+        if (skg_job_cancel(held) != SKG_OK) return user;
+    skg_job_release(&held);
+    return NULL;
+}
+
+START_TEST(another_thread_cancels_while_one_waits) {
+    for (int round = 0; round < 5; round++) {
+        skg_job *job = submit(), *held = job;
+        pthread_t thread;
+        void *failed = NULL;
+        int32_t done = 0;
+        int64_t finished = -1, total = -1;
+        ck_skg(skg_job_retain(held)); /* of the thread */
+        ck_skg(skg_job_retain(held)); /* of this one */
+        ck_assert_int_eq(pthread_create(&thread, NULL, cancel_often, held), 0);
+        const skg_status status = skg_job_wait(&job);
+        ck_assert_ptr_null(job);
+        ck_assert(status == SKG_OK || status == SKG_ERR_CANCELLED);
+        ck_assert_int_eq(pthread_join(thread, &failed), 0);
+        ck_assert_ptr_null(failed);
+        ck_skg(skg_job_cancel(held));
+        ck_skg(skg_job_test(held, &done));
+        ck_skg(skg_job_progress(held, &finished, &total));
+        ck_assert(done == 1 && total == frames && finished >= 0 && finished <= total);
+        job = held;
+        ck_skg_fails(skg_job_wait(&job), SKG_ERR_ARGUMENT, "was waited for");
+        skg_job_release(&held);
+        ck_assert_ptr_null(held);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_plan, close_plan);
     tcase_add_test(tests, cancelled_at_once);
     tcase_add_test(tests, cancelled_in_the_middle_by_another_thread);
     tcase_add_test(tests, cancelled_after_the_end);
+    tcase_add_test(tests, another_thread_cancels_while_one_waits);
     tcase_add_test(tests, the_scene_of_the_submission);
     tcase_add_test(tests, the_frames_of_the_submission);
     tcase_add_test(tests, a_part_is_added_too_early);

@@ -185,9 +185,17 @@ SKG_API skg_status skg_job_test(skg_job *job, int32_t *done);
 SKG_API skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total);
 
 /** Cancels a job: frames that the device was not given yet are not made. Those that it was given cannot be taken back;
- * skg_job_wait waits for them. Does nothing if the device has them all. Other jobs are not touched. Any thread may call it
- * while the job was not waited for. */
+ * skg_job_wait waits for them. Does nothing if the device has them all, or if the job was waited for. Other jobs are not touched.
+ * Any thread may call it at any time while it holds a reference: a window's thread retains the job that another thread waits for. */
 SKG_API skg_status skg_job_cancel(skg_job *job);
+
+/** Adds a reference to a job, for another thread that may cancel it. Any thread that holds a reference may call it. */
+SKG_API skg_status skg_job_retain(skg_job *job);
+
+/** Gives up a reference that skg_job_retain added, and sets the handle to NULL. The job's own reference is given up by skg_job_wait. Any
+ * thread may call it; but if it gives up the last reference of a job that nobody has waited for, the job is cancelled and waited for,
+ * which only the thread of its context may do. */
+SKG_API void skg_job_release(skg_job **job);
 
 /** Waits until a job's outputs are in place, releases the job and sets the handle to NULL.
  *
