@@ -170,15 +170,16 @@ static int make_process(hid_t root, const skg_scan_file *file) {
 
 /* The file is aligned to pages, so that projections are. */
 static skg_status make_file(skg_scan_file *file, const char *path, const geometry *g) {
-    enum { PAGE = 4096 };
+    enum { PAGE = 4096, HELD = 64 << 10 };
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     int done = H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_LATEST) >= 0 &&
                H5Pset_alignment(access, PAGE, PAGE) >= 0;
     const hid_t root = done ? H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access) : -1;
     done = root >= 0 && write_text(root, "implements", "exchange") && make_exchange(root, file, g) &&
            make_geometry(root, file, g) && make_process(root, file);
-    skg_status status = done ? SKG_OK : fail(path);
-    if (root >= 0 && H5Fclose(root) < 0 && status == SKG_OK) status = fail(path);
+    skg_status status = done ? SKG_OK : fail(file->path);
+    if (root >= 0 && !skg_hdf5_close(root, done, HELD) && status == SKG_OK)
+        status = skg_output_fail(file->path, errno, "HDF5 could not finish it");
     H5Pclose(access);
     return status;
 }

@@ -5,6 +5,7 @@
 #include "core/core.h"
 
 #include <errno.h>
+#include <fcntl.h>
 #include <hdf5.h>
 #include <string.h>
 #include <unistd.h>
@@ -35,5 +36,11 @@ int skg_hdf5_copy_set(hid_t from, hid_t to, const char *name);
 
 /* Copies the groups geometry and process of a scan. Returns 0 on failure. */
 int skg_hdf5_copy_groups(hid_t from, hid_t to);
+
+/* Closes a file that was written to, also on a full disk. Returns 0 if the file is not whole.
+ *
+ * written   0: something could not be written, and the file is lost
+ * bytes     at most so many HDF5 still holds of it */
+int skg_hdf5_close(hid_t file, int written, int64_t bytes);
 
 #endif

@@ -252,6 +252,18 @@ static skg_status pack(packing *p) {
     return pack_set(p, "exchange/data_dark", 0);
 }
 
+/* What HDF5 may hold of a file at its end: an index of pieces of images, of which there are 64 bytes for each. */
+static int64_t held_of(hid_t result) {
+    const hid_t set = H5Dopen2(result, "exchange/data", H5P_DEFAULT);
+    hsize_t size[3] = {0};
+    if (set >= 0) {
+        (void)size_of(set, size);
+        H5Dclose(set);
+    }
+    const hsize_t row = size[2] * sizeof(double), pieces = size[0] * (1 + size[1] * row / CHUNK_BYTES);
+    return (1 << 20) + 64 * (int64_t)pieces;
+}
+
 /* From the source that is open to a file under a temporary name. */
 static skg_status pack_to(packing *p, const char *temporary) {
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
@@ -260,7 +272,8 @@ static skg_status pack_to(packing *p, const char *temporary) {
     H5Pclose(access);
     if (p->result < 0) return skg_output_fail(p->to, errno, "HDF5 could not make it");
     skg_status status = pack(p);
-    if (H5Fclose(p->result) < 0 && status == SKG_OK) status = fail(p);
+    if (!skg_hdf5_close(p->result, status == SKG_OK, held_of(p->result)) && status == SKG_OK)
+        status = skg_output_fail(p->to, errno, "HDF5 could not finish it");
     return status;
 }
 
