@@ -13,6 +13,7 @@ typedef struct {
     int32_t *corners;  /* 3 * triangles */
     int64_t vertices, triangles;
     int64_t vertex_capacity, triangle_capacity;
+    int32_t as_wound; /* 1: inconsistent winding stays */
     int64_t left_out; /* points and lines that a file has, and a mesh has not */
 } skg_mesh_arrays;
 

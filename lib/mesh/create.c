@@ -105,6 +105,7 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
     mesh->triangles = arrays->triangles;
     mesh->positions = arrays->positions;
     mesh->corners = arrays->corners;
+    mesh->as_wound = arrays->as_wound;
     *arrays = (skg_mesh_arrays){0};
     SKG_TRY(skg_alloc(3 * mesh->vertices, sizeof *mesh->offsets, name, &mesh->offsets));
     set_offsets(mesh);
@@ -114,6 +115,18 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
 }
 
 void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh) {
+    const skg_mesh_health *health = &mesh->health;
+    const double *p = health->first_turned_position;
+    if (health->turned > 0)
+        skg_log(context, SKG_LOG_WARNING,
+                "%s: wound inconsistently; %" PRId64 " of %" PRId64
+                " triangles were turned, first number %" PRId64 " near (%.4g, %.4g, %.4g) mm%s",
+                mesh->name, health->turned, health->triangles, health->first_turned, p[0], p[1], p[2],
+                health->closed ? "" : "; it has holes, too");
+    if (health->one_sided > 0)
+        skg_log(context, SKG_LOG_WARNING,
+                "%s: %" PRId64 " %s no inside, as a Moebius strip has none; turning triangles cannot mend it",
+                mesh->name, health->one_sided, skg_plural(health->one_sided, "patch has", "patches have"));
     if (mesh->orientation < 0)
         skg_log(context, SKG_LOG_WARNING,
                 "%s: inverted as a whole (its triangles face inward); turned outward", mesh->name);
@@ -156,6 +169,8 @@ static skg_status check_source(const char *name, skg_mesh_source *from) {
     SKG_TRY(check_stride(name, "position", &from->position_stride));
     SKG_TRY(check_stride(name, "triangle", &from->triangle_stride));
     SKG_TRY(check_counts(name, from->vertices, from->triangles));
+    if (from->as_wound < 0 || from->as_wound > 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: as_wound is %" PRId32 "; give 0 or 1", name, from->as_wound);
     if (from->positions && from->floats)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: positions and floats are both given; set one of them to NULL",
                         name);
@@ -167,6 +182,7 @@ static skg_status check_source(const char *name, skg_mesh_source *from) {
 static skg_status copy_arrays(const char *name, const skg_mesh_source *from, skg_mesh_arrays *arrays) {
     SKG_TRY(skg_alloc(3 * from->vertices, sizeof(double), name, &arrays->positions));
     SKG_TRY(skg_alloc(3 * from->triangles, sizeof(int32_t), name, &arrays->corners));
+    arrays->as_wound = from->as_wound;
     arrays->vertices = from->vertices;
     arrays->triangles = from->triangles;
     for (int64_t i = 0; i < from->vertices; i++)

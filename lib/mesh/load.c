@@ -4,6 +4,7 @@
  * memory when it refuses one. */
 #include "core/context.h"
 #include "core/files.h"
+#include "core/maths.h"
 #include "core/text.h"
 #include "mesh/archive.h"
 #include "mesh/assimp_files.h"
@@ -42,10 +43,21 @@ static skg_status read_here(FILE *stream, const char *path, int64_t size, reader
     return status;
 }
 
-/* Adds one object of a file, placed by its node. Vertices and faces keep their order. */
+/* The determinant of the linear part. */
+static double determinant(const struct aiMatrix4x4 *m) {
+    const double pose[16] = {(double)m->a1, (double)m->a2, (double)m->a3, 0,
+                             (double)m->b1, (double)m->b2, (double)m->b3, 0,
+                             (double)m->c1, (double)m->c2, (double)m->c3, 0};
+    return skg_pose_determinant(pose);
+}
+
+/* Adds one object of a file, placed by its node. Vertices and faces keep their order; the corners of a face turn where the node
+ * mirrors, as glTF 2.0 says of a
+ * negative determinant. */
 static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4x4 *m,
                              skg_mesh_arrays *arrays) {
-    int64_t base = arrays->vertices;
+    const int64_t base = arrays->vertices;
+    const int mirrored = determinant(m) < 0;
     for (unsigned i = 0; i < object->mNumVertices; i++) {
         double x = (double)object->mVertices[i].x, y = (double)object->mVertices[i].y,
                z = (double)object->mVertices[i].z;
@@ -59,10 +71,11 @@ static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4
         skg_polygon polygon = {0};
         arrays->left_out += face->mNumIndices < 3;
         for (unsigned k = 0; face->mNumIndices >= 3 && k < face->mNumIndices; k++) {
-            if (face->mIndices[k] >= object->mNumVertices)
-                return skg_fail(SKG_ERR_MESH, "face %u names vertex %u of an object of %u", i,
-                                face->mIndices[k], object->mNumVertices);
-            SKG_TRY(skg_mesh_add_corner(arrays, &polygon, base + (int64_t)face->mIndices[k]));
+            const unsigned corner = face->mIndices[mirrored ? face->mNumIndices - 1 - k : k];
+            if (corner >= object->mNumVertices)
+                return skg_fail(SKG_ERR_MESH, "face %u names vertex %u of an object of %u", i, corner,
+                                object->mNumVertices);
+            SKG_TRY(skg_mesh_add_corner(arrays, &polygon, base + (int64_t)corner));
         }
     }
     return SKG_OK;
@@ -122,14 +135,15 @@ int skg_mesh_is_shareable(const char *path) {
     return find_reader(path) != NULL;
 }
 
-skg_status skg_mesh_load_silently(const char *path, double unit_mm, skg_loaded *loaded) {
-    skg_mesh_arrays arrays = {0};
+skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded) {
+    skg_mesh_arrays arrays = {.as_wound = reading->as_wound};
     *loaded = (skg_loaded){0};
     const skg_status status = read_file(path, &arrays);
     if (status != SKG_OK) {
         skg_mesh_arrays_free(&arrays);
         return status;
     }
+    const double unit_mm = reading->unit_mm > 0 ? reading->unit_mm : 1;
     loaded->left_out = arrays.left_out;
     for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= unit_mm;
     return skg_mesh_adopt(NULL, name_of(path), &arrays, &loaded->mesh);
@@ -142,23 +156,41 @@ void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_
     if (loaded->mesh) skg_mesh_warn_turned(context, loaded->mesh);
 }
 
-static skg_status load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+void skg_mesh_reading_init_sized(void *reading, int32_t size) {
+    const skg_mesh_reading defaults = {0};
+    skg_struct_init(reading, size, &defaults, sizeof defaults);
+}
+
+static skg_status load(skg_context *context, const char *call, const char *path,
+                       const skg_mesh_reading *reading, skg_mesh **mesh) {
     SKG_PLAIN;
     skg_loaded loaded;
-    SKG_NEEDS_OF("skg_mesh_load", mesh);
+    skg_mesh_reading wanted;
+    SKG_NEEDS_OF(call, mesh);
     *mesh = NULL;
-    SKG_NEEDS_OF("skg_mesh_load", path);
-    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
-    if (!isfinite(unit_mm) || unit_mm <= 0)
+    SKG_NEEDS_OF(call, path);
+    skg_mesh_reading_init(&wanted);
+    SKG_TRY(skg_struct_read(reading, "skg_mesh_reading", &wanted, sizeof wanted));
+    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "%s: no path", call);
+    if (!isfinite(wanted.unit_mm) || wanted.unit_mm < 0)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
-                        path, unit_mm);
-    const skg_status status = skg_mesh_load_silently(path, unit_mm, &loaded);
+                        path, wanted.unit_mm);
+    if (wanted.as_wound < 0 || wanted.as_wound > 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: as_wound is %" PRId32 "; give 0 or 1", path, wanted.as_wound);
+    const skg_status status = skg_mesh_load_silently(path, &wanted, &loaded);
     skg_mesh_load_warn(context, path, &loaded);
     *mesh = loaded.mesh;
     return status;
 }
 
-skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+skg_status skg_mesh_load_as(skg_context *context, const char *path, const skg_mesh_reading *reading,
+                            skg_mesh **mesh) {
     const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, load(context, path, unit_mm, mesh));
+    return skg_call_end(handler, load(context, "skg_mesh_load_as", path, reading, mesh));
+}
+
+skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+    const skg_mesh_reading reading = {.size = sizeof reading, .unit_mm = unit_mm};
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, load(context, "skg_mesh_load", path, &reading, mesh));
 }

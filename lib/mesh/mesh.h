@@ -17,6 +17,7 @@ struct skg_mesh {
     int32_t *weld;       /* per vertex the first one at the same place; NULL: each is its own */
     int32_t orientation; /* 1; -1: the triangles face inward, and the plan changes the sign of their hits */
     int32_t closed;      /* as health.closed */
+    int32_t as_wound;    /* 1: inconsistent winding stays */
     int positions_stale; /* 1: the offsets were changed in place, and a position is origin + offset */
     int64_t version;     /* of the positions, from 1 */
     float lowest[3];     /* bounds of the finite offsets, mm from origin */
@@ -30,7 +31,7 @@ struct skg_mesh {
  * skg_mesh_create promises except the strides and the unit. */
 skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_arrays *arrays, skg_mesh **mesh);
 
-/* Warns if the mesh was turned outward as a whole. */
+/* Warns if triangles were turned, or the mesh outward as a whole. */
 void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh);
 
 /* A mesh from a file, and what is to be warned of. */
@@ -42,7 +43,7 @@ typedef struct {
 /* What skg_mesh_load does, in two steps: threads may share the first one for files that are shareable (STL, PLY and OBJ:
  * Assimp's errors belong to no thread), and the second one logs. The calling thread has the C locale (text.h). */
 int skg_mesh_is_shareable(const char *path);
-skg_status skg_mesh_load_silently(const char *path, double unit_mm, skg_loaded *loaded);
+skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded);
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded);
 
 /* Fills health and orientation of a new mesh, and its weld map. */

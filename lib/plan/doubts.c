@@ -47,25 +47,19 @@ static int box_holds(const skg_mesh *mesh, const double *pose, const double *sou
     return low[0] < 0 && low[1] < 0 && low[2] < 0 && high[0] > 0 && high[1] > 0 && high[2] > 0;
 }
 
-/* How many times the surface of the mesh winds about the source: the solid angles of its triangles (A. Van Oosterom and
- * J. Strackee, 1983) over 4 pi. */
+/* How many times the surface of the mesh winds about the source: the solid angles of its triangles over 4 pi. */
 static double winding(const skg_mesh *mesh, const double *pose, const double *source) {
     double sum = 0;
     for (int64_t t = 0; t < mesh->triangles; t++) {
-        double corner[3][3], across[3], length[3];
+        double corner[3][3];
         for (int c = 0; c < 3; c++) {
             double at[3];
             skg_mesh_vertex(mesh, mesh->corners[3 * t + c], at);
             place(pose, source, at, corner[c]);
-            length[c] = skg_length(corner[c]);
         }
-        skg_cross(corner[1], corner[2], across);
-        sum +=
-            atan2(skg_dot(corner[0], across),
-                  length[0] * length[1] * length[2] + skg_dot(corner[0], corner[1]) * length[2] +
-                      skg_dot(corner[0], corner[2]) * length[1] + skg_dot(corner[1], corner[2]) * length[0]);
+        sum += skg_solid_angle(corner[0], corner[1], corner[2]);
     }
-    return sum / (2 * SKG_PI);
+    return sum / (4 * SKG_PI);
 }
 
 static int holds_source(const skg_recipe *recipe, int64_t part) {

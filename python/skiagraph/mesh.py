@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays
+from ._device import warn
 from ._interface import ArgumentError
 from ._library import call, doubles, encode, ffi, fill, filled, integer, make, owned, string, struct
 
@@ -15,7 +16,8 @@ from ._library import call, doubles, encode, ffi, fill, filled, integer, make, o
 class Mesh:
     """Vertices and triangles, whose numbering stays as it was given.
 
-    vertices: [n, 3], float32 or float64, in units of unit_mm. faces: [m, 3], whole numbers from 0.
+    vertices: [n, 3], float32 or float64, in units of unit_mm. faces: [m, 3], whole numbers from 0. Triangles that are wound
+    otherwise than their neighbours are turned, with a warning; as_wound=True leaves them.
 
     >>> mesh = Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
     >>> mesh.health["closed"], round(mesh.health["volume"], 6)
@@ -25,7 +27,7 @@ class Mesh:
     """
 
     def __init__(self, vertices: Any, faces: Any, *, unit_mm: float = 1, name: str = "mesh",
-                 _context: Any = ffi.NULL) -> None:
+                 as_wound: bool = False, _context: Any = ffi.NULL) -> None:
         positions = _arrays.rows(vertices, "vertices", (np.float64, np.float32))
         corners = _arrays.rows(faces, "faces", (np.int32,))
         source = struct("skg_mesh_source")
@@ -37,8 +39,19 @@ class Mesh:
         source.triangles, address, source.triangle_stride = _strided(corners)
         source.corners = ffi.cast("int32_t *", address)
         source.unit_mm = float(unit_mm)
+        source.as_wound = bool(as_wound)
         self._handle = owned("skg_mesh", make("skg_mesh_create", "skg_mesh", _context, encode(name, "name"), source))
         self._changed = False
+        if _context == ffi.NULL:
+            self._say_turned()
+
+    def _say_turned(self) -> None:
+        """Warns of what a mesh that is made without a device cannot log."""
+        health = self.health
+        if health["turned"]:
+            near = ", ".join(f"{x:.4g}" for x in health["first_turned_position"])
+            warn(f"{self.name}: wound inconsistently; {health['turned']} of {health['triangles']} triangles were turned, first "
+                 f"number {health['first_turned']} near ({near}) mm")
 
     @classmethod
     def _of(cls, handle: Any) -> Mesh:
@@ -52,9 +65,15 @@ class Mesh:
         return cls._of(owned("skg_mesh", make(name, "skg_mesh", *arguments)))
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str], *, unit_mm: float = 1, _context: Any = ffi.NULL) -> Mesh:
+    def load(cls, path: str | os.PathLike[str], *, unit_mm: float = 1, as_wound: bool = False,
+             _context: Any = ffi.NULL) -> Mesh:
         """Reads STL, PLY, OBJ and the other formats that the library reads; its numbers are in units of unit_mm."""
-        return cls._made("skg_mesh_load", _context, encode(path, "path"), float(unit_mm))
+        reading = fill(struct("skg_mesh_reading"), "skg_mesh_reading",
+                       {"unit_mm": float(unit_mm), "as_wound": int(as_wound)}, [], "the wish for a file")
+        made = cls._made("skg_mesh_load_as", _context, encode(path, "path"), reading)
+        if _context == ffi.NULL:
+            made._say_turned()
+        return made
 
     @classmethod
     def cube(cls, edge: float) -> Mesh:
@@ -269,7 +288,7 @@ class Mesh:
 
 
 def _remake(vertices: Any, faces: Any, name: str) -> Mesh:
-    return Mesh(vertices, faces, name=name)
+    return Mesh(vertices, faces, name=name, as_wound=True)  # they were turned when it was made
 
 
 def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:

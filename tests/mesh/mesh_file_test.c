@@ -151,7 +151,7 @@ START_TEST(files_that_are_none) {
     refuse(file_of("a.unknown", "what is this"), SKG_ERR_FORMAT, "a.unknown");
     refuse(file_of("a", "what is this"), SKG_ERR_FORMAT, "/a: ");
     file_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    ck_skg_fails(skg_mesh_load(NULL, path, 0, &mesh), SKG_ERR_ARGUMENT, "unit 0 mm");
+    ck_skg_fails(skg_mesh_load(NULL, path, -1, &mesh), SKG_ERR_ARGUMENT, "unit -1 mm");
     ck_skg_fails(skg_mesh_load(NULL, path, (double)NAN, &mesh), SKG_ERR_ARGUMENT, "unit nan mm");
     ck_skg_fails(skg_mesh_load(NULL, NULL, 1, &mesh), SKG_ERR_ARGUMENT, "path is NULL");
     ck_skg_fails(skg_mesh_load(NULL, path, 1, NULL), SKG_ERR_ARGUMENT, "mesh is NULL");

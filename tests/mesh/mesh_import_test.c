@@ -56,6 +56,27 @@ START_TEST(formats_of_assimp) {
 }
 END_TEST
 
+/* A node that mirrors turns the winding (glTF 2.0): beside an unmirrored one, volumes would cancel. */
+START_TEST(mirrored_nodes_turn_the_winding) {
+    skg_mesh *mesh = load(file_of(
+        "mirrored.gltf",
+        "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0,1]}],\"nodes\":["
+        "{\"mesh\":0,\"translation\":[10,0,0]},{\"mesh\":0,\"scale\":[-2,2,2]}],"
+        "\"meshes\":[{\"primitives\":[{\"attributes\":{\"POSITION\":0},\"indices\":1}]}],"
+        "\"accessors\":[{\"bufferView\":0,\"componentType\":5126,\"count\":4,\"type\":\"VEC3\","
+        "\"min\":[0,0,0],\"max\":[1,1,1]},{\"bufferView\":1,\"componentType\":5123,\"count\":12,"
+        "\"type\":\"SCALAR\"}],\"bufferViews\":[{\"buffer\":0,\"byteLength\":48},"
+        "{\"buffer\":0,\"byteOffset\":48,\"byteLength\":24}],\"buffers\":[{\"byteLength\":72,\"uri\":"
+        "\"data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAAAAAIA/AAACAAEAAAABAAMAAQACAAMAAAADAAIA\"}]}"));
+    const skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_int_eq(health.turned, 0);
+    ck_assert_int_eq(health.flipped, 0);
+    ck_assert_double_eq_tol(health.volume, 9. / 6, 16 * DBL_EPSILON * 1.5);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
 /* Assimp, which welds nothing, as the oracle of our own readers: the same triangles in the same order, to the
  * last bit but one (its floats from text are not always the nearest). */
 START_TEST(own_readers_agree_with_assimp) {
@@ -91,6 +112,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, formats_of_assimp);
+    tcase_add_test(tests, mirrored_nodes_turn_the_winding);
     tcase_add_test(tests, own_readers_agree_with_assimp);
 }
 

@@ -38,6 +38,16 @@ def test_components_that_face_the_wrong_way():
     assert two.oriented().health["volume"] == pytest.approx(2 / 6, rel=1e-14)  # a few roundings
 
 
+def test_mixed_winding_is_turned_with_a_warning():
+    cube = sk.Mesh.cube(20)
+    faces = cube.faces.copy()
+    faces[[0, 1, 7]] = faces[[0, 1, 7], ::-1]
+    with pytest.warns(sk.SkiagraphWarning, match="3 of 12 triangles were turned"):
+        turned = sk.Mesh(cube.vertices, faces)
+    assert turned.health["closed"] and turned.health["volume"] == pytest.approx(8000)
+    assert not sk.Mesh(cube.vertices, faces, as_wound=True).health["closed"]
+
+
 def test_units():
     assert sk.Mesh(VERTICES, FACES, unit_mm=10).health["volume"] == pytest.approx(1000 / 6, rel=1e-14)  # roundings
 

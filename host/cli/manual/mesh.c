@@ -17,12 +17,15 @@ static const char *const text[] = {
     "Reads meshes (STL, PLY, OBJ and every other format that Assimp reads) and reports whether each is closed. "
     "Path lengths through a closed mesh are exact on every ray; a mesh that is not closed is leaky. A closed mesh "
     "whose triangles all face inward is turned outward.",
+    "Triangles that are wound otherwise than their neighbours are turned, and counted: such a mesh is wound inconsistently, not "
+    "open. Edges of more than two triangles and one-sided surfaces (a Moebius strip) stay what they are. With --strict a mesh "
+    "that had to be turned makes the status 1.",
     "A component inside another is a cavity and has to face inward; one in the open has to face outward. Components "
     "whose orientation contradicts their place are inverted: they make lengths negative or count them twice. A cavity "
     "that leaves its solid cannot be turned; it has to be mended where the mesh was made.",
     "A file that cannot be read is reported, and the files after it are read all the same.",
     "--json prints {files: [{file, closed, triangles, vertices, open_edges, volume_mm3, area_mm2, bounds, "
-    "inverted_components, leaving_cavities, ...}]}.",
+    "turned, duplicates, inverted_components, leaving_cavities, ...}]}.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_mesh_unit,

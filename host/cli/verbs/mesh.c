@@ -25,6 +25,13 @@ static json_t *health_json(const char *path, const skg_mesh_health *health, cons
     json_object_set_new(object, "nonmanifold_edges", json_integer(health->nonmanifold_edges));
     json_object_set_new(object, "degenerate_triangles", json_integer(health->degenerate_triangles));
     json_object_set_new(object, "duplicate_triangles", json_integer(health->duplicate_triangles));
+    json_object_set_new(object, "turned", json_integer(health->turned));
+    json_object_set_new(object, "same_way_edges", json_integer(health->same_way_edges));
+    json_object_set_new(object, "one_sided", json_integer(health->one_sided));
+    if (health->turned)
+        json_object_set_new(object, "first_turned_position_mm",
+                            cli_json_numbers(health->first_turned_position, 3));
+    json_object_set_new(object, "duplicates", json_integer(health->duplicate_triangles));
     json_object_set_new(object, "inverted_components", json_integer(nesting->inverted));
     if (nesting->inverted)
         json_object_set_new(object, "inverted_position_mm", cli_json_numbers(nesting->inverted_place, 3));
@@ -40,9 +47,18 @@ static json_t *health_json(const char *path, const skg_mesh_health *health, cons
 }
 
 static void print_health(const char *path, const skg_mesh_health *health) {
-    const double *b = health->bounds, *p = health->first_open_position;
-    cli_print("%s: %s%s\n", path, health->closed ? "closed" : "LEAKY",
+    const double *b = health->bounds, *p = health->first_open_position, *q = health->first_turned_position;
+    cli_print("%s: %s%s%s\n", path, health->closed ? "closed" : "LEAKY",
+              health->turned ? ", wound inconsistently" : "",
               health->flipped ? ", wound inward (turned outward)" : "");
+    if (health->turned)
+        printf("  %" PRId64 " directed edges that two triangles run along in one direction; %" PRId64
+               " triangles turned, first number %" PRId64
+               " near (%.6g, %.6g, %.6g) mm. --fix -o FILE writes them so\n",
+               health->same_way_edges, health->turned, health->first_turned, q[0], q[1], q[2]);
+    if (health->one_sided)
+        printf("  %" PRId64 " patches are one-sided, as a Moebius strip is; turning cannot mend them\n",
+               health->one_sided);
     if (!health->closed)
         printf("  %" PRId64 " open edges, first at vertex %" PRId64 " (%.6g, %.6g, %.6g) mm\n",
                health->open_edges, health->first_open_vertex, p[0], p[1], p[2]);
@@ -102,6 +118,7 @@ int cli_mesh(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = read_fix(arguments, &fixed);
     if (exit_status != CLI_DONE) return exit_status;
     json_t *list = cli_given(arguments, &cli_flag_json) ? json_array() : NULL;
+    const int strict = cli_given(arguments, &cli_flag_strict);
     int failure = CLI_DONE, all_healthy = 1;
     for (int i = 0; i < arguments->operand_count; i++) {
         const char *path = arguments->operands[i];
@@ -113,7 +130,8 @@ int cli_mesh(const cli_arguments *arguments) {
             if (failure == CLI_DONE) failure = its;
             continue;
         }
-        all_healthy = all_healthy && health.closed && nesting.inverted == 0 && nesting.leaving == 0;
+        all_healthy = all_healthy && health.closed && !(strict && (health.turned || health.flipped)) &&
+                      nesting.inverted == 0 && nesting.leaving == 0;
         if (list)
             json_array_append_new(list, health_json(path, &health, &nesting));
         else if (!cli_is_quiet())

@@ -35,8 +35,10 @@ skg_status skg_mesh_cache_want(const skg_setup_reader *reader, const skg_json_ob
 }
 
 static skg_status fetch_one(void *user, int64_t item) {
-    struct skg_fetched_mesh *file = &((skg_mesh_cache *)user)->fetched[item];
-    skg_mesh_load_silently(file->path, file->unit_mm, &file->loaded);
+    const skg_mesh_cache *cache = user;
+    struct skg_fetched_mesh *file = &cache->fetched[item];
+    const skg_mesh_reading reading = {.as_wound = cache->as_wound, .unit_mm = file->unit_mm};
+    skg_mesh_load_silently(file->path, &reading, &file->loaded);
     return SKG_OK;
 }
 
@@ -47,7 +49,9 @@ skg_status skg_mesh_cache_fetch(skg_mesh_cache *cache) {
 skg_status skg_mesh_cache_load(skg_mesh_cache *cache, skg_context *context, const char *path, double unit_mm,
                                skg_mesh **mesh) {
     const struct skg_fetched_mesh *known = find(cache, path, unit_mm);
-    if (!known || !known->loaded.mesh) return skg_mesh_load(context, path, unit_mm, mesh);
+    const skg_mesh_reading reading = {
+        .size = sizeof reading, .as_wound = cache->as_wound, .unit_mm = unit_mm};
+    if (!known || !known->loaded.mesh) return skg_mesh_load_as(context, path, &reading, mesh);
     SKG_TRY(skg_mesh_retain(known->loaded.mesh));
     skg_mesh_load_warn(context, path, &known->loaded);
     *mesh = known->loaded.mesh;

@@ -242,7 +242,7 @@ skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node 
                                   const skg_json_node *graph) {
     int64_t count = 0;
     sample_list list = {.outer_part = -1};
-    skg_mesh_cache cache = {0};
+    skg_mesh_cache cache = {.as_wound = reader->setup->as_wound};
     skg_status status = SKG_OK;
     if (node->value) SKG_TRY(skg_json_array(node, "an array of samples [ ... ]", &count));
     SKG_TRY(skg_scene_create(reader->context, &reader->setup->scene));

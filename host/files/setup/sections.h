@@ -115,6 +115,7 @@ typedef struct {
             loaded; /* its mesh is NULL if that failed; the failure is found again where the sample is read */
     } * fetched;
     int64_t fetched_count;
+    int32_t as_wound; /* as in skg_mesh_reading */
 } skg_mesh_cache;
 
 void skg_mesh_cache_clear(skg_mesh_cache *cache);

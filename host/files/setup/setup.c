@@ -70,6 +70,7 @@ static skg_status read_repair_word(skg_setup *setup, const skg_json_node *node) 
         return skg_json_fail(node, SKG_ERR_FORMAT, "a repair of leaky meshes was chosen before");
     setup->has_repair = 1;
     setup->repair = (int32_t)choice;
+    setup->as_wound = choice == SKG_REPAIR_NONE;
     return SKG_OK;
 }
 

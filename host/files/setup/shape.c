@@ -63,6 +63,7 @@ static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json
                                     &(skg_mesh_source){.size = sizeof(skg_mesh_source),
                                                        .vertices = health.vertices,
                                                        .positions = positions,
+                                                       .as_wound = reader->setup->as_wound,
                                                        .position_stride = 3,
                                                        .triangles = health.triangles,
                                                        .corners = corners,

@@ -24,8 +24,9 @@ typedef struct skg_mesh skg_mesh;
 typedef struct {
     /** Set by skg_mesh_source_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** 0, the default: triangles that are wound otherwise than their neighbours are turned (skg_mesh_health.turned); 1: they stay, and
+     * the mesh is leaky. */
+    int32_t as_wound;
     /** Number of vertices. */
     int64_t vertices;
     /** Rows of x, y, z in units of unit_mm. */
@@ -53,10 +54,27 @@ SKG_INIT(skg_mesh_source)
  *     errors    SKG_ERR_ARGUMENT, SKG_ERR_MEMORY; SKG_ERR_MESH if there are no triangles, or for the first corner that
  *               is out of range or vertex that is not finite
  *
- * If a closed mesh points inward as a whole, it is turned outward and a warning says so
- * (skg_mesh_health.flipped). The caller's numbering stays. */
+ * Triangles that are wound otherwise than their neighbours are turned: their second and third corner are exchanged, and a warning
+ * says how many and where the first is. Edges of more than two triangles join no neighbours. If a closed mesh points inward as a
+ * whole, it is turned outward and a warning says so (skg_mesh_health.flipped). The caller's numbering stays. */
 SKG_API skg_status skg_mesh_create(skg_context *context, const char *name, const skg_mesh_source *source,
                                    skg_mesh **mesh);
+
+/** How a file is read. */
+typedef struct {
+    /** Set by skg_mesh_reading_init. */
+    int32_t size;
+    /** As in skg_mesh_source. */
+    int32_t as_wound;
+    /** mm per unit of the file; 0, the default: 1 */
+    double unit_mm;
+} skg_mesh_reading;
+
+SKG_INIT(skg_mesh_reading)
+
+/** As skg_mesh_load, with more wishes. */
+SKG_API skg_status skg_mesh_load_as(skg_context *context, const char *path, const skg_mesh_reading *reading,
+                                    skg_mesh **mesh);
 
 /** Reads a mesh from a file: STL (text or binary), PLY, OBJ, or another format that Assimp reads.
  *
@@ -199,6 +217,17 @@ typedef struct {
     double area;
     /** Least x, y, z, then greatest x, y, z, mm. */
     double bounds[6];
+    /** Number of directed edges, as in open_edges, of edges that belong to two triangles which both ran along them in the same
+     * direction, as given. */
+    int64_t same_way_edges;
+    /** Number of triangles that were turned, because they were wound otherwise than their neighbours. */
+    int64_t turned;
+    /** Number of the first of them; -1: none. */
+    int64_t first_turned;
+    /** Its middle, mm. */
+    double first_turned_position[3];
+    /** Number of patches that are one-sided, as a Moebius strip is: they stay as they are. */
+    int64_t one_sided;
 } skg_mesh_health;
 
 SKG_INIT(skg_mesh_health)
