@@ -75,9 +75,12 @@ void skg_plain_leave(skg_plain *plain);
 
 /* --- Units as scene files spell them, without regard to case. */
 
-/* The millimetres in one unit of length ("um", "mm", "cm", "dm", "m", "dam", "hm", "km" and their full names).
+/* The millimetres in one unit of length ("nm", "um", "mm", "cm", "dm", "m", "in", "ft", "dam", "hm", "km" and their full names).
  * SKG_ERR_FORMAT for another word; the sentence offers the nearest name. */
 skg_status skg_unit_of_length(const char *name, double *mm);
+
+/* Writes the name of a unit of length, or "2.5 mm" where there is none. */
+void skg_unit_describe(double mm, char *text, size_t size);
 
 /* The keV in one unit of energy ("eV", "keV", "MeV" and their full names). */
 skg_status skg_unit_of_energy(const char *name, double *kev);

@@ -1,4 +1,4 @@
-/* Mesh files. STL, OBJ and PLY have readers of our own; every other format is read by Assimp. Assimp would lose too
+/* Mesh files. STL, OBJ, PLY and 3MF have readers of our own; every other format is read by Assimp. Assimp would lose too
  * much of these three: it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's
  * numbering is gone; it keeps only floats; it accepts truncated ascii STL and PLY files as complete ones, and leaks
  * memory when it refuses one. */
@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "mesh/archive.h"
 #include "mesh/assimp_files.h"
+#include "mesh/file_unit.h"
 #include "mesh/mesh.h"
 #include "mesh/read.h"
 
@@ -81,37 +82,49 @@ static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4
     return SKG_OK;
 }
 
-static skg_status add_node(const struct aiScene *scene, const struct aiNode *node, struct aiMatrix4x4 above,
-                           skg_mesh_arrays *arrays) {
-    aiMultiplyMatrix4(&above, &node->mTransformation);
+/* at: the place of the node itself. Its own meshes are a named piece. */
+static skg_status add_node(const struct aiScene *scene, const struct aiNode *node,
+                           const struct aiMatrix4x4 *at, skg_mesh_arrays *arrays) {
+    if (node->mNumMeshes > 0) SKG_TRY(skg_mesh_begin_object(arrays, node->mName.data));
     for (unsigned i = 0; i < node->mNumMeshes; i++)
-        SKG_TRY(add_object(scene->mMeshes[node->mMeshes[i]], &above, arrays));
-    for (unsigned i = 0; i < node->mNumChildren; i++)
-        SKG_TRY(add_node(scene, node->mChildren[i], above, arrays));
+        SKG_TRY(add_object(scene->mMeshes[node->mMeshes[i]], at, arrays));
+    for (unsigned i = 0; i < node->mNumChildren; i++) {
+        struct aiMatrix4x4 below = *at;
+        aiMultiplyMatrix4(&below, &node->mChildren[i]->mTransformation);
+        SKG_TRY(add_node(scene, node->mChildren[i], &below, arrays));
+    }
     return SKG_OK;
 }
 
-/* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. */
+/* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. Of COLLADA it puts unit and axes into the
+ * root node, which has no place of its own: there the numbers of the file are kept, and the unit is used once, here. */
 static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays) {
     struct aiFileIO files;
     SKG_TRY(skg_archive_check(path, stream, size));
+    SKG_TRY(skg_mesh_file_unit(path, stream, size, &arrays->file_unit_mm));
     skg_assimp_files(&files);
     const struct aiScene *scene = aiImportFileEx(path, 0, &files);
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
-    struct aiMatrix4x4 identity;
-    aiIdentityMatrix4(&identity);
+    struct aiMatrix4x4 at;
+    aiIdentityMatrix4(&at);
     skg_status status = SKG_OK;
-    if (scene->mRootNode) status = add_node(scene, scene->mRootNode, identity, arrays);
+    if (scene->mRootNode && !skg_mesh_is_collada(path)) at = scene->mRootNode->mTransformation;
+    if (scene->mRootNode) status = add_node(scene, scene->mRootNode, &at, arrays);
+    if (arrays->file_unit_mm == 0) arrays->file_unit_mm = skg_mesh_scene_unit(scene);
     if (status != SKG_OK) skg_fail(status, "%s: %s", path, skg_last_error());
     aiReleaseImport(scene);
     return status;
 }
 
-static reader find_reader(const char *path) {
+static int has_extension(const char *path, const char *extension) {
     const char *dot = strrchr(path, '.');
-    if (dot && skg_same_name(dot, ".stl")) return skg_mesh_read_stl;
-    if (dot && skg_same_name(dot, ".obj")) return skg_mesh_read_obj;
-    if (dot && skg_same_name(dot, ".ply")) return skg_mesh_read_ply;
+    return dot && skg_same_name(dot, extension);
+}
+
+static reader find_reader(const char *path) {
+    if (has_extension(path, ".stl")) return skg_mesh_read_stl;
+    if (has_extension(path, ".obj")) return skg_mesh_read_obj;
+    if (has_extension(path, ".ply")) return skg_mesh_read_ply;
     return NULL;
 }
 
@@ -120,8 +133,9 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
     int64_t size = 0;
     SKG_TRY(open_file(path, &stream, &size));
     const reader read = find_reader(path);
-    skg_status status =
-        read ? read_here(stream, path, size, read, arrays) : read_by_assimp(stream, path, size, arrays);
+    skg_status status = read                          ? read_here(stream, path, size, read, arrays)
+                        : has_extension(path, ".3mf") ? skg_mesh_read_3mf(stream, path, size, arrays)
+                                                      : read_by_assimp(stream, path, size, arrays);
     fclose(stream);
     return status;
 }
@@ -138,22 +152,45 @@ int skg_mesh_is_shareable(const char *path) {
 skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded) {
     skg_mesh_arrays arrays = {.as_wound = reading->as_wound};
     *loaded = (skg_loaded){0};
-    const skg_status status = read_file(path, &arrays);
+    skg_status status = read_file(path, &arrays);
+    if (status == SKG_OK && reading->group) status = skg_mesh_keep_group(&arrays, path, reading->group);
     if (status != SKG_OK) {
         skg_mesh_arrays_free(&arrays);
         return status;
     }
-    const double unit_mm = reading->unit_mm > 0 ? reading->unit_mm : 1;
+    arrays.unit_from = reading->unit_mm > 0      ? SKG_UNIT_NAMED
+                       : arrays.file_unit_mm > 0 ? SKG_UNIT_FILE
+                                                 : SKG_UNIT_ASSUMED;
+    arrays.unit_mm = reading->unit_mm > 0      ? reading->unit_mm
+                     : arrays.file_unit_mm > 0 ? arrays.file_unit_mm
+                                               : 1;
     loaded->left_out = arrays.left_out;
-    for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= unit_mm;
+    loaded->not_printed = arrays.not_printed;
+    for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= arrays.unit_mm;
     return skg_mesh_adopt(NULL, name_of(path), &arrays, &loaded->mesh);
+}
+
+/* A unit that the caller names wins. */
+static void note_unit(const skg_context *context, const skg_mesh *mesh) {
+    char used[32], named[32];
+    if (mesh->unit_from != SKG_UNIT_NAMED || mesh->file_unit_mm <= 0 || mesh->file_unit_mm == mesh->unit_mm)
+        return;
+    skg_unit_describe(mesh->unit_mm, used, sizeof used);
+    skg_unit_describe(mesh->file_unit_mm, named, sizeof named);
+    skg_log(context, SKG_LOG_NOTE, "%s: read in %s, as was asked; the file itself is in %s", mesh->name, used,
+            named);
 }
 
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded) {
     if (loaded->left_out > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " points or lines left out", name_of(path),
                 loaded->left_out);
-    if (loaded->mesh) skg_mesh_warn_turned(context, loaded->mesh);
+    if (loaded->not_printed > 0)
+        skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " objects of the type support or other left out",
+                name_of(path), loaded->not_printed);
+    if (!loaded->mesh) return;
+    skg_mesh_warn_turned(context, loaded->mesh);
+    note_unit(context, loaded->mesh);
 }
 
 void skg_mesh_reading_init_sized(void *reading, int32_t size) {

@@ -22,8 +22,12 @@ struct skg_mesh {
     int64_t version;     /* of the positions, from 1 */
     float lowest[3];     /* bounds of the finite offsets, mm from origin */
     float highest[3];
-    int64_t first_bad;      /* first vertex that is not finite; -1: none */
-    int32_t layers;         /* how many times over a ray may be inside at once, in version 1 */
+    int64_t first_bad;            /* first vertex that is not finite; -1: none */
+    int32_t layers;               /* how many times over a ray may be inside at once, in version 1 */
+    double unit_mm, file_unit_mm; /* as skg_mesh_unit.mm and .file_mm */
+    int32_t unit_from;            /* enum skg_unit_from */
+    skg_mesh_piece *pieces;       /* named ones of the file, in the order of their triangles */
+    int64_t piece_count;
     skg_mesh_health health; /* volume, area, bounds and degenerate_triangles of version 1 */
 };
 
@@ -36,8 +40,9 @@ void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh);
 
 /* A mesh from a file, and what is to be warned of. */
 typedef struct {
-    skg_mesh *mesh;   /* NULL: it could not be loaded */
-    int64_t left_out; /* points and lines of the file */
+    skg_mesh *mesh;      /* NULL: it could not be loaded */
+    int64_t left_out;    /* points and lines of the file */
+    int64_t not_printed; /* objects that support others */
 } skg_loaded;
 
 /* What skg_mesh_load does, in two steps: threads may share the first one for files that are shareable (STL, PLY and OBJ:

@@ -65,11 +65,19 @@ class Mesh:
         return cls._of(owned("skg_mesh", make(name, "skg_mesh", *arguments)))
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str], *, unit_mm: float = 1, as_wound: bool = False,
-             _context: Any = ffi.NULL) -> Mesh:
-        """Reads STL, PLY, OBJ and the other formats that the library reads; its numbers are in units of unit_mm."""
-        reading = fill(struct("skg_mesh_reading"), "skg_mesh_reading",
-                       {"unit_mm": float(unit_mm), "as_wound": int(as_wound)}, [], "the wish for a file")
+    def load(cls, path: str | os.PathLike[str], *, unit_mm: float | None = None, group: str | None = None,
+             as_wound: bool = False, _context: Any = ffi.NULL) -> Mesh:
+        """Reads STL, PLY, OBJ, 3MF and the other formats that the library reads.
+
+        unit_mm: mm per unit of its numbers; None: the unit that the file or its format names, otherwise mm. group: only the
+        group or object of this name.
+        """
+        if unit_mm is not None and not unit_mm > 0:
+            raise ArgumentError(f"unit_mm is {unit_mm}; give a number above 0, or None for the file's own unit")
+        reading = struct("skg_mesh_reading")
+        reading.unit_mm, reading.as_wound = float(unit_mm or 0), bool(as_wound)
+        named = ffi.NULL if group is None else ffi.new("char[]", encode(group, "group"))
+        reading.group = named
         made = cls._made("skg_mesh_load_as", _context, encode(path, "path"), reading)
         if _context == ffi.NULL:
             made._say_turned()
@@ -270,6 +278,22 @@ class Mesh:
         return filled("skg_mesh_health", "skg_mesh_health_get", self._handle)
 
     @property
+    def unit(self) -> dict[str, Any]:
+        """The unit of the numbers that the mesh was made of: its name, "mm" per unit, and "from": 0 assumed, 1 the file, 2 named."""
+        return filled("skg_mesh_unit", "skg_mesh_unit_get", self._handle)
+
+    @property
+    def groups(self) -> list[str]:
+        """Names of the groups and objects of the file, in its order, each once."""
+        name = ffi.new("const char **")
+        found: dict[str, None] = {}
+        for number in range(integer("skg_mesh_group_count", self._handle)):
+            call("skg_mesh_group_get", self._handle, number, name, ffi.NULL, ffi.NULL)
+            if name[0] != ffi.NULL:
+                found[ffi.string(name[0]).decode(errors="replace")] = None
+        return list(found)
+
+    @property
     def nesting(self) -> dict[str, Any]:
         """How the components of a closed mesh lie in each other, and which of them face the wrong way."""
         return filled("skg_mesh_nesting", "skg_mesh_nesting_get", self._handle)
@@ -299,7 +323,7 @@ def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
     return len(array), address, max(array.strides[0] // array.itemsize, 3)
 
 
-def as_mesh(value: Any, *, unit_mm: float = 1, name: str | None = None, _context: Any = ffi.NULL) -> Mesh:
+def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None, _context: Any = ffi.NULL) -> Mesh:
     """A mesh of whatever has vertices and triangles.
 
     value: a Mesh; (vertices, faces); the path of a file; an object of trimesh (`vertices`, `faces`), of meshio
@@ -310,7 +334,7 @@ def as_mesh(value: Any, *, unit_mm: float = 1, name: str | None = None, _context
     if isinstance(value, (str, os.PathLike)):
         return Mesh.load(value, unit_mm=unit_mm, _context=_context)
     vertices, faces = _parts_of(value)
-    return Mesh(vertices, faces, unit_mm=unit_mm, name=name or "mesh", _context=_context)
+    return Mesh(vertices, faces, unit_mm=1 if unit_mm is None else unit_mm, name=name or "mesh", _context=_context)
 
 
 def _parts_of(value: Any) -> tuple[Any, Any]:

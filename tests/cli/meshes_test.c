@@ -128,12 +128,56 @@ START_TEST(inverted_components_are_turned) {
 }
 END_TEST
 
+/* A COLLADA file in centimetres is a scene graph, without a unit; beside it, a part that somebody made in metres is named; groups
+ * become parts. */
+static const char collada[] =
+    "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset>"
+    "<created>2026-01-01T00:00:00</created><unit meter=\"0.01\" name=\"cm\"/><up_axis>Y_UP</up_axis></asset>"
+    "<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" count=\"24\">"
+    "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1</float_array><technique_common><accessor source=\"#a\" "
+    "count=\"8\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" "
+    "type=\"float\"/></accessor></technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+    "source=\"#p\"/></vertices><triangles count=\"12\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 2 3 0 3 "
+    "1 4 5 7 4 7 6 0 1 5 0 5 4 2 6 7 2 7 3 0 4 6 0 6 2 1 3 7 1 7 5</p></triangles></mesh></geometry></library_geometries>"
+    "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n\"><instance_geometry url=\"#g\"/></node></visual_scene>"
+    "</library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+
+START_TEST(files_bring_their_units_and_groups) {
+    write_text("engine.dae", collada);
+    write_text(
+        "engine.json",
+        "{\"Source\": {\"Shape\": \"PointSource\", \"Position\": [0, -500, 0, \"mm\"], \"Beam\": [{\"Energy\": 60, \"Unit\": "
+        "\"keV\", \"PhotonCount\": 1000}]}, \"Detector\": {\"Position\": [0, 250, 0, \"mm\"], \"UpVector\": [0, 0, -1], "
+        "\"NumberOfPixels\": [61, 61], \"Spacing\": [1, 1, \"mm\"]}, \"SceneGraph\": {\"Path\": \"engine.dae\", "
+        "\"Material\": \"Fe\", \"Label\": \"engine\"}, \"Samples\": [{\"Label\": \"small\", \"Path\": \"box.obj\", \"Group\": "
+        "\"lid\", \"Material\": \"Al\", \"Unit\": \"um\"}]}");
+    char text[1024];
+    snprintf(text, sizeof text, "g lid\n%so base\nv 0 0 0\nv 9 0 0\nv 0 9 0\nf 9 10 11\n", box);
+    write_text("box.obj", text);
+    ck_run(0, "lbuffer engine.json --part engine --json -o l.mha");
+    check_range(0, 20, 0.01); /* oblique rays: 20 (10 / 500)^2 / 2 */
+    ck_assert_ptr_nonnull(
+        strstr(complained, "small: its box is 0.04 mm long, under 1/500 of the field of view"));
+    ck_assert_ptr_nonnull(strstr(complained, "its unit is um, as named"));
+    ck_run(1, "mesh box.obj --groups");
+    ck_assert_ptr_nonnull(strstr(said, "group \"lid\": 12 triangles"));
+    ck_assert_ptr_nonnull(strstr(said, "unit: mm, assumed"));
+    ck_run(0, "mesh box.obj --split parts --scene parts.json --unit cm");
+    ck_run(0, "mesh parts/lid.ply");
+    ck_assert_ptr_nonnull(strstr(said, "x -50 to 150"));
+    ck_run(0, "lbuffer parts.json --part lid --json -o l.mha");
+    write_text("plain.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
+    ck_run_fails(3, "no groups", "mesh plain.obj --split parts");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_box, tear_down);
     tcase_add_test(tests, a_mesh_needs_no_scene);
     tcase_add_test(tests, a_mesh_is_seen_from_any_side);
     tcase_add_test(tests, several_meshes);
     tcase_add_test(tests, inverted_components_are_turned);
+    tcase_add_test(tests, files_bring_their_units_and_groups);
     tcase_add_loop_test(tests, bad_meshes_are_refused, 0, sizeof bad / sizeof *bad);
 }
 

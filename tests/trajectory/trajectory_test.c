@@ -164,6 +164,25 @@ START_TEST(a_detector_that_is_displaced) {
 }
 END_TEST
 
+/* Offset, drift and jitter of the detector do not turn a parallel beam, whose direction is that of the undisplaced pair. */
+START_TEST(a_displaced_detector_in_a_parallel_beam) {
+    view.projection = SKG_PROJECTION_PARALLEL;
+    options.projections = 5;
+    options.step_rad = 2 * PI / 5;
+    options.detector_offset_mm[0] = 20;
+    options.detector_drift_mm[2] = 7;
+    options.detector_jitter_mm = 0.5;
+    ck_skg(skg_scan_create(&view, &options, &scan));
+    for (int k = 0; k < 5; k++) {
+        const skg_view now = view_of(k);
+        const double angle = -k * options.step_rad;
+        double ray[3];
+        for (int i = 0; i < 3; i++) ray[i] = now.centre[i] - now.source[i];
+        ck_vector(ray, -1500 * sin(angle), 1500 * cos(angle), 0);
+    }
+}
+END_TEST
+
 START_TEST(drift_grows_to_its_end) {
     options.projections = 11;
     options.source_drift_mm[2] = 5;
@@ -393,6 +412,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, laminography);
     tcase_add_test(tests, tomosynthesis_on_a_line_and_on_an_arc);
     tcase_add_test(tests, a_detector_that_is_displaced);
+    tcase_add_test(tests, a_displaced_detector_in_a_parallel_beam);
     tcase_add_test(tests, drift_grows_to_its_end);
     tcase_add_test(tests, jitter_is_normal_and_repeatable);
     tcase_add_test(tests, times);

@@ -11,6 +11,7 @@ static const skg_json_key sample_keys[] = {
     {"Label", NULL, SKG_KEY_READ},
     {"Path", NULL, SKG_KEY_READ},
     {"Unit", NULL, SKG_KEY_READ},
+    {"Group", NULL, SKG_KEY_READ},
     {"Cube", NULL, SKG_KEY_READ},
     {"Cuboid", NULL, SKG_KEY_READ},
     {"Parallelepiped", "Cuboid", SKG_KEY_READ},

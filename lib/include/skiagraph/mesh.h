@@ -66,8 +66,11 @@ typedef struct {
     int32_t size;
     /** As in skg_mesh_source. */
     int32_t as_wound;
-    /** mm per unit of the file; 0, the default: 1 */
+    /** mm per unit of the file, finite; 0, the default: the unit that the file or its format names (skg_mesh_unit), otherwise 1 */
     double unit_mm;
+    /** NULL, the default: everything; or the name of a group or an object of an OBJ file, of an object of a 3MF file, or of a node of
+     * another format: only its triangles, and the vertices that they use. */
+    const char *group;
 } skg_mesh_reading;
 
 SKG_INIT(skg_mesh_reading)
@@ -76,9 +79,9 @@ SKG_INIT(skg_mesh_reading)
 SKG_API skg_status skg_mesh_load_as(skg_context *context, const char *path, const skg_mesh_reading *reading,
                                     skg_mesh **mesh);
 
-/** Reads a mesh from a file: STL (text or binary), PLY, OBJ, or another format that Assimp reads.
+/** Reads a mesh from a file: STL (text or binary), PLY, OBJ, 3MF, or another format that Assimp reads.
  *
- *     unit_mm   mm per unit of the file
+ *     unit_mm   mm per unit of the file; 0: the unit that the file or its format names, otherwise mm
  *     mesh      result, named like the file without its folder; the caller releases it
  *     errors    SKG_ERR_FILE (cannot be read), SKG_ERR_FORMAT (truncated, or no mesh), SKG_ERR_MESH
  *
@@ -295,6 +298,48 @@ SKG_API skg_status skg_mesh_nesting_describe(const skg_mesh_nesting *nesting, in
  *     context    receives a warning about a cavity that leaves its solid; may be NULL
  *     oriented   result; the caller releases it */
 SKG_API skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh *mesh, skg_mesh **oriented);
+
+/** Where the unit of a mesh comes from. */
+enum skg_unit_from {
+    /** Nobody named one: mm. */
+    SKG_UNIT_ASSUMED = 0,
+    /** The file or its format: 3MF and AMF (`unit`), COLLADA (`<unit meter>`), X3D and VRML (metres unless they say otherwise), glTF
+     * (metres), FBX (its scale factor). */
+    SKG_UNIT_FILE = 1,
+    /** The caller. */
+    SKG_UNIT_NAMED = 2
+};
+
+/** The unit that the numbers of a mesh were in. The library fills it; prepare with skg_mesh_unit_init. */
+typedef struct {
+    /** Set by skg_mesh_unit_init. */
+    int32_t size;
+    /** enum skg_unit_from */
+    int32_t from;
+    /** mm per unit */
+    double mm;
+    /** mm per unit that the file names, even where the caller named another one; 0: none */
+    double file_mm;
+    /** Its name: "nm", "um", "mm", "cm", "dm", "m", "inch", "ft", ..., or such as "2.5 mm". */
+    char name[32];
+} skg_mesh_unit;
+
+SKG_INIT(skg_mesh_unit)
+
+/** Gets the unit of a mesh. */
+SKG_API skg_status skg_mesh_unit_get(const skg_mesh *mesh, skg_mesh_unit *unit);
+
+/** Gets the number of named pieces of the mesh's file: groups and objects of OBJ, objects of 3MF, nodes of other formats. */
+SKG_API skg_status skg_mesh_group_count(const skg_mesh *mesh, int64_t *count);
+
+/** Gets one of them. Several may have the same name.
+ *
+ *     group       from 0 on
+ *     name        result: valid as long as the mesh; NULL: none; may be NULL
+ *     first       result: its first triangle; may be NULL
+ *     triangles   result: their number; may be NULL */
+SKG_API skg_status skg_mesh_group_get(const skg_mesh *mesh, int64_t group, const char **name, int64_t *first,
+                                      int64_t *triangles);
 
 /** Gets the mesh's name, valid as long as the mesh. */
 SKG_API skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name);
