@@ -132,7 +132,8 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
     if (row) SKG_TRY(check_alloy(text, row));
     if (row) return from_row(row, material);
     skg_status status = from_formula(text, material);
-    if (status == SKG_OK || (status != SKG_ERR_MATERIAL) || strstr(skg_last_error(), "weight:"))
+    if (status == SKG_OK || (status != SKG_ERR_MATERIAL) || strstr(skg_last_error(), "weight:") ||
+        strstr(skg_last_error(), "is ambiguous"))
         return status;
     int found = skg_find_mixtures(text, &row, list, sizeof list);
     if (found == 1) return from_row(row, material);

@@ -162,12 +162,12 @@ START_TEST(files_bring_their_units_and_groups) {
     ck_run(1, "mesh box.obj --groups");
     ck_assert_ptr_nonnull(strstr(said, "group \"lid\": 12 triangles"));
     ck_assert_ptr_nonnull(strstr(said, "unit: mm, assumed"));
-    ck_run(0, "mesh box.obj --split parts --scene parts.json --unit cm");
-    ck_run(0, "mesh parts/lid.ply");
+    ck_run(0, "mesh box.obj --split . --scene parts.json --unit cm");
+    ck_run(0, "mesh lid.ply");
     ck_assert_ptr_nonnull(strstr(said, "x -50 to 150"));
     ck_run(0, "lbuffer parts.json --part lid --json -o l.mha");
     write_text("plain.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
-    ck_run_fails(3, "no groups", "mesh plain.obj --split parts");
+    ck_run_fails(3, "no groups", "mesh plain.obj --split .");
 }
 END_TEST
 

@@ -165,6 +165,31 @@ START_TEST(formulas) {
 }
 END_TEST
 
+/* Dots of hydrates, whose numbers multiply all that follows, and decimals. What may be either is refused. */
+START_TEST(hydrates) {
+    static const char *const same[][2] = {{"CaSO4.2H2O", "CaSO4(H2O)2"},
+                                          {"CaSO4\u00B72H2O", "CaSO4(H2O)2"},
+                                          {"CaSO4*2H2O", "CaSO4(H2O)2"},
+                                          {"CuSO4.5H2O", "CuSO4(H2O)5"},
+                                          {"CaSO4.0.5H2O", "Ca2S2O9H2"},
+                                          {"CaO.SiO2", "CaSiO3"},
+                                          {"Mg0.9Fe0.1SO4.7H2O", "Mg9FeS10O110H140"},
+                                          {"Fe0.95O", "Fe95O100"},
+                                          {"Lu1.8Y0.2SiO5", "Lu9YSi5O25"},
+                                          {"CO1.5", "C2O3"},
+                                          {"(H2O)0.5Si", "H2OSi2"},
+                                          {"Al2O3\u00B72SiO2\u00B72H2O", "Al2Si2O9H4"}};
+    skg_material *none = NULL;
+    for (size_t i = 0; i < sizeof same / sizeof *same; i++)
+        ck_assert_double_eq_tol(mu_rho(same[i][0], 60) / mu_rho(same[i][1], 60), 1, 64 * DBL_EPSILON);
+    ck_assert_double_eq_tol(mu_rho("CaSO4.2H2O", 60), 0.34259, 5e-6);
+    ck_skg_fails(skg_material_create_named("Ca1.5Sr0O2", &none), SKG_ERR_MATERIAL, "ambiguous");
+    ck_skg_fails(skg_material_create_named("Al2O3.2SiO2.2H2O", &none), SKG_ERR_MATERIAL, "middle dot");
+    ck_skg_fails(skg_material_create_named("CaSO4..2H2O", &none), SKG_ERR_MATERIAL, "");
+    ck_skg_fails(skg_material_create_named("CaSO4*", &none), SKG_ERR_MATERIAL, "");
+}
+END_TEST
+
 START_TEST(names_that_are_not_found) {
     skg_material *none = NULL;
     ck_skg_fails(skg_material_create_named("Watre", &none), SKG_ERR_MATERIAL, "did you mean \"Water\"");
@@ -475,6 +500,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, equations_14_and_15_from_hounsfield_numbers);
     tcase_add_test(tests, one_material_by_many_names);
     tcase_add_test(tests, formulas);
+    tcase_add_test(tests, hydrates);
     tcase_add_test(tests, names_that_are_not_found);
     tcase_add_test(tests, names_of_engineering);
     tcase_add_test(tests, alloys_without_hyphens_are_refused);
