@@ -9,15 +9,15 @@
 /* The deepest nesting of brackets; formulas of chemistry have two or three. */
 enum { DEEPEST = 8 };
 
-/* Reads digits with at most one decimal point; without digits the value is 1. strtod would accept signs,
+/* Reads digits up to `end` with at most one decimal point; without digits the value is 1. strtod would accept signs,
  * exponents and the decimal comma of a locale. */
-static double read_number(const char **text, int *given) {
+static double read_number(const char **text, const char *end, int *given) {
     const char *c = *text;
     double value = 0, place = 1;
     int digits = 0;
-    for (; isdigit((unsigned char)*c); c++, digits++) value = 10 * value + (*c - '0');
-    if (*c == '.')
-        for (c++; isdigit((unsigned char)*c); c++, digits++) value += (place /= 10) * (*c - '0');
+    for (; c < end && isdigit((unsigned char)*c); c++, digits++) value = 10 * value + (*c - '0');
+    if (c < end && *c == '.')
+        for (c++; c < end && isdigit((unsigned char)*c); c++, digits++) value += (place /= 10) * (*c - '0');
     *given = digits > 0;
     if (!digits) return 1;
     *text = c;
@@ -48,12 +48,12 @@ static skg_status fail_at(const char *formula, const char *at, const char *why) 
 }
 
 /* Ends a bracket: its amounts times the number that follows are added to those of the level around it. */
-static skg_status close_bracket(const char *formula, const char **text, amounts *stack, int *depth,
-                                double *sum) {
+static skg_status close_bracket(const char *formula, const char **text, const char *end, amounts *stack,
+                                int *depth, double *sum) {
     int given = 0;
     if (*depth == 0) return fail_at(formula, *text, "a bracket is closed that was not opened");
     ++*text;
-    double times = read_number(text, &given);
+    double times = read_number(text, end, &given);
     for (int z = 1; z <= SKG_LAST_ELEMENT; z++)
         stack[*depth - 1].amount[z] += times * stack[*depth].amount[z];
     --*depth;
@@ -73,11 +73,11 @@ static skg_status read_amounts(const char *formula, const char *text, const char
             stack[depth] = (amounts){{0}};
             text++;
         } else if (*text == ')') {
-            SKG_TRY(close_bracket(formula, &text, stack, &depth, sum));
+            SKG_TRY(close_bracket(formula, &text, end, stack, &depth, sum));
         } else {
             int32_t z = read_symbol(&text);
             if (z == 0) return fail_at(formula, text, "no symbol of an element");
-            double amount = read_number(&text, &given);
+            double amount = read_number(&text, end, &given);
             if (!(amount > 0)) return fail_at(formula, text, "an amount is not above 0");
             stack[depth].amount[z] += amount;
             *sum += amount;
@@ -99,7 +99,7 @@ static size_t joint_length(const char *text) {
 /* Whether a number, or none, and then water stand here, up to the end or another dot. */
 static int is_water(const char *text) {
     int given;
-    if (isdigit((unsigned char)*text)) read_number(&text, &given);
+    if (isdigit((unsigned char)*text)) read_number(&text, text + strlen(text), &given);
     if (strncmp(text, "H2O", 3) != 0) return 0;
     return text[3] == '\0' || text[3] == '.' || joint_length(text + 3) > 0;
 }
@@ -164,7 +164,7 @@ static skg_status read_joined(const char *formula, int by_mass, amounts *total, 
         size_t length;
         double its = 0, times = 1;
         int given = 0;
-        if (part > 0) times = read_number(&text, &given);
+        if (part > 0) times = read_number(&text, text + strlen(text), &given);
         SKG_TRY(find_joint(formula, text, by_mass, &end, &length));
         if (!(times > 0) || text >= end)
             return fail_at(formula, text, part ? "no compound behind a dot" : "no compound");
