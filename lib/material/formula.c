@@ -136,6 +136,7 @@ static skg_status find_joint(const char *formula, const char *text, int by_mass,
         *length = joint_length(text);
         if (*length > 0) break;
         if (*text != '.' || by_mass) continue;
+        if (text[1] == '.') return fail_at(formula, text, "two dots");
         const int verdict = joins(formula, text);
         if (verdict < 0 && !has_decimals)
             return skg_fail(

@@ -171,12 +171,53 @@ START_TEST(files_bring_their_units_and_groups) {
 }
 END_TEST
 
+/* Two boxes of one file that overlap by 2 mm along the rays, 12 triangles listed twice, and a cavity that leaves: sums with a
+ * warning, or the union. */
+START_TEST(overlaps_within_a_mesh) {
+    static const char lower[] =
+        "v -5 8 -15\nv 15 8 -15\nv -5 14 -15\nv 15 14 -15\nv -5 8 25\nv 15 8 25\nv -5 14 25\nv 15 14 25\n"
+        "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", box, lower);
+    write_text("two.obj", text);
+    ck_run(1, "mesh two.obj --json");
+    json_t *object = said_json(), *file = json_array_get(member(object, "files"), 0);
+    ck_assert_int_eq(json_integer_value(json_object_get(file, "overlapping_components")), 1);
+    json_decref(object);
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --json");
+    check_range(0, 16, 40 * 2e-4 + 1e-3);
+    ck_assert_ptr_nonnull(strstr(complained, "overlaps a larger one: number 2 by up to 40 mm"));
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --json --set Repair=union");
+    check_range(0, 14, 40 * 2e-4 + 1e-3);
+    ck_assert_ptr_null(strstr(complained, "overlap"));
+    snprintf(text, sizeof text, "%s%s", box, strstr(box, "f 1"));
+    write_text("twice.obj", text);
+    ck_run(1, "mesh twice.obj --strict --json");
+    object = said_json(), file = json_array_get(member(object, "files"), 0);
+    ck_assert_int_eq(json_integer_value(json_object_get(file, "duplicates")), 12);
+    json_decref(object);
+    ck_run(0, "lbuffer twice.obj --material Al -o l.mha --json");
+    check_range(0, 20, 40 * 4e-4 + 1e-3);
+    ck_assert_ptr_nonnull(strstr(complained, "12 of 24 triangles are duplicates"));
+    ck_run(1, "plan twice.obj --material Al --kev 60 --strict");
+    ck_run(0, "lbuffer twice.obj --material Al -o l.mha --json --set 'Repair=[\"exact\", \"union\"]'");
+    check_range(0, 10, 40 * 2e-4 + 1e-3);
+    ck_assert_ptr_null(strstr(complained, "duplicates"));
+    ck_run(
+        0,
+        "image twice.obj --material Al --kev 60 --from top -o a.mha --quantity attenuation --json --set Repair=union "
+        "--set Samples.twice.Material='[\"mu\",0.5]'");
+    check_range(0, 2, 2e-3);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_box, tear_down);
     tcase_add_test(tests, a_mesh_needs_no_scene);
     tcase_add_test(tests, a_mesh_is_seen_from_any_side);
     tcase_add_test(tests, several_meshes);
     tcase_add_test(tests, inverted_components_are_turned);
+    tcase_add_test(tests, overlaps_within_a_mesh);
     tcase_add_test(tests, files_bring_their_units_and_groups);
     tcase_add_loop_test(tests, bad_meshes_are_refused, 0, sizeof bad / sizeof *bad);
 }

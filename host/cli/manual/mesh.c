@@ -43,9 +43,11 @@ static const char *const text[] = {
     "whose orientation contradicts their place are inverted: they make lengths negative or count them twice. A cavity "
     "that leaves its solid cannot be turned; it has to be mended where the mesh was made.",
     "The unit of the numbers is said, and where it comes from: the file, --unit, or nobody (mm).",
+    "Components that overlap, and triangles that are listed twice (duplicates), count twice: their status is 1. \"Repair\": "
+    "\"union\" in a scene counts them once.",
     "A file that cannot be read is reported, and the files after it are read all the same.",
     "--json prints {files: [{file, unit: {name, mm, from}, closed, triangles, vertices, open_edges, volume_mm3, area_mm2, bounds, "
-    "turned, duplicates, inverted_components, leaving_cavities, ...}]}.",
+    "turned, duplicates, overlapping_components, inverted_components, leaving_cavities, ...}]}.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_mesh_unit,
@@ -67,13 +69,14 @@ static const cli_item examples[] = {
     {"skiagraph mesh phantom.stl --fix -o turned.ply", "turns inverted components"},
     {NULL, NULL}};
 
-const cli_manual cli_manual_mesh = {.name = "mesh",
-                                    .operands = "FILE...",
-                                    .summary = "health of meshes: closed? outward? volume, size",
-                                    .text = text,
-                                    .least = 1,
-                                    .most = -1,
-                                    .names = CLI_NAMES_FILE,
-                                    .flags = flags,
-                                    .examples = examples,
-                                    .check = "a mesh is leaky or has inverted components"};
+const cli_manual cli_manual_mesh = {
+    .name = "mesh",
+    .operands = "FILE...",
+    .summary = "health of meshes: closed? outward? volume, size",
+    .text = text,
+    .least = 1,
+    .most = -1,
+    .names = CLI_NAMES_FILE,
+    .flags = flags,
+    .examples = examples,
+    .check = "a mesh is leaky, or has inverted or overlapping components or duplicate triangles"};

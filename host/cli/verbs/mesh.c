@@ -58,6 +58,10 @@ static json_t *health_json(const char *path, const findings *found) {
     json_object_set_new(object, "leaving_cavities", json_integer(nesting->leaving));
     if (nesting->leaving)
         json_object_set_new(object, "leaving_position_mm", cli_json_numbers(nesting->leaving_place, 3));
+    json_object_set_new(object, "overlapping_components", json_integer(nesting->overlapping));
+    if (nesting->overlapping)
+        json_object_set_new(object, "overlapping_position_mm",
+                            cli_json_numbers(nesting->overlapping_place, 3));
     if (!health->closed) {
         json_object_set_new(object, "first_open_vertex", json_integer(health->first_open_vertex));
         json_object_set_new(object, "first_open_position_mm",
@@ -185,7 +189,8 @@ int cli_mesh(const cli_arguments *arguments) {
             continue;
         }
         all_healthy = all_healthy && health->closed && !(strict && (health->turned || health->flipped)) &&
-                      nesting->inverted == 0 && nesting->leaving == 0;
+                      nesting->inverted == 0 && nesting->leaving == 0 && nesting->overlapping == 0 &&
+                      health->duplicate_triangles == 0;
         if (list)
             json_array_append_new(list, health_json(path, &found));
         else if (!cli_is_quiet())

@@ -273,6 +273,14 @@ typedef struct {
     double leaving_length;
     /** The middle of that stretch, mm. */
     double leaving_place[3];
+    /** Number of components that overlap a larger one without lying in it: there, lengths add. */
+    int64_t overlapping;
+    /** Number of the component that overlaps most; -1: none. */
+    int64_t first_overlapping;
+    /** The length of its longest stretch inside others, along z, mm. */
+    double overlapping_length;
+    /** The middle of that stretch, mm. */
+    double overlapping_place[3];
 } skg_mesh_nesting;
 
 SKG_INIT(skg_mesh_nesting)
