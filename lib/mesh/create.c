@@ -108,6 +108,7 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
     mesh->as_wound = arrays->as_wound;
     mesh->unit_mm = arrays->unit_mm, mesh->file_unit_mm = arrays->file_unit_mm;
     mesh->unit_from = arrays->unit_from;
+    mesh->health.left_out = arrays->left_out, mesh->health.trailing_bytes = arrays->trailing;
     mesh->pieces = arrays->pieces, mesh->piece_count = arrays->piece_count;
     *arrays = (skg_mesh_arrays){0};
     SKG_TRY(skg_alloc(3 * mesh->vertices, sizeof *mesh->offsets, name, &mesh->offsets));

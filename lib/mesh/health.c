@@ -290,7 +290,9 @@ void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
 
 skg_status skg_mesh_examine(skg_mesh *mesh) {
     skg_mesh_health *health = &mesh->health;
+    const skg_mesh_health of_file = *health;
     skg_mesh_health_init(health);
+    health->left_out = of_file.left_out, health->trailing_bytes = of_file.trailing_bytes;
     health->vertices = mesh->vertices;
     health->triangles = mesh->triangles;
     SKG_TRY(weld(mesh));

@@ -128,14 +128,42 @@ static reader find_reader(const char *path) {
     return NULL;
 }
 
+/* Files that hold no triangles: curved solids, and meshes with volume cells that Python reads. */
+static skg_status refuse_kind(const char *path, FILE *stream) {
+    static const char *const solids[] = {".step",   ".stp", ".iges", ".igs", ".brep",
+                                         ".sldprt", ".ipt", ".x_t",  ".sat", ".prt"};
+    static const char *const cells[] = {".vtk", ".vtu", ".vtp", ".msh", ".inp", ".med", ".exo"};
+    char start[14] = "";
+    const size_t length = fread(start, 1, sizeof start - 1, stream);
+    rewind(stream);
+    int is_solid = length > 12 && memcmp(start, "ISO-10303-21;", 13) == 0 && !has_extension(path, ".ifc");
+    for (size_t k = 0; k < sizeof solids / sizeof *solids; k++) is_solid |= has_extension(path, solids[k]);
+    if (is_solid)
+        return skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: holds curved solids, not triangles; mesh it first, for instance with FreeCAD (Mesh > Create mesh from "
+            "shape, then export STL) or gmsh (gmsh -2 FILE -o part.stl)",
+            path);
+    for (size_t k = 0; k < sizeof cells / sizeof *cells; k++)
+        if (has_extension(path, cells[k]))
+            return skg_fail(
+                SKG_ERR_FORMAT,
+                "%s: the command does not read %s; in Python, sk.Mesh.from_meshio(\"FILE\") does, volume cells by "
+                "their skin; or `meshio convert FILE part.ply`",
+                path, cells[k]);
+    return SKG_OK;
+}
+
 static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
     FILE *stream;
     int64_t size = 0;
     SKG_TRY(open_file(path, &stream, &size));
     const reader read = find_reader(path);
-    skg_status status = read                          ? read_here(stream, path, size, read, arrays)
-                        : has_extension(path, ".3mf") ? skg_mesh_read_3mf(stream, path, size, arrays)
-                                                      : read_by_assimp(stream, path, size, arrays);
+    skg_status status = read ? SKG_OK : refuse_kind(path, stream);
+    if (status == SKG_OK)
+        status = read                          ? read_here(stream, path, size, read, arrays)
+                 : has_extension(path, ".3mf") ? skg_mesh_read_3mf(stream, path, size, arrays)
+                                               : read_by_assimp(stream, path, size, arrays);
     fclose(stream);
     return status;
 }
@@ -165,6 +193,7 @@ skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *read
                      : arrays.file_unit_mm > 0 ? arrays.file_unit_mm
                                                : 1;
     loaded->left_out = arrays.left_out;
+    loaded->trailing = arrays.trailing;
     loaded->not_printed = arrays.not_printed;
     for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= arrays.unit_mm;
     return skg_mesh_adopt(NULL, name_of(path), &arrays, &loaded->mesh);
@@ -185,6 +214,9 @@ void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_
     if (loaded->left_out > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " points or lines left out", name_of(path),
                 loaded->left_out);
+    if (loaded->trailing > 0)
+        skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " bytes behind the last triangle are not read",
+                name_of(path), loaded->trailing);
     if (loaded->not_printed > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " objects of the type support or other left out",
                 name_of(path), loaded->not_printed);

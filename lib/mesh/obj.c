@@ -1,5 +1,6 @@
 /* Wavefront OBJ. Vertex i is the i-th line "v"; triangles are in the order of the lines "f". Normals, textures
  * and materials do not change path lengths and are skipped. Objects and groups become named pieces. */
+#include "core/files.h"
 #include "mesh/read.h"
 
 #include <errno.h>
@@ -102,6 +103,9 @@ static int is_keyword(const cursor *here, char word) {
 
 skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
     cursor here = {file, file->bytes, 1};
+    size_t mark = 0;
+    SKG_TRY(skg_text_mark(file->name, file->bytes, (size_t)file->size, &mark));
+    here.at += mark;
     if (strlen(file->bytes) != (size_t)file->size)
         return skg_fail(SKG_ERR_FORMAT, "%s: not an OBJ file: it holds a zero byte", file->name);
     while (*here.at != '\0') {

@@ -51,6 +51,8 @@ static json_t *health_json(const char *path, const findings *found) {
     if (health->turned)
         json_object_set_new(object, "first_turned_position_mm",
                             cli_json_numbers(health->first_turned_position, 3));
+    json_object_set_new(object, "left_out", json_integer(health->left_out));
+    json_object_set_new(object, "trailing_bytes", json_integer(health->trailing_bytes));
     json_object_set_new(object, "duplicates", json_integer(health->duplicate_triangles));
     json_object_set_new(object, "inverted_components", json_integer(nesting->inverted));
     if (nesting->inverted)
@@ -100,6 +102,9 @@ static void print_health(const char *path, const skg_mesh_health *health) {
                " triangles turned, first number %" PRId64
                " near (%.6g, %.6g, %.6g) mm. --fix -o FILE writes them so\n",
                health->same_way_edges, health->turned, health->first_turned, q[0], q[1], q[2]);
+    if (health->left_out) printf("  %" PRId64 " points or lines left out\n", health->left_out);
+    if (health->trailing_bytes)
+        printf("  %" PRId64 " bytes behind the last triangle are not read\n", health->trailing_bytes);
     if (health->one_sided)
         printf("  %" PRId64 " patches are one-sided, as a Moebius strip is; turning cannot mend them\n",
                health->one_sided);

@@ -231,6 +231,10 @@ typedef struct {
     double first_turned_position[3];
     /** Number of patches that are one-sided, as a Moebius strip is: they stay as they are. */
     int64_t one_sided;
+    /** Number of points and lines of the file that a mesh has not. */
+    int64_t left_out;
+    /** Number of bytes of a binary STL file behind its last triangle, which were not read. */
+    int64_t trailing_bytes;
 } skg_mesh_health;
 
 SKG_INIT(skg_mesh_health)
