@@ -11,6 +11,7 @@ from . import _arrays
 from ._device import warn
 from ._interface import ArgumentError
 from ._library import call, doubles, encode, ffi, fill, filled, integer, make, owned, string, struct
+from ._meshes import parts_of
 
 
 class Mesh:
@@ -82,6 +83,26 @@ class Mesh:
         if _context == ffi.NULL:
             made._say_turned()
         return made
+
+    @classmethod
+    def from_object(cls, value: Any, *, unit_mm: float = 1, name: str = "mesh") -> Mesh:
+        """A mesh of an object of trimesh (also a Scene), Open3D, PyVista or meshio, in units of unit_mm.
+
+        Quads are halved; of volume cells the skin is taken.
+        """
+        vertices, faces = parts_of(value)
+        return cls(vertices, faces, unit_mm=unit_mm, name=name)
+
+    @classmethod
+    def from_meshio(cls, mesh: Any, *, unit_mm: float = 1, name: str | None = None) -> Mesh:
+        """A mesh of a file that meshio reads (.vtk, .vtu, .msh, .inp, ...), or of its meshio.Mesh, as from_object()."""
+        if isinstance(mesh, (str, os.PathLike)):
+            try:
+                import meshio
+            except ImportError as failure:
+                raise ArgumentError(f"{os.fspath(mesh)}: reading it needs the package meshio (pip install meshio)") from failure
+            name, mesh = name or os.path.basename(mesh), meshio.read(mesh)
+        return cls.from_object(mesh, unit_mm=unit_mm, name=name or "mesh")
 
     @classmethod
     def cube(cls, edge: float) -> Mesh:
@@ -326,39 +347,11 @@ def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
 def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None, _context: Any = ffi.NULL) -> Mesh:
     """A mesh of whatever has vertices and triangles.
 
-    value: a Mesh; (vertices, faces); the path of a file; an object of trimesh (`vertices`, `faces`), of meshio
-    (`points`, cells of the type "triangle") or of PyVista (`points`, `faces` with their counts).
+    value: a Mesh; (vertices, faces); the path of a file; an object of trimesh (also a Scene), Open3D, meshio or PyVista.
     """
     if isinstance(value, Mesh):
         return value
     if isinstance(value, (str, os.PathLike)):
         return Mesh.load(value, unit_mm=unit_mm, _context=_context)
-    vertices, faces = _parts_of(value)
+    vertices, faces = parts_of(value)
     return Mesh(vertices, faces, unit_mm=1 if unit_mm is None else unit_mm, name=name or "mesh", _context=_context)
-
-
-def _parts_of(value: Any) -> tuple[Any, Any]:
-    if isinstance(value, (tuple, list)) and len(value) == 2:
-        return value[0], value[1]
-    if hasattr(value, "vertices") and hasattr(value, "faces"):
-        return value.vertices, value.faces
-    if hasattr(value, "points") and hasattr(value, "cells_dict"):
-        cells = value.cells_dict
-        others = sorted(set(cells) - {"triangle", "vertex", "line"})
-        if "triangle" not in cells or others:
-            raise ArgumentError(f"the mesh has cells of the types {sorted(cells)}; give triangles")
-        return value.points, cells["triangle"]
-    if hasattr(value, "points") and hasattr(value, "faces"):
-        return value.points, _without_counts(value.faces)
-    raise ArgumentError(f"mesh is a {type(value).__name__}; give (vertices, faces), an object with vertices and faces, "
-                        "or the path of a file")
-
-
-def _without_counts(faces: Any) -> NDArray[Any]:
-    """[3, a, b, c, 3, a, b, c, ...] as rows a, b, c."""
-    array = _arrays.numbers(faces, "faces")
-    if array.ndim == 2:
-        return array
-    if array.ndim != 1 or array.size % 4 or (array[::4] != 3).any():
-        raise ArgumentError("faces are not triangles alone; call triangulate() first")
-    return array.reshape(-1, 4)[:, 1:]
