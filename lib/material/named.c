@@ -126,6 +126,17 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
         SKG_TRY(number_of(text, rest, &value));
         return skg_material_create_mu(text, value, material);
     }
+    if ((rest = after(text, "solution"))) {
+        char solute[128];
+        const char *colon = strrchr(rest, ':');
+        if (!colon || colon == rest || (size_t)(colon - rest) >= sizeof solute)
+            return skg_fail(SKG_ERR_MATERIAL,
+                            "\"%s\": give solution:SOLUTE:MG_PER_ML, such as solution:Iodine:300", text);
+        snprintf(solute, sizeof solute, "%.*s", (int)(colon - rest), rest);
+        SKG_TRY(number_of(text, colon + 1, &value));
+        return skg_material_create_solution(solute, value, material);
+    }
+    if (skg_same_name(text, "vacuum")) return skg_material_create_mu("Vacuum", 0, material);
     int32_t z = skg_find_element(text);
     if (z) return skg_material_create_element(z, material);
     const skg_mixture_row *row = skg_find_mixture(text);
