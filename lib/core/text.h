@@ -14,7 +14,7 @@
 /* --- Names in messages: which name was meant, singular or plural. */
 
 /* The entry of names[0..count) nearest to `name` by edit distance without regard to case. NULL if none is near
- * enough to be a typing error: at most one edit in up to three letters, two in up to six,
+ * enough to be a typing error: at most one edit in up to three letters,
  * otherwise a third of the name's length plus one. */
 const char *skg_nearest_name(const char *name, const char *const *names, int64_t count);
 

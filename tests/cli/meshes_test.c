@@ -159,6 +159,11 @@ START_TEST(files_bring_their_units_and_groups) {
     ck_assert_ptr_nonnull(
         strstr(complained, "small: its box is 0.04 mm long, under 1/500 of the field of view"));
     ck_assert_ptr_nonnull(strstr(complained, "its unit is um, as named"));
+    ck_run(0, "image engine.json --only small -o a.mha --quantity attenuation --json");
+    check_range(0, 0.02, 0.02);
+    ck_run(0, "image engine.json --without \"s*\" -o a.mha --quantity transmission --quiet");
+    ck_run_fails(2, "did you mean \"engine\"", "image engine.json --only engin -o a.mha");
+    ck_run_fails(2, "no part is left", "image engine.json --without engine,s*l -o a.mha");
     ck_run(1, "mesh box.obj --groups");
     ck_assert_ptr_nonnull(strstr(said, "group \"lid\": 12 triangles"));
     ck_assert_ptr_nonnull(strstr(said, "unit: mm, assumed"));

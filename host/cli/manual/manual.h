@@ -64,7 +64,7 @@ extern const cli_item cli_flag_meshes_from_names[]; /* the sides; a direction is
 extern const char cli_text_meshes[];                /* a paragraph on them */
 
 /* Flags of one verb. */
-extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
+extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands, cli_flag_image_only, cli_flag_image_without,
     cli_flag_image_band_weight, cli_flag_image_scatter, cli_flag_image_scatter_image,
     cli_flag_image_scatter_sigma, cli_flag_image_mean, cli_flag_image_variance;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
