@@ -153,3 +153,29 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
                         found > SKG_NAME_SUGGESTIONS ? " and others" : "");
     return fail_unknown(text, skg_last_error());
 }
+
+/* What is dissolved: an element, a formula or a name of the tables, with a density. */
+static skg_status find_solute(const char *name, skg_material **solute) {
+    SKG_TRY(skg_material_create_named(name, solute));
+    if ((*solute)->kind == SKG_MATTER_COMPOSITION && (*solute)->density > 0) return SKG_OK;
+    skg_material_release(solute);
+    return skg_fail(
+        SKG_ERR_MATERIAL,
+        "solution of %s: its density is not known, so that the volume that it takes is not; name an element or a "
+        "compound of the tables, such as Iodine or NaI",
+        name);
+}
+
+skg_status skg_material_create_solution(const char *solute, double mg_ml, skg_material **material) {
+    SKG_PLAIN;
+    skg_material *found = NULL;
+    SKG_NEEDS(material);
+    *material = NULL;
+    SKG_NEEDS(solute);
+    if (!(mg_ml > 0) || isinf(mg_ml))
+        return skg_fail(SKG_ERR_MATERIAL, "solution of %s: %g mg/ml; give an amount above 0", solute, mg_ml);
+    SKG_TRY(find_solute(solute, &found));
+    const skg_status status = skg_material_dissolve(solute, found, mg_ml / 1000, material);
+    skg_material_release(&found);
+    return status;
+}

@@ -1,5 +1,4 @@
 /* Solutions in water, such as contrast media by their mass of iodine. */
-#include "core/text.h"
 #include "material/mixture.h"
 
 #include <math.h>
@@ -7,26 +6,14 @@
 
 static const double WATER_G_CM3 = 1;
 
-/* What is dissolved: an element, a formula or a name of the tables, with a density. */
-static skg_status find_solute(const char *name, skg_material **solute) {
-    SKG_TRY(skg_material_create_named(name, solute));
-    if ((*solute)->kind == SKG_MATTER_COMPOSITION && (*solute)->density > 0) return SKG_OK;
-    skg_material_release(solute);
-    return skg_fail(
-        SKG_ERR_MATERIAL,
-        "solution of %s: its density is not known, so that the volume that it takes is not; name an element or a "
-        "compound of the tables, such as Iodine or NaI",
-        name);
-}
-
 /* Adds a share of a material's elements. */
 static void add_share(const skg_material *of, double share, double fraction[SKG_LAST_ELEMENT + 1]) {
     for (int64_t i = 0; i < of->count; i++) fraction[of->parts[i].z] += share * of->parts[i].fraction;
 }
 
 /* Volumes add: 1 ml holds the solute at its own density, and water. */
-static skg_status dissolve(const char *name, const skg_material *solute, double g_ml,
-                           skg_material **material) {
+skg_status skg_material_dissolve(const char *name, const skg_material *solute, double g_ml,
+                                 skg_material **material) {
     double fraction[SKG_LAST_ELEMENT + 1] = {0};
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
     int64_t count = 0;
@@ -48,18 +35,4 @@ static skg_status dissolve(const char *name, const skg_material *solute, double 
              "%.100s is taken to fill its volume at %g g/cm3 in water: %.5g g/cm3, an assumption", name,
              solute->density, density);
     return skg_material_compose(label, note, count, parts, density, material);
-}
-
-skg_status skg_material_create_solution(const char *solute, double mg_ml, skg_material **material) {
-    SKG_PLAIN;
-    skg_material *found = NULL;
-    SKG_NEEDS(material);
-    *material = NULL;
-    SKG_NEEDS(solute);
-    if (!(mg_ml > 0) || isinf(mg_ml))
-        return skg_fail(SKG_ERR_MATERIAL, "solution of %s: %g mg/ml; give an amount above 0", solute, mg_ml);
-    SKG_TRY(find_solute(solute, &found));
-    const skg_status status = dissolve(solute, found, mg_ml / 1000, material);
-    skg_material_release(&found);
-    return status;
 }
