@@ -164,6 +164,13 @@ START_TEST(files_bring_their_units_and_groups) {
     ck_run(0, "image engine.json --without \"s*\" -o a.mha --quantity transmission --quiet");
     ck_run_fails(2, "did you mean \"engine\"", "image engine.json --only engin -o a.mha");
     ck_run_fails(2, "no part is left", "image engine.json --without engine,s*l -o a.mha");
+    write_text("marked.txt", "\xEF\xBB\xBF"
+                             "60 1000\n");
+    write_text(
+        "marked.json",
+        "\xEF\xBB\xBF{\"Source\": {\"From\": \"front\", \"Beam\": {\"TextFile\": \"marked.txt\", \"Unit\": "
+        "\"keV\"}}, \"Samples\": [{\"Cube\": [20, \"mm\"], \"Material\": \"Al\"}]}");
+    ck_run(0, "plan marked.json --quiet"); /* byte-order marks in a scene and a spectrum */
     ck_run(1, "mesh box.obj --groups");
     ck_assert_ptr_nonnull(strstr(said, "group \"lid\": 12 triangles"));
     ck_assert_ptr_nonnull(strstr(said, "unit: mm, assumed"));

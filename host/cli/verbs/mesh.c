@@ -148,6 +148,14 @@ static skg_status examine(const char *path, const skg_mesh_reading *reading, con
     const skg_mesh *examined = fixed ? oriented : mesh;
     if (status == SKG_OK) status = skg_mesh_health_get(examined, health);
     if (status == SKG_OK) status = skg_mesh_nesting_get(examined, nesting);
+    if (status == SKG_OK && fixed) { /* what the file was, before it was written */
+        skg_mesh_health was;
+        skg_mesh_health_init(&was);
+        status = skg_mesh_health_get(mesh, &was);
+        health->turned = was.turned, health->first_turned = was.first_turned;
+        health->same_way_edges = was.same_way_edges;
+        for (int k = 0; k < 3; k++) health->first_turned_position[k] = was.first_turned_position[k];
+    }
     skg_mesh_release(&mesh);
     skg_mesh_release(&oriented);
     return status;
