@@ -4,7 +4,7 @@
 
 #define SKG_WORDS (SKG_SLOTS / 32)
 
-/* Ints of the entry of a slot: the number of its part; the slot of the parent that it is clipped to, or -1; then two sets of
+/* Ints of the entry of a slot: the number of its part, plus SKG_HITS_UNITED if it is united; the slot of the parent that it is clipped to, or -1; then two sets of
  * slots, one bit each: those that win over it, and those whose loss it shares. */
 #define SKG_ENTRY (2 + 2 * SKG_WORDS)
 
@@ -220,27 +220,46 @@ static void skg_pass_hit(int code, int *winding, uint *active) {
     active[slot / 32] = winding[slot] > 0 ? active[slot / 32] | bit : active[slot / 32] & ~bit;
 }
 
+/* Notes after a hit whether a united slot has other layers than 0 or 1. */
+static void skg_note_layers(__global const int *table, int code, const int *winding, uint *layered) {
+    const int slot = code / 2;
+    const uint bit = 1u << (slot % 32);
+    if (!(table[slot * SKG_ENTRY] & SKG_HITS_UNITED)) return;
+    layered[slot / 32] = winding[slot] < 0 || winding[slot] > 1 ? layered[slot / 32] | bit : layered[slot / 32] & ~bit;
+}
+
+/* How many times a slot has added too much over an interval: all of its layers if it loses it, otherwise those but one. */
+static int skg_times_off(const uint *dropped, const int *winding, int slot) {
+    return skg_is_in(dropped, slot) ? winding[slot] : winding[slot] - (winding[slot] > 0);
+}
+
+/* The part of a slot. */
+static __global const skg_part_entry *skg_slot_part(__global const skg_part_entry *parts, __global const int *table, int slot) {
+    return &parts[table[slot * SKG_ENTRY] & ~SKG_HITS_UNITED];
+}
+
 /* Decides every interval of a pixel that has hits. */
 SKG_APART void skg_settle_pixel(const skg_raster_layout *layout, __global const skg_part_entry *parts,
                                 __global const skg_contribution *contributions, __global skg_listed *hits, int count,
                                 __global const int *table, size_t place, __global const int *used,
                                 __global skg_sum *sums) {
     int winding[SKG_SLOTS];
-    uint active[SKG_WORDS];
+    uint active[SKG_WORDS], layered[SKG_WORDS];
     skg_sort_hits(hits, count);
     for (int k = 0; k < count; k++) winding[hits[k].code / 2] = 0;
-    for (int w = 0; w < SKG_WORDS; w++) active[w] = 0;
+    for (int w = 0; w < SKG_WORDS; w++) active[w] = layered[w] = 0;
     for (int k = 0; k + 1 < count; k++) {
         skg_pass_hit(hits[k].code, winding, active);
+        skg_note_layers(table, hits[k].code, winding, layered);
         const skg_real length = hits[k + 1].depth - hits[k].depth;
         if (!(length > 0)) continue;
         uint dropped[SKG_WORDS];
         skg_drop(table, active, dropped);
         for (int w = 0; w < SKG_WORDS; w++)
-            for (uint rest = dropped[w]; rest; rest &= rest - 1) {
+            for (uint rest = dropped[w] | layered[w]; rest; rest &= rest - 1) {
                 const int slot = 32 * w + 31 - (int)clz(rest & (~rest + 1));
-                skg_take_off(layout, &parts[table[slot * SKG_ENTRY]], contributions,
-                             length * (skg_real)winding[slot], place, used, sums);
+                skg_take_off(layout, skg_slot_part(parts, table, slot), contributions,
+                             length * (skg_real)skg_times_off(dropped, winding, slot), place, used, sums);
             }
     }
 }

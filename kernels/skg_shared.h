@@ -153,6 +153,9 @@ typedef struct {
 /* Added to the slot of a competitor that wins over none. Its hits matter only in pixels that a winner has hit. */
 #define SKG_HITS_BACKGROUND 0x10000
 
+/* Added to the part of a competitor that counts once where its winding number is above 0. */
+#define SKG_HITS_UNITED 0x40000000
+
 /* What a launch does with hits: counts those of winners, or those of background parts; lists all. */
 #define SKG_HITS_COUNT 0
 #define SKG_HITS_COUNT_BACKGROUND 1

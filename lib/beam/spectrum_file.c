@@ -10,7 +10,7 @@ static skg_status find_word(const char *path, const char **word) {
     char text[512];
     *word = NULL;
     FILE *file = NULL;
-    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &file, NULL));
+    SKG_TRY(skg_text_open(path, &file));
     while (!*word && fgets(text, sizeof text, file)) {
         if (text[strspn(text, " \t")] != '/') continue; /* commands of a macro begin with a slash */
         if (strstr(text, "histpoint")) *word = "histpoint";

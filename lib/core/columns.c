@@ -128,7 +128,7 @@ static skg_status read_file(reading *r) {
     char text[512];
     skg_status status = SKG_OK;
     FILE *file = NULL;
-    SKG_TRY(skg_input_open(r->path, SKG_INPUT_TEXT, &file, NULL));
+    SKG_TRY(skg_text_open(r->path, &file));
     while (status == SKG_OK && fgets(text, sizeof text, file)) {
         r->line++;
         if (strlen(text) + 1 == sizeof text)
@@ -193,7 +193,7 @@ skg_status skg_read_list(const char *path, int64_t *count, double **numbers) {
     *count = 0;
     *numbers = NULL;
     FILE *file = NULL;
-    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &file, NULL));
+    SKG_TRY(skg_text_open(path, &file));
     for (int64_t line = 1; status == SKG_OK && fgets(text, sizeof text, file); line++) {
         if (strlen(text) + 1 == sizeof text)
             status = skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 " is too long", path, line);

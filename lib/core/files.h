@@ -27,6 +27,13 @@ skg_status skg_input_check(const char *path, int64_t most);
 /* Fails with the sentence for an input that is longer than `most` bytes. */
 skg_status skg_input_fail_long(const char *path, int64_t most);
 
+/* The bytes of a byte-order mark of UTF-8 at the start of a text, 3 or 0. Text in UTF-16 or UTF-32, as "Unicode text" of other
+ * programs is, is refused: SKG_ERR_FORMAT. */
+skg_status skg_text_mark(const char *path, const char *text, size_t length, size_t *mark);
+
+/* The one way to open text that is read line by line: an input of at most SKG_INPUT_TEXT bytes, behind its mark. */
+skg_status skg_text_open(const char *path, FILE **stream);
+
 /* Reads an open input to its end, and a zero behind it; at most `most` bytes. The caller frees the text.
  *
  * path   for messages */

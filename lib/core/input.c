@@ -73,3 +73,21 @@ cleanup:
     skg_free(text);
     return status;
 }
+
+skg_status skg_text_mark(const char *path, const char *text, size_t length, size_t *mark) {
+    *mark = length >= 3 && memcmp(text, "\xEF\xBB\xBF", 3) == 0 ? 3 : 0;
+    if (length < 2 || (memcmp(text, "\xFF\xFE", 2) != 0 && memcmp(text, "\xFE\xFF", 2) != 0)) return SKG_OK;
+    return skg_fail(SKG_ERR_FORMAT, "%s: is text in UTF-16; save it as UTF-8 or ASCII", path);
+}
+
+skg_status skg_text_open(const char *path, FILE **stream) {
+    char start[3];
+    size_t mark = 0;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, stream, NULL));
+    const size_t length = fread(start, 1, sizeof start, *stream);
+    skg_status status = skg_text_mark(path, start, length, &mark);
+    if (status == SKG_OK && fseek(*stream, (long)mark, SEEK_SET) != 0)
+        status = skg_fail_unreadable(path, errno);
+    if (status != SKG_OK) fclose(*stream);
+    return status;
+}

@@ -75,6 +75,16 @@ static inline void skg_add_scaled(const double *a, double factor, const double *
     for (int k = 0; k < 3; k++) result[k] = a[k] + factor * b[k];
 }
 
+/* The solid angle of a triangle, from -2 pi to 2 pi, as the origin sees it (A. Van Oosterom and J. Strackee, 1983); positive where
+ * its corners run so that the normal points away from the origin. */
+static inline double skg_solid_angle(const double *a, const double *b, const double *c) {
+    double across[3];
+    const double of_a = skg_length(a), of_b = skg_length(b), of_c = skg_length(c);
+    skg_cross(b, c, across);
+    return 2 * atan2(skg_dot(a, across),
+                     of_a * of_b * of_c + skg_dot(a, b) * of_c + skg_dot(a, c) * of_b + skg_dot(b, c) * of_a);
+}
+
 static inline void skg_scale_vector(double factor, const double *a, double *result) {
     for (int k = 0; k < 3; k++) result[k] = factor * a[k];
 }

@@ -36,8 +36,10 @@ static int distance(const char *a, const char *b) {
 }
 
 const char *skg_nearest_name(const char *name, const char *const *names, int64_t count) {
+    /* Typing errors: one in up to three letters. */
+    const int length = (int)strlen(name);
     const char *nearest = NULL;
-    int best = (int)strlen(name) / 3 + 2;
+    int best = length <= 3 ? 2 : length / 3 + 2;
     for (int64_t i = 0; i < count; i++) {
         int d = distance(name, names[i]);
         if (d < best) best = d, nearest = names[i];

@@ -14,7 +14,8 @@
 /* --- Names in messages: which name was meant, singular or plural. */
 
 /* The entry of names[0..count) nearest to `name` by edit distance without regard to case. NULL if none is near
- * enough to be a typing error: at most a third of the name's length plus one edit. */
+ * enough to be a typing error: at most one edit in up to three letters,
+ * otherwise a third of the name's length plus one. */
 const char *skg_nearest_name(const char *name, const char *const *names, int64_t count);
 
 /* Equality without regard to case (ASCII). */
@@ -75,9 +76,12 @@ void skg_plain_leave(skg_plain *plain);
 
 /* --- Units as scene files spell them, without regard to case. */
 
-/* The millimetres in one unit of length ("um", "mm", "cm", "dm", "m", "dam", "hm", "km" and their full names).
+/* The millimetres in one unit of length ("nm", "um", "mm", "cm", "dm", "m", "in", "ft", "dam", "hm", "km" and their full names).
  * SKG_ERR_FORMAT for another word; the sentence offers the nearest name. */
 skg_status skg_unit_of_length(const char *name, double *mm);
+
+/* Writes the name of a unit of length, or "2.5 mm" where there is none. */
+void skg_unit_describe(double mm, char *text, size_t size);
 
 /* The keV in one unit of energy ("eV", "keV", "MeV" and their full names). */
 skg_status skg_unit_of_energy(const char *name, double *kev);

@@ -60,7 +60,7 @@ static skg_status prepare_competitors(const skg_job *job, skg_edge_weights *w) {
     SKG_TRY(skg_alloc(pass->scene->count, sizeof *w->slots, "gradient", &w->slots));
     SKG_TRY(
         skg_alloc(priority->count * skg_priority_entry(priority), sizeof *w->table, "gradient", &w->table));
-    skg_priority_tables(pass->scene, pass->clip, priority, w->slots, w->table);
+    skg_priority_tables(pass->scene, pass->rules, priority, w->slots, w->table);
     SKG_TRY(skg_alloc(priority->count, sizeof *w->competitors, "gradient", &w->competitors));
     return skg_parallel(priority->count, prepare_competitor, &t);
 }

@@ -106,10 +106,10 @@ static int competitors_contribute(const skg_pass *pass) {
 
 /* Which parts compete for intervals in this frame. The lengths of a mesh's surface do not depend on other parts. */
 static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
-    pass->clip = recipe->options.clip;
+    pass->rules = skg_priority_rules(recipe->options.clip, recipe->options.unite);
     if (!recipe->priority_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
         return SKG_OK;
-    SKG_TRY(skg_priority_find(recipe->scene, pass->clip, &pass->camera, pass->extents, &pass->priority));
+    SKG_TRY(skg_priority_find(recipe->scene, pass->rules, &pass->camera, pass->extents, &pass->priority));
     if (!competitors_contribute(pass)) skg_priority_release(&pass->priority);
     for (int64_t s = 0; s < pass->priority.count; s++)
         pass->kernels.source_plane |= pass->extents[pass->priority.parts[s]].near_source;

@@ -167,6 +167,12 @@ static void conclude(component *own, const verdict *found, skg_mesh_nesting *nes
         nesting->first_leaving = own->number;
         nesting->leaving_length = found->longest;
         memcpy(nesting->leaving_place, found->longest_place, sizeof found->longest_place);
+    } else if (!inward && found->longest > least) {
+        nesting->overlapping++;
+        if (nesting->first_overlapping >= 0 && nesting->overlapping_length >= found->longest) return;
+        nesting->first_overlapping = own->number;
+        nesting->overlapping_length = found->longest;
+        memcpy(nesting->overlapping_place, found->longest_place, sizeof found->longest_place);
     }
 }
 
@@ -210,7 +216,7 @@ cleanup:
 }
 
 void skg_mesh_nesting_init_sized(void *nesting, int32_t size) {
-    const skg_mesh_nesting defaults = {.first_inverted = -1, .first_leaving = -1};
+    const skg_mesh_nesting defaults = {.first_inverted = -1, .first_leaving = -1, .first_overlapping = -1};
     skg_struct_init(nesting, size, &defaults, sizeof defaults);
 }
 
@@ -233,7 +239,7 @@ skg_status skg_mesh_nesting_describe(const skg_mesh_nesting *nesting, int64_t le
     if (length < 1)
         return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_nesting_describe: a text of %" PRId64 " bytes", length);
     const size_t size = (size_t)length;
-    const double *p = n->inverted_place, *q = n->leaving_place;
+    const double *p = n->inverted_place, *q = n->leaving_place, *r = n->overlapping_place;
     int used = 0;
     *text = '\0';
     if (n->inverted > 0)
@@ -250,6 +256,14 @@ skg_status skg_mesh_nesting_describe(const skg_mesh_nesting *nesting, int64_t le
                  " by up to %.4g mm, near (%.4g, %.4g, %.4g) mm, where lengths become negative",
                  used > 0 ? "; " : "", n->leaving, n->components, n->leaving == 1 ? "is" : "are",
                  n->first_leaving + 1, n->leaving_length, q[0], q[1], q[2]);
+    used = (int)strlen(text);
+    if (n->overlapping > 0 && (size_t)used < size)
+        snprintf(text + used, size - (size_t)used,
+                 "%s%" PRId64 " of %" PRId64 " components %s a larger one: number %" PRId64
+                 " by up to %.4g mm, near (%.4g, %.4g, %.4g) mm, where lengths add",
+                 used > 0 ? "; " : "", n->overlapping, n->components,
+                 n->overlapping == 1 ? "overlaps" : "overlap", n->first_overlapping + 1,
+                 n->overlapping_length, r[0], r[1], r[2]);
     return SKG_OK;
 }
 

@@ -12,6 +12,14 @@
 #include "geometry/overlaps.h"
 #include "scene/scene.h"
 
+/* What is asked for, besides priorities: children count only inside their parents; of closed parts counts the union of what they
+ * enclose, where the winding number is above 0. */
+enum { SKG_RULE_CLIP = 1, SKG_RULE_UNITE = 2 };
+
+static inline int32_t skg_priority_rules(int32_t clip, int32_t unite) {
+    return (clip ? SKG_RULE_CLIP : 0) | (unite ? SKG_RULE_UNITE : 0);
+}
+
 typedef struct {
     int64_t count; /* of parts that compete, or fall with a part that does */
     /* Of these, background parts: they win over none, and are not clipped. Their hits matter only where a winner is. */
@@ -22,10 +30,10 @@ typedef struct {
 } skg_priority;
 
 /* Whether any parts of a scene can ever compete. */
-int skg_priority_possible(const skg_scene *scene, int32_t clip);
+int skg_priority_possible(const skg_scene *scene, int32_t rules);
 
 /* The parts that compete for these extents [parts of the scene], and where. */
-skg_status skg_priority_find(const skg_scene *scene, int32_t clip, const skg_camera *camera,
+skg_status skg_priority_find(const skg_scene *scene, int32_t rules, const skg_camera *camera,
                              const skg_extent *extents, skg_priority *priority);
 void skg_priority_release(skg_priority *priority);
 
@@ -37,17 +45,17 @@ int64_t skg_priority_entry(const skg_priority *priority);
 /* Fills the tables of hits.cl.
  *
  * slots   [parts of the scene] the competitor that a part is, plus SKG_HITS_BACKGROUND if it wins over none; or -1
- * table   [competitors][entry] part, slot of the parent that it is clipped to or -1, the set of slots that displace
+ * table   [competitors][entry] part, plus SKG_HITS_UNITED if it is united; slot of the parent that it is clipped to or -1, the set of slots that displace
  *         it, the set of slots of its ancestors */
-void skg_priority_tables(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *slots,
+void skg_priority_tables(const skg_scene *scene, int32_t rules, const skg_priority *priority, int32_t *slots,
                          int32_t *table);
 
 /* Fills `runs` [competitors][3]: the triangles of the competitors, first of winners and clipped parts, then of background
  * parts: number of the first triangle, part, slot. triangles: of both. */
-void skg_priority_runs(const skg_scene *scene, int32_t clip, const skg_priority *priority, int32_t *runs,
+void skg_priority_runs(const skg_scene *scene, int32_t rules, const skg_priority *priority, int32_t *runs,
                        int64_t triangles[2]);
 
 /* Whether priority or clipping decides what is seen of an overlapping pair, so that no warning is due. */
-int skg_priority_settles(const skg_scene *scene, int32_t clip, const skg_overlap_pair *pair);
+int skg_priority_settles(const skg_scene *scene, int32_t rules, const skg_overlap_pair *pair);
 
 #endif

@@ -40,6 +40,10 @@ skg_status skg_material_make(const char *name, const char *note, int32_t kind, s
 skg_status skg_material_compose(const char *name, const char *note, int64_t count,
                                 const skg_mass_fraction *parts, double density, skg_material **material);
 
+/* A solution of a material of known density in water (skg_material_create_solution). name: of the solute; g_ml: its mass in 1 ml */
+skg_status skg_material_dissolve(const char *name, const skg_material *solute, double g_ml,
+                                 skg_material **material);
+
 /* Fails with SKG_ERR_MATERIAL outside that range. name: for the message. */
 skg_status skg_check_energy(const char *name, double energy_kev);
 

@@ -126,13 +126,25 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
         SKG_TRY(number_of(text, rest, &value));
         return skg_material_create_mu(text, value, material);
     }
+    if ((rest = after(text, "solution"))) {
+        char solute[128];
+        const char *colon = strrchr(rest, ':');
+        if (!colon || colon == rest || (size_t)(colon - rest) >= sizeof solute)
+            return skg_fail(SKG_ERR_MATERIAL,
+                            "\"%s\": give solution:SOLUTE:MG_PER_ML, such as solution:Iodine:300", text);
+        snprintf(solute, sizeof solute, "%.*s", (int)(colon - rest), rest);
+        SKG_TRY(number_of(text, colon + 1, &value));
+        return skg_material_create_solution(solute, value, material);
+    }
+    if (skg_same_name(text, "vacuum")) return skg_material_create_mu("Vacuum", 0, material);
     int32_t z = skg_find_element(text);
     if (z) return skg_material_create_element(z, material);
     const skg_mixture_row *row = skg_find_mixture(text);
     if (row) SKG_TRY(check_alloy(text, row));
     if (row) return from_row(row, material);
     skg_status status = from_formula(text, material);
-    if (status == SKG_OK || (status != SKG_ERR_MATERIAL) || strstr(skg_last_error(), "weight:"))
+    if (status == SKG_OK || (status != SKG_ERR_MATERIAL) || strstr(skg_last_error(), "weight:") ||
+        strstr(skg_last_error(), "is ambiguous"))
         return status;
     int found = skg_find_mixtures(text, &row, list, sizeof list);
     if (found == 1) return from_row(row, material);
@@ -140,4 +152,30 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
         return skg_fail(SKG_ERR_MATERIAL, "\"%s\" fits %d materials: %s%s; name one", text, found, list,
                         found > SKG_NAME_SUGGESTIONS ? " and others" : "");
     return fail_unknown(text, skg_last_error());
+}
+
+/* What is dissolved: an element, a formula or a name of the tables, with a density. */
+static skg_status find_solute(const char *name, skg_material **solute) {
+    SKG_TRY(skg_material_create_named(name, solute));
+    if ((*solute)->kind == SKG_MATTER_COMPOSITION && (*solute)->density > 0) return SKG_OK;
+    skg_material_release(solute);
+    return skg_fail(
+        SKG_ERR_MATERIAL,
+        "solution of %s: its density is not known, so that the volume that it takes is not; name an element or a "
+        "compound of the tables, such as Iodine or NaI",
+        name);
+}
+
+skg_status skg_material_create_solution(const char *solute, double mg_ml, skg_material **material) {
+    SKG_PLAIN;
+    skg_material *found = NULL;
+    SKG_NEEDS(material);
+    *material = NULL;
+    SKG_NEEDS(solute);
+    if (!(mg_ml > 0) || isinf(mg_ml))
+        return skg_fail(SKG_ERR_MATERIAL, "solution of %s: %g mg/ml; give an amount above 0", solute, mg_ml);
+    SKG_TRY(find_solute(solute, &found));
+    const skg_status status = skg_material_dissolve(solute, found, mg_ml / 1000, material);
+    skg_material_release(&found);
+    return status;
 }

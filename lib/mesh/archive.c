@@ -197,3 +197,63 @@ skg_status skg_archive_check(const char *path, FILE *stream, int64_t size) {
     skg_free(&relations);
     return status;
 }
+
+int skg_archive_is(FILE *stream) {
+    unsigned char start[4];
+    return read_at(stream, 0, start, sizeof start) && is_mark(start, 3, 4);
+}
+
+/* Whether the name of an entry ends in `end`, or is it. */
+static int name_fits(const archive *a, const unsigned char *entry, const char *end, int whole) {
+    char its[SKG_RELATION_MAX];
+    const size_t length = (size_t)number(entry + 28, 2), wanted = strlen(end);
+    if (length >= sizeof its || length < wanted || (whole && length != wanted)) return 0;
+    if (!read_at(a->stream, a->at + ENTRY, its, length)) return 0;
+    its[length] = '\0';
+    return skg_same_name(its + length - wanted, end);
+}
+
+static skg_status open_archive(const char *path, FILE *stream, int64_t size, archive *a) {
+    unsigned char record[END];
+    *a = (archive){.path = path, .stream = stream};
+    const int64_t end = find_end(stream, size, record);
+    if (end < 0) return fail(a);
+    SKG_TRY(find_directory(a, end, record));
+    return check_lengths(*a);
+}
+
+skg_status skg_archive_read(const char *path, FILE *stream, int64_t size, const char *end, int whole,
+                            char **text) {
+    archive a;
+    unsigned char entry[ENTRY];
+    *text = NULL;
+    SKG_TRY(open_archive(path, stream, size, &a));
+    end += *end == '/';
+    for (; a.at < a.end; go_on(&a, entry)) {
+        SKG_TRY(read_entry(&a, entry));
+        if (!name_fits(&a, entry, end, whole)) continue;
+        const skg_packed_part part = read_part(&a, entry);
+        SKG_TRY(skg_alloc((int64_t)part.length + 1, 1, path, text));
+        if (skg_unpack_is_whole(stream, &part, *text, part.length)) return SKG_OK;
+        skg_free(text);
+        return skg_fail(SKG_ERR_FORMAT, "%s: the archive is damaged: its \"%s\" cannot be unpacked", path,
+                        end);
+    }
+    return SKG_OK;
+}
+
+skg_status skg_archive_read_model(const char *path, FILE *stream, int64_t size, char *name, char **text) {
+    char *relations = NULL;
+    *text = NULL;
+    SKG_TRY(skg_archive_read(path, stream, size, SKG_RELATIONS_PART, 1, &relations));
+    skg_relations models = {.at = relations ? relations : ""};
+    const int found = relations ? skg_relations_next_model(&models, name) : 0;
+    skg_free(&relations);
+    if (found < 0) return skg_fail(SKG_ERR_FORMAT, "%s: its %s cannot be read", path, SKG_RELATIONS_PART);
+    if (!found)
+        return skg_fail(SKG_ERR_FORMAT, "%s: no 3MF file: its %s names no model", path, SKG_RELATIONS_PART);
+    SKG_TRY(skg_archive_read(path, stream, size, name, 1, text));
+    if (*text) return SKG_OK;
+    return skg_fail(SKG_ERR_FORMAT, "%s: its %s names \"%s\", which is not there", path, SKG_RELATIONS_PART,
+                    name);
+}

@@ -14,4 +14,17 @@
  * check sum of a part is wrong. */
 skg_status skg_archive_check(const char *path, FILE *stream, int64_t size);
 
+/* Whether a file begins as an archive does. */
+int skg_archive_is(FILE *stream);
+
+/* Unpacks the first part whose name ends in `end`, without regard to case and to a slash at its start; whole: the name is `end`.
+ *
+ * text     result: ends with a zero; the caller frees it; NULL: there is no such part
+ * errors   as above */
+skg_status skg_archive_read(const char *path, FILE *stream, int64_t size, const char *end, int whole,
+                            char **text);
+
+/* The same for the part that the relationships of a 3MF file name as its model. name: [SKG_RELATION_MAX] result: the part's */
+skg_status skg_archive_read_model(const char *path, FILE *stream, int64_t size, char *name, char **text);
+
 #endif

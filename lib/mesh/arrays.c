@@ -6,6 +6,11 @@
 void skg_mesh_arrays_free(skg_mesh_arrays *arrays) {
     skg_free(&arrays->positions);
     skg_free(&arrays->corners);
+    for (int64_t i = 0; i < arrays->piece_count; i++) {
+        skg_free(&arrays->pieces[i].object);
+        skg_free(&arrays->pieces[i].group);
+    }
+    skg_free(&arrays->pieces);
     *arrays = (skg_mesh_arrays){0};
 }
 
@@ -36,4 +41,38 @@ skg_status skg_mesh_add_corner(skg_mesh_arrays *arrays, skg_polygon *polygon, in
     }
     polygon->last = (int32_t)vertex;
     return SKG_OK;
+}
+
+/* A piece without triangles is begun anew. */
+static skg_status begin(skg_mesh_arrays *arrays, const char *object, const char *group) {
+    skg_mesh_piece piece = {.first = arrays->triangles};
+    SKG_TRY(grow(arrays->piece_count, &arrays->piece_capacity, sizeof *arrays->pieces, &arrays->pieces));
+    skg_status status = skg_copy_text(object, &piece.object);
+    if (status == SKG_OK) status = skg_copy_text(group, &piece.group);
+    if (status != SKG_OK) {
+        skg_free(&piece.object);
+        return status;
+    }
+    skg_mesh_piece *last = arrays->piece_count ? &arrays->pieces[arrays->piece_count - 1] : NULL;
+    if (last && last->first == arrays->triangles) {
+        skg_free(&last->object);
+        skg_free(&last->group);
+        *last = piece;
+    } else {
+        arrays->pieces[arrays->piece_count++] = piece;
+    }
+    return SKG_OK;
+}
+
+skg_status skg_mesh_begin_object(skg_mesh_arrays *arrays, const char *name) {
+    return begin(arrays, name, NULL);
+}
+
+skg_status skg_mesh_begin_group(skg_mesh_arrays *arrays, const char *name) {
+    char *object = NULL;
+    SKG_TRY(
+        skg_copy_text(arrays->piece_count ? arrays->pieces[arrays->piece_count - 1].object : NULL, &object));
+    const skg_status status = begin(arrays, object, name);
+    skg_free(&object);
+    return status;
 }

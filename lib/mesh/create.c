@@ -105,6 +105,11 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
     mesh->triangles = arrays->triangles;
     mesh->positions = arrays->positions;
     mesh->corners = arrays->corners;
+    mesh->as_wound = arrays->as_wound;
+    mesh->unit_mm = arrays->unit_mm, mesh->file_unit_mm = arrays->file_unit_mm;
+    mesh->unit_from = arrays->unit_from;
+    mesh->health.left_out = arrays->left_out, mesh->health.trailing_bytes = arrays->trailing;
+    mesh->pieces = arrays->pieces, mesh->piece_count = arrays->piece_count;
     *arrays = (skg_mesh_arrays){0};
     SKG_TRY(skg_alloc(3 * mesh->vertices, sizeof *mesh->offsets, name, &mesh->offsets));
     set_offsets(mesh);
@@ -114,6 +119,18 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
 }
 
 void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh) {
+    const skg_mesh_health *health = &mesh->health;
+    const double *p = health->first_turned_position;
+    if (health->turned > 0)
+        skg_log(context, SKG_LOG_WARNING,
+                "%s: wound inconsistently; %" PRId64 " of %" PRId64
+                " triangles were turned, first number %" PRId64 " near (%.4g, %.4g, %.4g) mm%s",
+                mesh->name, health->turned, health->triangles, health->first_turned, p[0], p[1], p[2],
+                health->closed ? "" : "; it has holes, too");
+    if (health->one_sided > 0)
+        skg_log(context, SKG_LOG_WARNING,
+                "%s: %" PRId64 " %s no inside, as a Moebius strip has none; turning triangles cannot mend it",
+                mesh->name, health->one_sided, skg_plural(health->one_sided, "patch has", "patches have"));
     if (mesh->orientation < 0)
         skg_log(context, SKG_LOG_WARNING,
                 "%s: inverted as a whole (its triangles face inward); turned outward", mesh->name);
@@ -156,6 +173,8 @@ static skg_status check_source(const char *name, skg_mesh_source *from) {
     SKG_TRY(check_stride(name, "position", &from->position_stride));
     SKG_TRY(check_stride(name, "triangle", &from->triangle_stride));
     SKG_TRY(check_counts(name, from->vertices, from->triangles));
+    if (from->as_wound < 0 || from->as_wound > 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: as_wound is %" PRId32 "; give 0 or 1", name, from->as_wound);
     if (from->positions && from->floats)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: positions and floats are both given; set one of them to NULL",
                         name);
@@ -167,6 +186,9 @@ static skg_status check_source(const char *name, skg_mesh_source *from) {
 static skg_status copy_arrays(const char *name, const skg_mesh_source *from, skg_mesh_arrays *arrays) {
     SKG_TRY(skg_alloc(3 * from->vertices, sizeof(double), name, &arrays->positions));
     SKG_TRY(skg_alloc(3 * from->triangles, sizeof(int32_t), name, &arrays->corners));
+    arrays->as_wound = from->as_wound;
+    arrays->unit_mm = from->unit_mm;
+    arrays->unit_from = SKG_UNIT_NAMED;
     arrays->vertices = from->vertices;
     arrays->triangles = from->triangles;
     for (int64_t i = 0; i < from->vertices; i++)
@@ -219,6 +241,11 @@ void skg_mesh_release(skg_mesh **mesh) {
     skg_free(&last->offsets);
     skg_free(&last->corners);
     skg_free(&last->weld);
+    for (int64_t i = 0; i < last->piece_count; i++) {
+        skg_free(&last->pieces[i].object);
+        skg_free(&last->pieces[i].group);
+    }
+    skg_free(&last->pieces);
     skg_free(&last);
 }
 
@@ -320,5 +347,40 @@ skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
         for (int k = 0; k < 3; k++)
             if (mesh->offsets[3 * i + k] != mesh->offsets[3 * (int64_t)mesh->weld[i] + k])
                 return torn(mesh, i);
+    return SKG_OK;
+}
+
+void skg_mesh_unit_init_sized(void *unit, int32_t size) {
+    const skg_mesh_unit defaults = {.mm = 1};
+    skg_struct_init(unit, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_mesh_unit_get(const skg_mesh *mesh, skg_mesh_unit *unit) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(unit);
+    skg_mesh_unit ours = {
+        .from = mesh->unit_from, .mm = mesh->unit_mm > 0 ? mesh->unit_mm : 1, .file_mm = mesh->file_unit_mm};
+    skg_unit_describe(ours.mm, ours.name, sizeof ours.name);
+    return skg_struct_write(&ours, sizeof ours, "skg_mesh_unit", unit);
+}
+
+skg_status skg_mesh_group_count(const skg_mesh *mesh, int64_t *count) {
+    SKG_NEEDS(mesh);
+    SKG_NEEDS(count);
+    *count = mesh->piece_count;
+    return SKG_OK;
+}
+
+skg_status skg_mesh_group_get(const skg_mesh *mesh, int64_t group, const char **name, int64_t *first,
+                              int64_t *triangles) {
+    SKG_NEEDS(mesh);
+    if (group < 0 || group >= mesh->piece_count)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: group %" PRId64 " of %" PRId64, mesh->name, group,
+                        mesh->piece_count);
+    const skg_mesh_piece *piece = &mesh->pieces[group];
+    const int64_t end = group + 1 < mesh->piece_count ? piece[1].first : mesh->triangles;
+    if (name) *name = skg_mesh_piece_name(piece);
+    if (first) *first = piece->first;
+    if (triangles) *triangles = end - piece->first;
     return SKG_OK;
 }

@@ -1,5 +1,6 @@
 /* The health of a mesh: whether it is closed, which way its triangles face, how large it is. The time is linear in
  * the number of triangles except for the sorting of small groups. */
+#include "mesh/groups.h"
 #include "mesh/mesh.h"
 
 #include "core/maths.h"
@@ -63,13 +64,6 @@ static int welded(const skg_mesh *mesh, int64_t triangle, uint32_t corner[3]) {
     return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
 }
 
-/* Items of the triangles, grouped by a vertex: those of vertex v are key[start[v]] to
- * key[start[v + 1] - 1], sorted. */
-typedef struct {
-    int64_t *start;
-    uint64_t *key;
-} groups;
-
 /* Lists the items (at most 3) of a triangle with the vertex of each, and returns their number. */
 typedef int (*items_of)(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]);
 
@@ -116,18 +110,18 @@ static void sort_keys(uint64_t *key, int64_t count) {
     }
 }
 
-static void groups_free(groups *found) {
+static void groups_free(skg_mesh_groups *found) {
     skg_free(&found->start);
     skg_free(&found->key);
 }
 
 /* A counting sort by vertex, then a sort of each group by key. Degenerate triangles have no items: their edges
  * cancel. */
-static skg_status group(const skg_mesh *mesh, items_of items, groups *found) {
+static skg_status group(const skg_mesh *mesh, items_of items, skg_mesh_groups *found) {
     uint32_t corner[3], vertex[3];
     uint64_t key[3];
     skg_status status = SKG_OK;
-    *found = (groups){0};
+    *found = (skg_mesh_groups){0};
     SKG_TRY_CLEANUP(skg_alloc(mesh->vertices + 2, sizeof *found->start, mesh->name, &found->start));
     /* Counts are stored two places on, so that start[v] is where group v begins when the groups are filled. */
     for (int64_t t = 0; t < mesh->triangles; t++)
@@ -168,39 +162,54 @@ static void examine_edge(skg_mesh_health *health, const uint64_t *key, int64_t c
     if (most > 1) health->consistent = 0;
     if (most > *multiplicity) *multiplicity = (int32_t)most;
     health->nonmanifold_edges += count > 2;
+    health->same_way_edges += count == 2 && most == 2 ? 2 : 0;
     health->open_edges += up > down ? up - down : down - up;
     if (up != down && health->first_open_vertex < 0) health->first_open_vertex = vertex;
 }
 
-static skg_status examine_edges(skg_mesh *mesh) {
+/* Counts what edges say, and joins the components of the triangles. parent: [triangles] */
+static void walk_edges(skg_mesh *mesh, const skg_mesh_groups *edges, int32_t *parent, int32_t *multiplicity) {
     skg_mesh_health *health = &mesh->health;
-    groups edges;
-    int32_t *parent = NULL; /* of the triangles, which edges join to components */
-    int32_t multiplicity = 1;
-    SKG_TRY(group(mesh, edges_of, &edges));
-    skg_status status = skg_alloc(mesh->triangles, sizeof *parent, mesh->name, &parent);
-    if (status != SKG_OK) {
-        groups_free(&edges);
-        return status;
-    }
     for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = t;
     health->consistent = 1;
     health->first_open_vertex = -1;
+    health->open_edges = health->nonmanifold_edges = 0;
+    *multiplicity = 1;
     for (int64_t v = 0; v < mesh->vertices; v++)
-        for (int64_t i = edges.start[v], end; i < edges.start[v + 1]; i = end) {
-            for (end = i + 1; end < edges.start[v + 1] && edges.key[end] >> 32 == edges.key[i] >> 32;) end++;
-            examine_edge(health, edges.key + i, end - i, v, parent, &multiplicity);
+        for (int64_t i = edges->start[v], end; i < edges->start[v + 1]; i = end) {
+            end = skg_mesh_group_end(edges, v, i);
+            examine_edge(health, edges->key + i, end - i, v, parent, multiplicity);
         }
     health->closed = health->open_edges == 0;
-    groups_free(&edges);
+}
+
+static skg_status examine_edges(skg_mesh *mesh) {
+    skg_mesh_health *health = &mesh->health;
+    skg_mesh_groups edges;
+    int32_t *parent = NULL; /* of the triangles, which edges join to components */
+    int32_t multiplicity = 1;
+    skg_status status = SKG_OK;
+    SKG_TRY(group(mesh, edges_of, &edges));
+    SKG_TRY_CLEANUP(skg_alloc(mesh->triangles, sizeof *parent, mesh->name, &parent));
+    walk_edges(mesh, &edges, parent, &multiplicity);
+    if (health->same_way_edges > 0 && !mesh->as_wound) {
+        const int64_t same_way = health->same_way_edges;
+        SKG_TRY_CLEANUP(skg_mesh_wind(mesh, &edges));
+        groups_free(&edges);
+        SKG_TRY_CLEANUP(group(mesh, edges_of, &edges));
+        walk_edges(mesh, &edges, parent, &multiplicity);
+        health->same_way_edges = same_way; /* as the caller wound them */
+    }
     for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = root_of(parent, t);
     status = skg_mesh_count_layers(mesh, parent, multiplicity);
+cleanup:
+    groups_free(&edges);
     skg_free(&parent);
     return status;
 }
 
 static skg_status count_duplicates(skg_mesh *mesh) {
-    groups triangles;
+    skg_mesh_groups triangles;
     SKG_TRY(group(mesh, triangle_of, &triangles));
     for (int64_t v = 0; v < mesh->vertices; v++)
         for (int64_t i = triangles.start[v] + 1; i < triangles.start[v + 1]; i++)
@@ -281,7 +290,9 @@ void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
 
 skg_status skg_mesh_examine(skg_mesh *mesh) {
     skg_mesh_health *health = &mesh->health;
+    const skg_mesh_health of_file = *health;
     skg_mesh_health_init(health);
+    health->left_out = of_file.left_out, health->trailing_bytes = of_file.trailing_bytes;
     health->vertices = mesh->vertices;
     health->triangles = mesh->triangles;
     SKG_TRY(weld(mesh));
@@ -303,7 +314,7 @@ skg_status skg_mesh_examine(skg_mesh *mesh) {
 }
 
 void skg_mesh_health_init_sized(void *health, int32_t size) {
-    const skg_mesh_health defaults = {.first_open_vertex = -1};
+    const skg_mesh_health defaults = {.first_open_vertex = -1, .first_turned = -1};
     skg_struct_init(health, size, &defaults, sizeof defaults);
 }
 

@@ -1,12 +1,14 @@
-/* Mesh files. STL, OBJ and PLY have readers of our own; every other format is read by Assimp. Assimp would lose too
+/* Mesh files. STL, OBJ, PLY and 3MF have readers of our own; every other format is read by Assimp. Assimp would lose too
  * much of these three: it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's
  * numbering is gone; it keeps only floats; it accepts truncated ascii STL and PLY files as complete ones, and leaks
  * memory when it refuses one. */
 #include "core/context.h"
 #include "core/files.h"
+#include "core/maths.h"
 #include "core/text.h"
 #include "mesh/archive.h"
 #include "mesh/assimp_files.h"
+#include "mesh/file_unit.h"
 #include "mesh/mesh.h"
 #include "mesh/read.h"
 
@@ -42,10 +44,21 @@ static skg_status read_here(FILE *stream, const char *path, int64_t size, reader
     return status;
 }
 
-/* Adds one object of a file, placed by its node. Vertices and faces keep their order. */
+/* The determinant of the linear part. */
+static double determinant(const struct aiMatrix4x4 *m) {
+    const double pose[16] = {(double)m->a1, (double)m->a2, (double)m->a3, 0,
+                             (double)m->b1, (double)m->b2, (double)m->b3, 0,
+                             (double)m->c1, (double)m->c2, (double)m->c3, 0};
+    return skg_pose_determinant(pose);
+}
+
+/* Adds one object of a file, placed by its node. Vertices and faces keep their order; the corners of a face turn where the node
+ * mirrors, as glTF 2.0 says of a
+ * negative determinant. */
 static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4x4 *m,
                              skg_mesh_arrays *arrays) {
-    int64_t base = arrays->vertices;
+    const int64_t base = arrays->vertices;
+    const int mirrored = determinant(m) < 0;
     for (unsigned i = 0; i < object->mNumVertices; i++) {
         double x = (double)object->mVertices[i].x, y = (double)object->mVertices[i].y,
                z = (double)object->mVertices[i].z;
@@ -59,47 +72,86 @@ static skg_status add_object(const struct aiMesh *object, const struct aiMatrix4
         skg_polygon polygon = {0};
         arrays->left_out += face->mNumIndices < 3;
         for (unsigned k = 0; face->mNumIndices >= 3 && k < face->mNumIndices; k++) {
-            if (face->mIndices[k] >= object->mNumVertices)
-                return skg_fail(SKG_ERR_MESH, "face %u names vertex %u of an object of %u", i,
-                                face->mIndices[k], object->mNumVertices);
-            SKG_TRY(skg_mesh_add_corner(arrays, &polygon, base + (int64_t)face->mIndices[k]));
+            const unsigned corner = face->mIndices[mirrored ? face->mNumIndices - 1 - k : k];
+            if (corner >= object->mNumVertices)
+                return skg_fail(SKG_ERR_MESH, "face %u names vertex %u of an object of %u", i, corner,
+                                object->mNumVertices);
+            SKG_TRY(skg_mesh_add_corner(arrays, &polygon, base + (int64_t)corner));
         }
     }
     return SKG_OK;
 }
 
-static skg_status add_node(const struct aiScene *scene, const struct aiNode *node, struct aiMatrix4x4 above,
-                           skg_mesh_arrays *arrays) {
-    aiMultiplyMatrix4(&above, &node->mTransformation);
+/* at: the place of the node itself. Its own meshes are a named piece. */
+static skg_status add_node(const struct aiScene *scene, const struct aiNode *node,
+                           const struct aiMatrix4x4 *at, skg_mesh_arrays *arrays) {
+    if (node->mNumMeshes > 0) SKG_TRY(skg_mesh_begin_object(arrays, node->mName.data));
     for (unsigned i = 0; i < node->mNumMeshes; i++)
-        SKG_TRY(add_object(scene->mMeshes[node->mMeshes[i]], &above, arrays));
-    for (unsigned i = 0; i < node->mNumChildren; i++)
-        SKG_TRY(add_node(scene, node->mChildren[i], above, arrays));
+        SKG_TRY(add_object(scene->mMeshes[node->mMeshes[i]], at, arrays));
+    for (unsigned i = 0; i < node->mNumChildren; i++) {
+        struct aiMatrix4x4 below = *at;
+        aiMultiplyMatrix4(&below, &node->mChildren[i]->mTransformation);
+        SKG_TRY(add_node(scene, node->mChildren[i], &below, arrays));
+    }
     return SKG_OK;
 }
 
-/* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. */
+/* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. Of COLLADA it puts unit and axes into the
+ * root node, which has no place of its own: there the numbers of the file are kept, and the unit is used once, here. */
 static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays) {
     struct aiFileIO files;
     SKG_TRY(skg_archive_check(path, stream, size));
+    SKG_TRY(skg_mesh_file_unit(path, stream, size, &arrays->file_unit_mm));
     skg_assimp_files(&files);
     const struct aiScene *scene = aiImportFileEx(path, 0, &files);
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
-    struct aiMatrix4x4 identity;
-    aiIdentityMatrix4(&identity);
+    struct aiMatrix4x4 at;
+    aiIdentityMatrix4(&at);
     skg_status status = SKG_OK;
-    if (scene->mRootNode) status = add_node(scene, scene->mRootNode, identity, arrays);
+    if (scene->mRootNode && !skg_mesh_is_collada(path)) at = scene->mRootNode->mTransformation;
+    if (scene->mRootNode) status = add_node(scene, scene->mRootNode, &at, arrays);
+    if (arrays->file_unit_mm == 0) arrays->file_unit_mm = skg_mesh_scene_unit(scene);
     if (status != SKG_OK) skg_fail(status, "%s: %s", path, skg_last_error());
     aiReleaseImport(scene);
     return status;
 }
 
-static reader find_reader(const char *path) {
+static int has_extension(const char *path, const char *extension) {
     const char *dot = strrchr(path, '.');
-    if (dot && skg_same_name(dot, ".stl")) return skg_mesh_read_stl;
-    if (dot && skg_same_name(dot, ".obj")) return skg_mesh_read_obj;
-    if (dot && skg_same_name(dot, ".ply")) return skg_mesh_read_ply;
+    return dot && skg_same_name(dot, extension);
+}
+
+static reader find_reader(const char *path) {
+    if (has_extension(path, ".stl")) return skg_mesh_read_stl;
+    if (has_extension(path, ".obj")) return skg_mesh_read_obj;
+    if (has_extension(path, ".ply")) return skg_mesh_read_ply;
     return NULL;
+}
+
+/* Files that hold no triangles: curved solids, and meshes with volume cells that Python reads. */
+static skg_status refuse_kind(const char *path, FILE *stream) {
+    static const char *const solids[] = {".step",   ".stp", ".iges", ".igs", ".brep",
+                                         ".sldprt", ".ipt", ".x_t",  ".sat", ".prt"};
+    static const char *const cells[] = {".vtk", ".vtu", ".vtp", ".msh", ".inp", ".med", ".exo"};
+    char start[14] = "";
+    const size_t length = fread(start, 1, sizeof start - 1, stream);
+    rewind(stream);
+    int is_solid = length > 12 && memcmp(start, "ISO-10303-21;", 13) == 0 && !has_extension(path, ".ifc");
+    for (size_t k = 0; k < sizeof solids / sizeof *solids; k++) is_solid |= has_extension(path, solids[k]);
+    if (is_solid)
+        return skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: holds curved solids, not triangles; mesh it first, for instance with FreeCAD (Mesh > Create mesh from "
+            "shape, then export STL) or gmsh (gmsh -2 FILE -o part.stl)",
+            path);
+    for (size_t k = 0; k < sizeof cells / sizeof *cells; k++)
+        if (has_extension(path, cells[k]))
+            return skg_fail(
+                SKG_ERR_FORMAT,
+                "%s: the command does not read %s; in Python, sk.Mesh.from_meshio(\"FILE\") does, volume cells by "
+                "their skin; or `meshio convert FILE part.ply`",
+                path, cells[k]);
+    return SKG_OK;
 }
 
 static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
@@ -107,8 +159,11 @@ static skg_status read_file(const char *path, skg_mesh_arrays *arrays) {
     int64_t size = 0;
     SKG_TRY(open_file(path, &stream, &size));
     const reader read = find_reader(path);
-    skg_status status =
-        read ? read_here(stream, path, size, read, arrays) : read_by_assimp(stream, path, size, arrays);
+    skg_status status = read ? SKG_OK : refuse_kind(path, stream);
+    if (status == SKG_OK)
+        status = read                          ? read_here(stream, path, size, read, arrays)
+                 : has_extension(path, ".3mf") ? skg_mesh_read_3mf(stream, path, size, arrays)
+                                               : read_by_assimp(stream, path, size, arrays);
     fclose(stream);
     return status;
 }
@@ -122,43 +177,89 @@ int skg_mesh_is_shareable(const char *path) {
     return find_reader(path) != NULL;
 }
 
-skg_status skg_mesh_load_silently(const char *path, double unit_mm, skg_loaded *loaded) {
-    skg_mesh_arrays arrays = {0};
+skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded) {
+    skg_mesh_arrays arrays = {.as_wound = reading->as_wound};
     *loaded = (skg_loaded){0};
-    const skg_status status = read_file(path, &arrays);
+    skg_status status = read_file(path, &arrays);
+    if (status == SKG_OK && reading->group) status = skg_mesh_keep_group(&arrays, path, reading->group);
     if (status != SKG_OK) {
         skg_mesh_arrays_free(&arrays);
         return status;
     }
+    arrays.unit_from = reading->unit_mm > 0      ? SKG_UNIT_NAMED
+                       : arrays.file_unit_mm > 0 ? SKG_UNIT_FILE
+                                                 : SKG_UNIT_ASSUMED;
+    arrays.unit_mm = reading->unit_mm > 0      ? reading->unit_mm
+                     : arrays.file_unit_mm > 0 ? arrays.file_unit_mm
+                                               : 1;
     loaded->left_out = arrays.left_out;
-    for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= unit_mm;
+    loaded->trailing = arrays.trailing;
+    loaded->not_printed = arrays.not_printed;
+    for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= arrays.unit_mm;
     return skg_mesh_adopt(NULL, name_of(path), &arrays, &loaded->mesh);
+}
+
+/* A unit that the caller names wins. */
+static void note_unit(const skg_context *context, const skg_mesh *mesh) {
+    char used[32], named[32];
+    if (mesh->unit_from != SKG_UNIT_NAMED || mesh->file_unit_mm <= 0 || mesh->file_unit_mm == mesh->unit_mm)
+        return;
+    skg_unit_describe(mesh->unit_mm, used, sizeof used);
+    skg_unit_describe(mesh->file_unit_mm, named, sizeof named);
+    skg_log(context, SKG_LOG_NOTE, "%s: read in %s, as was asked; the file itself is in %s", mesh->name, used,
+            named);
 }
 
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded) {
     if (loaded->left_out > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " points or lines left out", name_of(path),
                 loaded->left_out);
-    if (loaded->mesh) skg_mesh_warn_turned(context, loaded->mesh);
+    if (loaded->trailing > 0)
+        skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " bytes behind the last triangle are not read",
+                name_of(path), loaded->trailing);
+    if (loaded->not_printed > 0)
+        skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " objects of the type support or other left out",
+                name_of(path), loaded->not_printed);
+    if (!loaded->mesh) return;
+    skg_mesh_warn_turned(context, loaded->mesh);
+    note_unit(context, loaded->mesh);
 }
 
-static skg_status load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+void skg_mesh_reading_init_sized(void *reading, int32_t size) {
+    const skg_mesh_reading defaults = {0};
+    skg_struct_init(reading, size, &defaults, sizeof defaults);
+}
+
+static skg_status load(skg_context *context, const char *call, const char *path,
+                       const skg_mesh_reading *reading, skg_mesh **mesh) {
     SKG_PLAIN;
     skg_loaded loaded;
-    SKG_NEEDS_OF("skg_mesh_load", mesh);
+    skg_mesh_reading wanted;
+    SKG_NEEDS_OF(call, mesh);
     *mesh = NULL;
-    SKG_NEEDS_OF("skg_mesh_load", path);
-    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "skg_mesh_load: no path");
-    if (!isfinite(unit_mm) || unit_mm <= 0)
+    SKG_NEEDS_OF(call, path);
+    skg_mesh_reading_init(&wanted);
+    SKG_TRY(skg_struct_read(reading, "skg_mesh_reading", &wanted, sizeof wanted));
+    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "%s: no path", call);
+    if (!isfinite(wanted.unit_mm) || wanted.unit_mm < 0)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
-                        path, unit_mm);
-    const skg_status status = skg_mesh_load_silently(path, unit_mm, &loaded);
+                        path, wanted.unit_mm);
+    if (wanted.as_wound < 0 || wanted.as_wound > 1)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: as_wound is %" PRId32 "; give 0 or 1", path, wanted.as_wound);
+    const skg_status status = skg_mesh_load_silently(path, &wanted, &loaded);
     skg_mesh_load_warn(context, path, &loaded);
     *mesh = loaded.mesh;
     return status;
 }
 
-skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+skg_status skg_mesh_load_as(skg_context *context, const char *path, const skg_mesh_reading *reading,
+                            skg_mesh **mesh) {
     const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, load(context, path, unit_mm, mesh));
+    return skg_call_end(handler, load(context, "skg_mesh_load_as", path, reading, mesh));
+}
+
+skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
+    const skg_mesh_reading reading = {.size = sizeof reading, .unit_mm = unit_mm};
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, load(context, "skg_mesh_load", path, &reading, mesh));
 }

@@ -17,12 +17,17 @@ struct skg_mesh {
     int32_t *weld;       /* per vertex the first one at the same place; NULL: each is its own */
     int32_t orientation; /* 1; -1: the triangles face inward, and the plan changes the sign of their hits */
     int32_t closed;      /* as health.closed */
+    int32_t as_wound;    /* 1: inconsistent winding stays */
     int positions_stale; /* 1: the offsets were changed in place, and a position is origin + offset */
     int64_t version;     /* of the positions, from 1 */
     float lowest[3];     /* bounds of the finite offsets, mm from origin */
     float highest[3];
-    int64_t first_bad;      /* first vertex that is not finite; -1: none */
-    int32_t layers;         /* how many times over a ray may be inside at once, in version 1 */
+    int64_t first_bad;            /* first vertex that is not finite; -1: none */
+    int32_t layers;               /* how many times over a ray may be inside at once, in version 1 */
+    double unit_mm, file_unit_mm; /* as skg_mesh_unit.mm and .file_mm */
+    int32_t unit_from;            /* enum skg_unit_from */
+    skg_mesh_piece *pieces;       /* named ones of the file, in the order of their triangles */
+    int64_t piece_count;
     skg_mesh_health health; /* volume, area, bounds and degenerate_triangles of version 1 */
 };
 
@@ -30,19 +35,21 @@ struct skg_mesh {
  * skg_mesh_create promises except the strides and the unit. */
 skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_arrays *arrays, skg_mesh **mesh);
 
-/* Warns if the mesh was turned outward as a whole. */
+/* Warns if triangles were turned, or the mesh outward as a whole. */
 void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh);
 
 /* A mesh from a file, and what is to be warned of. */
 typedef struct {
-    skg_mesh *mesh;   /* NULL: it could not be loaded */
-    int64_t left_out; /* points and lines of the file */
+    skg_mesh *mesh;      /* NULL: it could not be loaded */
+    int64_t left_out;    /* points and lines of the file */
+    int64_t trailing;    /* bytes behind the last triangle of a binary file */
+    int64_t not_printed; /* objects that support others */
 } skg_loaded;
 
 /* What skg_mesh_load does, in two steps: threads may share the first one for files that are shareable (STL, PLY and OBJ:
  * Assimp's errors belong to no thread), and the second one logs. The calling thread has the C locale (text.h). */
 int skg_mesh_is_shareable(const char *path);
-skg_status skg_mesh_load_silently(const char *path, double unit_mm, skg_loaded *loaded);
+skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded);
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded);
 
 /* Fills health and orientation of a new mesh, and its weld map. */

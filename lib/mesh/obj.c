@@ -1,5 +1,6 @@
-/* Wavefront OBJ. Vertex i is the i-th line "v"; triangles are in the order of the lines "f". Normals, textures,
- * groups and materials do not change path lengths and are skipped. */
+/* Wavefront OBJ. Vertex i is the i-th line "v"; triangles are in the order of the lines "f". Normals, textures
+ * and materials do not change path lengths and are skipped. Objects and groups become named pieces. */
+#include "core/files.h"
 #include "mesh/read.h"
 
 #include <errno.h>
@@ -82,12 +83,29 @@ static skg_status read_face(cursor *here, skg_mesh_arrays *arrays) {
     return polygon.corners < 3 ? fail(here, "a face of fewer than three corners; truncated?") : SKG_OK;
 }
 
+/* Reads "o NAME" or "g NAME NAME ..." from behind the letter: all of the line is one name. */
+static skg_status read_name(cursor *here, int is_group, skg_mesh_arrays *arrays) {
+    char *name = NULL;
+    size_t length = 0;
+    if (next_word(here)) length = strcspn(here->at, "\r\n");
+    while (length > 0 && strchr(" \t", here->at[length - 1])) length--;
+    SKG_TRY(skg_alloc((int64_t)length + 1, 1, here->file->name, &name));
+    memcpy(name, here->at, length);
+    const skg_status status = is_group ? skg_mesh_begin_group(arrays, length ? name : "default")
+                                       : skg_mesh_begin_object(arrays, length ? name : "default");
+    skg_free(&name);
+    return status;
+}
+
 static int is_keyword(const cursor *here, char word) {
     return here->at[0] == word && is_end(here->at[1]);
 }
 
 skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
     cursor here = {file, file->bytes, 1};
+    size_t mark = 0;
+    SKG_TRY(skg_text_mark(file->name, file->bytes, (size_t)file->size, &mark));
+    here.at += mark;
     if (strlen(file->bytes) != (size_t)file->size)
         return skg_fail(SKG_ERR_FORMAT, "%s: not an OBJ file: it holds a zero byte", file->name);
     while (*here.at != '\0') {
@@ -98,6 +116,9 @@ skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays)
             } else if (is_keyword(&here, 'f')) {
                 here.at++;
                 SKG_TRY(read_face(&here, arrays));
+            } else if (is_keyword(&here, 'o') || is_keyword(&here, 'g')) {
+                const int is_group = *here.at++ == 'g';
+                SKG_TRY(read_name(&here, is_group, arrays));
             } else if (is_keyword(&here, 'l') || is_keyword(&here, 'p'))
                 arrays->left_out++;
         }

@@ -1,4 +1,5 @@
 /* PLY, ascii or binary in either byte order, with any scalar types. Other elements and properties are skipped. */
+#include "core/files.h"
 #include "mesh/read.h"
 
 #include <inttypes.h>
@@ -19,7 +20,7 @@ static const struct {
                   {"int", INT32},     {"int32", INT32},     {"uint", UINT32},    {"uint32", UINT32},
                   {"float", FLOAT32}, {"float32", FLOAT32}, {"double", FLOAT64}, {"float64", FLOAT64}};
 
-typedef enum { NO_ROLE, X, Y, Z, CORNERS } role;
+typedef enum { NO_ROLE, X, Y, Z, CORNERS, STRIPS } role;
 
 typedef struct {
     scalar type;
@@ -82,6 +83,8 @@ static skg_status read_property(ply *in, const char *line) {
         if (strcmp(owner->name, "face") == 0 &&
             (strcmp(name, "vertex_indices") == 0 || strcmp(name, "vertex_index") == 0))
             found.meaning = CORNERS;
+        if (strcmp(owner->name, "tristrips") == 0 && strcmp(name, "vertex_indices") == 0)
+            found.meaning = STRIPS;
     } else if (sscanf(line, "property %63s %63s", word[0], word[1]) == 2) {
         found.type = type_of(word[0]);
         name = word[1];
@@ -186,20 +189,45 @@ static skg_status cut_off(const ply *in, const element *what, int64_t number) {
                     in->file->name, what->name, number, what->count);
 }
 
+/* A strip of triangles, of which each shares two corners with the one before and runs the other way around; -1 begins another. */
+typedef struct {
+    int64_t corners; /* so far */
+    int64_t last[2];
+} strip;
+
+static skg_status add_to_strip(skg_mesh_arrays *arrays, strip *s, int64_t vertex) {
+    if (vertex < 0) {
+        s->corners = 0;
+        return SKG_OK;
+    }
+    const int64_t a = s->last[0], b = s->last[1];
+    const int odd = (int)(s->corners % 2);
+    s->last[0] = b, s->last[1] = vertex;
+    if (s->corners++ < 2 || a == b || b == vertex || a == vertex)
+        return SKG_OK; /* flat ones only join strips */
+    skg_polygon triangle = {0};
+    SKG_TRY(skg_mesh_add_corner(arrays, &triangle, odd ? b : a));
+    SKG_TRY(skg_mesh_add_corner(arrays, &triangle, odd ? a : b));
+    return skg_mesh_add_corner(arrays, &triangle, vertex);
+}
+
 static skg_status read_list(ply *in, const property *list, const element *owner, int64_t number,
                             skg_mesh_arrays *arrays) {
     double length, value;
     skg_polygon polygon = {0};
+    strip triangles = {0};
+    const int is_strip = list->meaning == STRIPS;
     if (!read_value(in, list->count_type, &length) || !(length >= 0 && length <= INT32_MAX))
         return cut_off(in, owner, number);
     for (int64_t i = 0; i < (int64_t)length; i++) {
         if (!read_value(in, list->type, &value)) return cut_off(in, owner, number);
-        if (list->meaning != CORNERS) continue;
+        if (list->meaning != CORNERS && !is_strip) continue;
         if (!(fabs(value) <= UINT32_MAX)) return cut_off(in, owner, number);
-        if (value < 0 || value >= SKG_MESH_LIMIT)
+        if ((value < 0 && !(is_strip && value == -1)) || value >= SKG_MESH_LIMIT)
             return skg_fail(SKG_ERR_MESH, "%s: face %" PRId64 " names vertex %.0f", in->file->name, number,
                             value);
-        SKG_TRY(skg_mesh_add_corner(arrays, &polygon, (int64_t)value));
+        SKG_TRY(is_strip ? add_to_strip(arrays, &triangles, (int64_t)value)
+                         : skg_mesh_add_corner(arrays, &polygon, (int64_t)value));
     }
     if (list->meaning == CORNERS && polygon.corners < 3) arrays->left_out++;
     return SKG_OK;
@@ -225,17 +253,21 @@ static skg_status read_instances(ply *in, const element *what, skg_mesh_arrays *
 
 /* A mesh needs x, y and z of its vertices, and the corners of its faces. */
 static skg_status check_roles(const ply *in) {
-    int seen[CORNERS + 1] = {0};
+    int seen[STRIPS + 1] = {0};
     for (int p = 0; p < in->property_count; p++) seen[in->properties[p].meaning]++;
-    if (seen[X] == 1 && seen[Y] == 1 && seen[Z] == 1 && seen[CORNERS] == 1) return SKG_OK;
+    if (seen[X] == 1 && seen[Y] == 1 && seen[Z] == 1 && seen[CORNERS] + seen[STRIPS] > 0 && seen[CORNERS] < 2)
+        return SKG_OK;
     return skg_fail(
         SKG_ERR_FORMAT,
-        "%s: not a triangle mesh: needs vertices with x, y, z and faces with a list vertex_indices",
+        "%s: not a triangle mesh: needs vertices with x, y, z and faces or tristrips with a list vertex_indices",
         in->file->name);
 }
 
 skg_status skg_mesh_read_ply(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
     ply in = {.file = file, .at = file->bytes, .end = file->bytes + file->size};
+    size_t mark = 0;
+    SKG_TRY(skg_text_mark(file->name, file->bytes, (size_t)file->size, &mark));
+    in.at += mark;
     SKG_TRY(read_header(&in));
     SKG_TRY(check_roles(&in));
     for (int e = 0; e < in.element_count; e++) SKG_TRY(read_instances(&in, &in.elements[e], arrays));

@@ -4,6 +4,8 @@
 
 #include "mesh/arrays.h"
 
+#include <stdio.h>
+
 /* A file in memory. A zero byte follows the last one. */
 typedef struct {
     const char *name; /* for messages */
@@ -16,5 +18,8 @@ typedef struct {
 skg_status skg_mesh_read_stl(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 skg_status skg_mesh_read_ply(const skg_mesh_file *file, skg_mesh_arrays *arrays);
+
+/* The same for a 3MF file, which is an archive. */
+skg_status skg_mesh_read_3mf(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays);
 
 #endif

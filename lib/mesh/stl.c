@@ -1,11 +1,14 @@
 /* STL, binary and ascii. Corner i of the file is vertex i. */
 #include "mesh/read.h"
 
+#include "core/files.h"
 #include "core/text.h"
 
 #include <inttypes.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
+#include <strings.h>
 
 /* Bytes: a header of 80 of text and a count; a record of a normal, three corners and an attribute. */
 enum { HEADER = 84, RECORD = 50 };
@@ -54,9 +57,17 @@ static void skip_space(cursor *here) {
     for (; *here->at && strchr(" \t\r\n\v\f", *here->at); here->at++) here->line += *here->at == '\n';
 }
 
-/* Returns 0 at the end of the file. */
+/* Returns 0 at the end of the file. "end solid" is one word. */
 static int next_word(cursor *here) {
     skip_space(here);
+    const size_t blanks = strncasecmp(here->at, "end", 3) == 0 ? strspn(here->at + 3, " \t") : 0;
+    if (blanks > 0) {
+        const char *rest = here->at + 3 + blanks;
+        const size_t length = strcspn(rest, " \t\r\n\v\f");
+        snprintf(here->word, sizeof here->word, "end%.*s", (int)(length < 12 ? length : 12), rest);
+        here->at = rest + length;
+        return 1;
+    }
     size_t length = strcspn(here->at, " \t\r\n\v\f");
     size_t kept = length < sizeof here->word ? length : sizeof here->word - 1;
     memcpy(here->word, here->at, kept);
@@ -95,8 +106,8 @@ static skg_status read_facet(cursor *here, skg_mesh_arrays *arrays) {
     return fail(here, "truncated: a facet ends with \"endfacet\"");
 }
 
-static skg_status read_text(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
-    cursor here = {.file = file, .at = file->bytes, .line = 1};
+static skg_status read_text(const skg_mesh_file *file, size_t start, skg_mesh_arrays *arrays) {
+    cursor here = {.file = file, .at = file->bytes + start, .line = 1};
     int in_solid = 0;
     while (next_word(&here)) {
         if (skg_same_name(here.word, "facet") && in_solid)
@@ -110,18 +121,38 @@ static skg_status read_text(const skg_mesh_file *file, skg_mesh_arrays *arrays) 
     return in_solid ? fail(&here, "truncated: a solid ends with \"endsolid\"") : SKG_OK;
 }
 
+/* Whether a file is text that begins with "solid", in any case, behind a mark and blanks. Some programs begin binary files with it,
+ * too, but those hold zero bytes. *start: where the text begins behind the mark. */
+static skg_status is_text(const skg_mesh_file *file, int *result, size_t *start) {
+    char word[6] = "";
+    *result = 0;
+    if (strlen(file->bytes) != (size_t)file->size) return SKG_OK;
+    SKG_TRY(skg_text_mark(file->name, file->bytes, (size_t)file->size, start));
+    const char *at = file->bytes + *start;
+    memcpy(word, at + strspn(at, " \t\r\n\v\f"), strnlen(at + strspn(at, " \t\r\n\v\f"), 5));
+    *result = skg_same_name(word, "solid");
+    return SKG_OK;
+}
+
 skg_status skg_mesh_read_stl(const skg_mesh_file *file, skg_mesh_arrays *arrays) {
-    int64_t said = file->size < HEADER ? -1 : (int64_t)number_at(file->bytes + 80);
-    if (said >= 0 && file->size == HEADER + RECORD * said) return read_binary(file, said, arrays);
-    /* An ascii STL begins with "solid". Some programs begin binary files with it too, but those hold zero bytes. */
-    if (strlen(file->bytes) == (size_t)file->size && strncmp(file->bytes, "solid", 5) == 0)
-        return read_text(file, arrays);
+    const int64_t said = file->size < HEADER ? -1 : (int64_t)number_at(file->bytes + 80);
+    const int64_t wanted = HEADER + RECORD * said;
+    int is_ascii = 0;
+    size_t start = 0;
+    if (said >= 0 && file->size == wanted) return read_binary(file, said, arrays);
+    SKG_TRY(is_text(file, &is_ascii, &start));
+    if (is_ascii) return read_text(file, start, arrays);
+    /* Further whole records would be triangles that the header does not count. */
+    if (said > 0 && file->size > wanted && (file->size - wanted) % RECORD != 0) {
+        arrays->trailing = file->size - wanted;
+        return read_binary(file, said, arrays);
+    }
     if (said < 0)
         return skg_fail(SKG_ERR_FORMAT, "%s: truncated: %" PRId64 " bytes are no STL (%d at least)",
                         file->name, file->size, HEADER);
     return skg_fail(SKG_ERR_FORMAT,
                     "%s: %s: its header counts %" PRId64 " triangles, its %" PRId64
                     " bytes are enough for %" PRId64,
-                    file->name, file->size < HEADER + RECORD * said ? "truncated" : "not a binary STL", said,
-                    file->size, (file->size - HEADER) / RECORD);
+                    file->name, file->size < wanted ? "truncated" : "not a binary STL", said, file->size,
+                    (file->size - HEADER) / RECORD);
 }

@@ -47,25 +47,19 @@ static int box_holds(const skg_mesh *mesh, const double *pose, const double *sou
     return low[0] < 0 && low[1] < 0 && low[2] < 0 && high[0] > 0 && high[1] > 0 && high[2] > 0;
 }
 
-/* How many times the surface of the mesh winds about the source: the solid angles of its triangles (A. Van Oosterom and
- * J. Strackee, 1983) over 4 pi. */
+/* How many times the surface of the mesh winds about the source: the solid angles of its triangles over 4 pi. */
 static double winding(const skg_mesh *mesh, const double *pose, const double *source) {
     double sum = 0;
     for (int64_t t = 0; t < mesh->triangles; t++) {
-        double corner[3][3], across[3], length[3];
+        double corner[3][3];
         for (int c = 0; c < 3; c++) {
             double at[3];
             skg_mesh_vertex(mesh, mesh->corners[3 * t + c], at);
             place(pose, source, at, corner[c]);
-            length[c] = skg_length(corner[c]);
         }
-        skg_cross(corner[1], corner[2], across);
-        sum +=
-            atan2(skg_dot(corner[0], across),
-                  length[0] * length[1] * length[2] + skg_dot(corner[0], corner[1]) * length[2] +
-                      skg_dot(corner[0], corner[2]) * length[1] + skg_dot(corner[1], corner[2]) * length[0]);
+        sum += skg_solid_angle(corner[0], corner[1], corner[2]);
     }
-    return sum / (2 * SKG_PI);
+    return sum / (4 * SKG_PI);
 }
 
 static int holds_source(const skg_recipe *recipe, int64_t part) {
@@ -97,7 +91,60 @@ static void warn_of_source(const skg_recipe *recipe, const skg_context *context)
         scene->parts[found].label);
 }
 
+/* The larger side of the detector, seen from the source at the depth of a part, mm; 0: the part is not between the two. */
+static double field_at(const skg_view *view, const double *centre) {
+    const double columns = (double)view->columns * skg_length(view->column_step),
+                 rows = (double)view->rows * skg_length(view->row_step), side = fmax(columns, rows);
+    double normal[3], to_detector[3], to_part[3];
+    if (view->projection != SKG_PROJECTION_POINT) return side;
+    skg_cross(view->column_step, view->row_step, normal);
+    skg_add_scaled(view->centre, -1, view->source, to_detector);
+    skg_add_scaled(centre, -1, view->source, to_part);
+    const double whole = skg_dot(normal, to_detector), part = skg_dot(normal, to_part);
+    return whole != 0 && part / whole > 0 ? side * part / whole : 0;
+}
+
+/* Warns of the part whose size fits the field of view least: a unit may be wrong, and the picture of a wrong size looks alike. */
+static void warn_of_sizes(const skg_recipe *recipe, const skg_context *context) {
+    static const double MOST = 500;
+    const skg_scene *scene = recipe->scene;
+    double worst = MOST, worst_side = 0, worst_field = 0;
+    int64_t found = -1, count = 0;
+    for (int64_t p = 0; p < scene->count; p++) {
+        const skg_scene_part_data *part = &scene->parts[p];
+        double side = 0, middle[3];
+        float lowest[3], highest[3];
+        int64_t bad = 0;
+        skg_mesh_bounds(part->mesh, lowest, highest, &bad);
+        for (int k = 0; k < 3; k++) {
+            side = fmax(side, (double)highest[k] - (double)lowest[k]);
+            middle[k] = part->mesh->origin[k] + 0.5 * ((double)lowest[k] + (double)highest[k]);
+        }
+        skg_pose_point(part->pose, middle, middle);
+        side *= cbrt(fabs(skg_pose_determinant(part->pose)));
+        const double field = field_at(&recipe->view, middle);
+        const double factor = side > 0 && field > 0 ? fmax(side / field, field / side) : 1;
+        count += factor > MOST;
+        if (factor <= worst) continue;
+        worst = factor, worst_side = side, worst_field = field, found = p;
+    }
+    if (found < 0) return;
+    skg_mesh_unit unit;
+    skg_mesh_unit_init(&unit);
+    if (skg_mesh_unit_get(scene->parts[found].mesh, &unit) != SKG_OK) return;
+    skg_log(
+        context, SKG_LOG_WARNING,
+        "%s: its box is %.3g mm long, %s of the field of view at its place (%.3g mm); its unit is %s%s: is it the right one?%s",
+        scene->parts[found].label, worst_side, worst_side < worst_field ? "under 1/500" : "over 500 times",
+        worst_field, unit.name,
+        unit.from == SKG_UNIT_FILE    ? ", from the file"
+        : unit.from == SKG_UNIT_NAMED ? ", as named"
+                                      : ", since nobody named one",
+        count > 1 ? " Other parts are as far from it" : "");
+}
+
 void skg_plan_warn_doubts(const skg_recipe *recipe, const skg_context *context) {
     warn_of_bands(recipe, context);
     warn_of_source(recipe, context);
+    warn_of_sizes(recipe, context);
 }

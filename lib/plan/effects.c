@@ -44,7 +44,9 @@ static skg_status find_places(skg_effect_facts *facts) {
         facts->near_source += extents[i].near_source && extents[i].on_detector;
     }
     if (recipe->priority_possible)
-        SKG_TRY_CLEANUP(skg_priority_find(scene, recipe->options.clip, &camera, extents, &priority));
+        SKG_TRY_CLEANUP(skg_priority_find(scene,
+                                          skg_priority_rules(recipe->options.clip, recipe->options.unite),
+                                          &camera, extents, &priority));
     facts->competing = priority.count;
     facts->counts = skg_costs_count(recipe, extents, &priority);
 cleanup:

@@ -87,6 +87,7 @@ static void find_overlaps(const skg_effect_facts *f, skg_effect_state *state) {
 }
 
 static skg_status check_clip(const skg_plan_options *options) {
+    SKG_TRY(skg_check_flag("unite", options->unite));
     return skg_check_flag("clip", options->clip);
 }
 
@@ -100,7 +101,9 @@ static void find_priority(const skg_effect_facts *f, skg_effect_state *state) {
     else if (f->competing == 0)
         skg_effect_set(state, 0, "parts of different priority keep apart in the plan's view");
     else
-        skg_effect_set(state, 1, "hits of %" PRId64 " parts are listed: they may compete%s", f->competing,
+        skg_effect_set(state, 1, "hits of %" PRId64 " %s listed: they %s%s", f->competing,
+                       skg_plural(f->competing, "part is", "parts are"),
+                       f->recipe->options.unite ? "are united, and may compete" : "may compete",
                        f->recipe->options.clip ? ", or leave their parents" : "");
 }
 

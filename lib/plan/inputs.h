@@ -66,6 +66,6 @@ skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene 
 
 /* Warns of meshes whose components contradict their nesting. nestings: [count] of skg_nesting_find. */
 skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_nesting *nestings,
-                                const skg_scene *scene, const skg_context *context);
+                                const skg_scene *scene, int32_t unite, const skg_context *context);
 
 #endif

@@ -65,18 +65,36 @@ skg_status skg_plan_meshes_check(const skg_plan_meshes *meshes, const skg_scene 
     return SKG_OK;
 }
 
+/* Triangles that a mesh lists more than once: they were one surface when it was made. */
+static void warn_of_duplicates(const skg_mesh *mesh, const char *label, int32_t unite,
+                               const skg_context *context) {
+    const int64_t count = mesh->health.duplicate_triangles;
+    if (count == 0 || (unite && mesh->closed)) return;
+    skg_log(
+        context, SKG_LOG_WARNING,
+        "part %s: %" PRId64 " of %" PRId64
+        " triangles are duplicates of others: lengths through them count twice, or cancel where they face each other. "
+        "Remove them where the mesh is made%s",
+        label, count, mesh->triangles,
+        mesh->closed ? ", or \"Repair\": \"union\" in a scene file counts them once" : "");
+}
+
 skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_nesting *nestings,
-                                const skg_scene *scene, const skg_context *context) {
+                                const skg_scene *scene, int32_t unite, const skg_context *context) {
     for (int64_t i = 0; i < meshes->count; i++) {
         char text[1024];
-        SKG_TRY(skg_mesh_nesting_describe(&nestings[i], sizeof text, text));
-        if (!*text) continue;
         int64_t part = 0;
+        skg_mesh_nesting nesting = nestings[i];
         while (meshes->of_part[part] != i) part++;
+        warn_of_duplicates(meshes->meshes[i], scene->parts[part].label, unite, context);
+        if (unite) nesting.overlapping = nesting.leaving = 0; /* they are settled */
+        SKG_TRY(skg_mesh_nesting_describe(&nesting, sizeof text, text));
+        if (!*text) continue;
         skg_log(context, SKG_LOG_WARNING, "part %s: %s%s", scene->parts[part].label, text,
-                nestings[i].inverted > 0
+                nesting.inverted > 0
                     ? ". \"Repair\": \"orientation\" in a scene file turns inverted components"
-                    : "");
+                : nesting.overlapping > 0 ? ". \"Repair\": \"union\" in a scene file counts overlaps once"
+                                          : "");
     }
     return SKG_OK;
 }

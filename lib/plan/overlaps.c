@@ -28,7 +28,7 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
     int64_t count = 0;
     for (int64_t i = 0; i < outcome->overlap_count; i++) {
         const skg_overlap_pair *pair = &outcome->overlaps[i];
-        if (skg_priority_settles(scene, recipe->options.clip, pair)) continue;
+        if (skg_priority_settles(scene, skg_priority_rules(recipe->options.clip, 0), pair)) continue;
         if (!worst)
             worst = pair;
         else if (count < WORST)
@@ -102,7 +102,8 @@ skg_status skg_plan_overlaps_take(const skg_recipe *recipe, const skg_context *c
     outcome->overlap_side = found->side;
     outcome->overlap_count = found->pair_count;
     outcome->overlaps = found->pairs, found->pairs = NULL;
-    SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, found->nestings, recipe->scene, context));
+    SKG_TRY(skg_plan_meshes_warn(&recipe->meshes, found->nestings, recipe->scene, recipe->options.unite,
+                                 context));
     warn(recipe, context, outcome);
     return SKG_OK;
 }

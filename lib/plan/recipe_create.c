@@ -170,7 +170,8 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     SKG_TRY(make_model(recipe));
     SKG_TRY(skg_channel_names_create(options, recipe->model.channels, &recipe->channel_names));
     SKG_TRY(find_leaky(recipe));
-    recipe->priority_possible = skg_priority_possible(recipe->scene, options->clip);
+    recipe->priority_possible =
+        skg_priority_possible(recipe->scene, skg_priority_rules(options->clip, options->unite));
     SKG_TRY(check_half(recipe));
     SKG_TRY(skg_scatter_check(recipe));
     return choose_layout(recipe, device);

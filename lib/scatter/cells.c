@@ -84,7 +84,8 @@ static int counts(const skg_cell_parts *parts, const inside *in, int64_t part) {
 static void sum_up(const filling *f, const inside *in, int64_t *sum) {
     for (int k = 0; k < SKG_SCATTER_RANK; k++) sum[k] = 0;
     for (int64_t i = 0; i < in->count; i++)
-        if (counts(f->parts, in, in->part[i])) add(sum, f->amounts[in->part[i]], in->times[i]);
+        if (counts(f->parts, in, in->part[i]))
+            add(sum, f->amounts[in->part[i]], f->parts->unite ? in->times[i] > 0 : in->times[i]);
 }
 
 static void settle_column(const filling *f, skg_columns *grid, int64_t column, const pile *p) {

@@ -119,6 +119,7 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
         .coefficients = (const double(*)[SKG_SCATTER_RANK])parts.differences,
         .priority = work->recipe->priority_possible ? parts.priority : NULL,
         .clip = work->recipe->options.clip,
+        .unite = work->recipe->options.unite,
     };
     status = skg_cells_make(&to_fill, work->recipe->options.scatter->voxel_mm, &object->cells);
 cleanup:

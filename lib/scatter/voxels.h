@@ -50,6 +50,7 @@ typedef struct {
     const int32_t
         *priority; /* of each, which decides where solids with the same parent overlap; NULL: amounts add */
     int32_t clip;  /* 1, with priority: a solid counts only inside its parent */
+    int32_t unite; /* 1: a solid counts once where its winding number is above 0 */
 } skg_cell_parts;
 
 /* Makes the cells of parts. voxel_mm: about; 0: SKG_CELLS_DEFAULT cells along each side. Without any triangle there are no cells. */

@@ -114,8 +114,8 @@ static skg_status upload_tables(const hits_run *run) {
     int known = 0;
     SKG_TRY(skg_staging_take(run->staging, count, sizeof *slots, "priorities", &slots));
     int32_t *const runs = slots + of_slots, *const table = runs + of_runs;
-    skg_priority_tables(pass->scene, pass->clip, &pass->priority, slots, table);
-    skg_priority_runs(pass->scene, pass->clip, &pass->priority, runs, m->triangles);
+    skg_priority_tables(pass->scene, pass->rules, &pass->priority, slots, table);
+    skg_priority_runs(pass->scene, pass->rules, &pass->priority, runs, m->triangles);
     SKG_TRY(note_tables(m, count, slots, &known));
     if (!known) {
         SKG_TRY(upload(run, &m->runs, of_runs * size, runs));

@@ -39,7 +39,7 @@ typedef struct {
     skg_extent *extents;      /* [parts] borrowed */
     skg_scale scale;
     skg_priority priority; /* closed parts that compete for intervals */
-    int32_t clip;          /* 1: children are clipped to their parents */
+    int32_t rules;         /* SKG_RULE_... */
     int32_t fine;          /* pixels of the camera along each side of a pixel of the image */
     int32_t
         window[4]; /* of the camera: the pixels that jaws leave (skg_field_window), of an image with jaws */

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from ._state import State
 
 #: Options that skg_scan_hash_get knows, and options on which no image depends.
-_KNOWN = frozenset(("precision", "quantity", "tolerance", "falloff", "supersampling", "noise", "repair", "clip", "bands",
+_KNOWN = frozenset(("precision", "quantity", "tolerance", "falloff", "supersampling", "noise", "repair", "clip", "unite", "bands",
                     "band_weight", "noise_seed", "swank", "electronic_kev", "quantum_step_kev"))
 _IDLE = frozenset(("strategy", "tile", "overlaps", "profile"))
 

@@ -51,6 +51,7 @@ def remove(state: State, number: int) -> None:
         call("skg_scene_part_add", made, parts[old], ffi.NULL)
         numbers[old] = new
     _replace(state, made, order, number)
+    state.keep_meshes([parts[old].mesh for old in order])
     state.removed.append(removed)
 
 

@@ -9,8 +9,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays
+from ._device import warn
 from ._interface import ArgumentError
-from ._library import call, choice, encode, ffi, integer, make, release, struct
+from ._library import call, choice, encode, ffi, filled, integer, make, release, struct
 from ._progress import Progress, Watch
 from .matrices import direction
 from .scan import Scan
@@ -21,14 +22,15 @@ _Three = Union[Sequence[float], NDArray[Any]]
 
 def reconstruct(scan: str | os.PathLike[str] | Scan, projections: Any = None, *, size: int | Sequence[int] | None = None,
                 voxel: float | None = None, filter: str = "ramp", axis: str | _Three | None = None,
-                centre: _Three | None = None, progress: Progress = False) -> NDArray[np.float32]:
+                centre: _Three | None = None, truncation: str = "none", progress: Progress = False) -> NDArray[np.float32]:
     """The volume of a circular scan in 1/cm, [z, y, x], by the method of Feldkamp, Davis and Kress.
 
     scan: an .h5 that scene.scan() wrote; or a Scan with its projections as -ln(I/I0), [n, row, column], as
     scene.scan(quantity="attenuation") computes them. size: voxels along each side, or (x, y, z); by default as many as columns.
     voxel: their edge in mm; by default the step of the columns as it is seen at the axis. filter: "ramp" or "hann". axis,
     centre: those of the scan's rotation, by default what the file says, or "z" through the origin. The volume is about centre.
-    progress: True, or a function of (done, of); if it returns False, or raises, the reconstruction is cancelled.
+    truncation: "none", or "extrapolate", which continues rows that the detector cuts off; both are warned of. A displaced
+    detector (half-fan) is weighted by itself. progress: True, or a function of (done, of); if it returns False, or raises, the reconstruction is cancelled.
     """
     reader = None
     try:
@@ -43,6 +45,7 @@ def reconstruct(scan: str | os.PathLike[str] | Scan, projections: Any = None, *,
             views, found = scan, (np.array([0.0, 0, 1]), np.zeros(3))
         options = _options(views[0], size, voxel, filter, found[0] if axis is None else direction(axis),
                            found[1] if centre is None else _arrays.vector(centre, "centre"))
+        options.truncation = choice("fdk_truncation", truncation, "truncation")
         images = _checked(views, projections) if reader is None else None
         with Watch(progress, "projections") as options.progress:
             return _compute(views, reader, images, options)
@@ -93,6 +96,11 @@ def _compute(scan: Scan, reader: Any, images: NDArray[np.float32] | None, option
             if reader is not None:
                 call("skg_scan_reader_attenuation_get", reader, k, pointer)
             call("skg_fdk_add", fdk, k, pointer)
+        seen = filled("skg_fdk_report", "skg_fdk_report_get", fdk)
+        if seen["truncated"]:
+            warn(f"projections are truncated: in {100 * seen['truncated']:.3g} % of the rows the shadow goes beyond the detector, and "
+                 f"values are not to be trusted near {seen['covered_mm']:.4g} mm from the axis, nor elsewhere without "
+                 "truncation=\"extrapolate\"")
         volume = ffi.new("float **")
         call("skg_fdk_volume_get", fdk, volume)
         shape = tuple(int(options.voxels[k]) for k in (2, 1, 0))

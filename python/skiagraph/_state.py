@@ -116,6 +116,11 @@ class State:
             self.meshes[key] = Mesh._of(retained("skg_mesh", handle))
         return self.meshes[key]
 
+    def keep_meshes(self, handles: list[Any]) -> None:
+        """Lets go of all meshes but these."""
+        kept = {_address(handle) for handle in handles}
+        self.meshes = {key: mesh for key, mesh in self.meshes.items() if key in kept}
+
     def material(self, number: int, handle: Any) -> Material:
         return self.materials.get(number) or Material._borrowed(handle)
 

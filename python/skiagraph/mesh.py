@@ -8,14 +8,17 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays
+from ._device import warn
 from ._interface import ArgumentError
 from ._library import call, doubles, encode, ffi, fill, filled, integer, make, owned, string, struct
+from ._meshes import parts_of
 
 
 class Mesh:
     """Vertices and triangles, whose numbering stays as it was given.
 
-    vertices: [n, 3], float32 or float64, in units of unit_mm. faces: [m, 3], whole numbers from 0.
+    vertices: [n, 3], float32 or float64, in units of unit_mm. faces: [m, 3], whole numbers from 0. Triangles that are wound
+    otherwise than their neighbours are turned, with a warning; as_wound=True leaves them.
 
     >>> mesh = Mesh([(0, 0, 0), (1, 0, 0), (0, 1, 0), (0, 0, 1)], [(0, 2, 1), (0, 1, 3), (0, 3, 2), (1, 2, 3)])
     >>> mesh.health["closed"], round(mesh.health["volume"], 6)
@@ -25,7 +28,7 @@ class Mesh:
     """
 
     def __init__(self, vertices: Any, faces: Any, *, unit_mm: float = 1, name: str = "mesh",
-                 _context: Any = ffi.NULL) -> None:
+                 as_wound: bool = False, _context: Any = ffi.NULL) -> None:
         positions = _arrays.rows(vertices, "vertices", (np.float64, np.float32))
         corners = _arrays.rows(faces, "faces", (np.int32,))
         source = struct("skg_mesh_source")
@@ -37,8 +40,19 @@ class Mesh:
         source.triangles, address, source.triangle_stride = _strided(corners)
         source.corners = ffi.cast("int32_t *", address)
         source.unit_mm = float(unit_mm)
+        source.as_wound = bool(as_wound)
         self._handle = owned("skg_mesh", make("skg_mesh_create", "skg_mesh", _context, encode(name, "name"), source))
         self._changed = False
+        if _context == ffi.NULL:
+            self._say_turned()
+
+    def _say_turned(self) -> None:
+        """Warns of what a mesh that is made without a device cannot log."""
+        health = self.health
+        if health["turned"]:
+            near = ", ".join(f"{x:.4g}" for x in health["first_turned_position"])
+            warn(f"{self.name}: wound inconsistently; {health['turned']} of {health['triangles']} triangles were turned, first "
+                 f"number {health['first_turned']} near ({near}) mm")
 
     @classmethod
     def _of(cls, handle: Any) -> Mesh:
@@ -52,9 +66,43 @@ class Mesh:
         return cls._of(owned("skg_mesh", make(name, "skg_mesh", *arguments)))
 
     @classmethod
-    def load(cls, path: str | os.PathLike[str], *, unit_mm: float = 1, _context: Any = ffi.NULL) -> Mesh:
-        """Reads STL, PLY, OBJ and the other formats that the library reads; its numbers are in units of unit_mm."""
-        return cls._made("skg_mesh_load", _context, encode(path, "path"), float(unit_mm))
+    def load(cls, path: str | os.PathLike[str], *, unit_mm: float | None = None, group: str | None = None,
+             as_wound: bool = False, _context: Any = ffi.NULL) -> Mesh:
+        """Reads STL, PLY, OBJ, 3MF and the other formats that the library reads.
+
+        unit_mm: mm per unit of its numbers; None: the unit that the file or its format names, otherwise mm. group: only the
+        group or object of this name.
+        """
+        if unit_mm is not None and not unit_mm > 0:
+            raise ArgumentError(f"unit_mm is {unit_mm}; give a number above 0, or None for the file's own unit")
+        reading = struct("skg_mesh_reading")
+        reading.unit_mm, reading.as_wound = float(unit_mm or 0), bool(as_wound)
+        named = ffi.NULL if group is None else ffi.new("char[]", encode(group, "group"))
+        reading.group = named
+        made = cls._made("skg_mesh_load_as", _context, encode(path, "path"), reading)
+        if _context == ffi.NULL:
+            made._say_turned()
+        return made
+
+    @classmethod
+    def from_object(cls, value: Any, *, unit_mm: float = 1, name: str = "mesh") -> Mesh:
+        """A mesh of an object of trimesh (also a Scene), Open3D, PyVista or meshio, in units of unit_mm.
+
+        Quads are halved; of volume cells the skin is taken.
+        """
+        vertices, faces = parts_of(value)
+        return cls(vertices, faces, unit_mm=unit_mm, name=name)
+
+    @classmethod
+    def from_meshio(cls, mesh: Any, *, unit_mm: float = 1, name: str | None = None) -> Mesh:
+        """A mesh of a file that meshio reads (.vtk, .vtu, .msh, .inp, ...), or of its meshio.Mesh, as from_object()."""
+        if isinstance(mesh, (str, os.PathLike)):
+            try:
+                import meshio
+            except ImportError as failure:
+                raise ArgumentError(f"{os.fspath(mesh)}: reading it needs the package meshio (pip install meshio)") from failure
+            name, mesh = name or os.path.basename(mesh), meshio.read(mesh)
+        return cls.from_object(mesh, unit_mm=unit_mm, name=name or "mesh")
 
     @classmethod
     def cube(cls, edge: float) -> Mesh:
@@ -251,6 +299,22 @@ class Mesh:
         return filled("skg_mesh_health", "skg_mesh_health_get", self._handle)
 
     @property
+    def unit(self) -> dict[str, Any]:
+        """The unit of the numbers that the mesh was made of: its name, "mm" per unit, and "from": 0 assumed, 1 the file, 2 named."""
+        return filled("skg_mesh_unit", "skg_mesh_unit_get", self._handle)
+
+    @property
+    def groups(self) -> list[str]:
+        """Names of the groups and objects of the file, in its order, each once."""
+        name = ffi.new("const char **")
+        found: dict[str, None] = {}
+        for number in range(integer("skg_mesh_group_count", self._handle)):
+            call("skg_mesh_group_get", self._handle, number, name, ffi.NULL, ffi.NULL)
+            if name[0] != ffi.NULL:
+                found[ffi.string(name[0]).decode(errors="replace")] = None
+        return list(found)
+
+    @property
     def nesting(self) -> dict[str, Any]:
         """How the components of a closed mesh lie in each other, and which of them face the wrong way."""
         return filled("skg_mesh_nesting", "skg_mesh_nesting_get", self._handle)
@@ -269,7 +333,7 @@ class Mesh:
 
 
 def _remake(vertices: Any, faces: Any, name: str) -> Mesh:
-    return Mesh(vertices, faces, name=name)
+    return Mesh(vertices, faces, name=name, as_wound=True)  # they were turned when it was made
 
 
 def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
@@ -280,42 +344,14 @@ def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
     return len(array), address, max(array.strides[0] // array.itemsize, 3)
 
 
-def as_mesh(value: Any, *, unit_mm: float = 1, name: str | None = None, _context: Any = ffi.NULL) -> Mesh:
+def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None, _context: Any = ffi.NULL) -> Mesh:
     """A mesh of whatever has vertices and triangles.
 
-    value: a Mesh; (vertices, faces); the path of a file; an object of trimesh (`vertices`, `faces`), of meshio
-    (`points`, cells of the type "triangle") or of PyVista (`points`, `faces` with their counts).
+    value: a Mesh; (vertices, faces); the path of a file; an object of trimesh (also a Scene), Open3D, meshio or PyVista.
     """
     if isinstance(value, Mesh):
         return value
     if isinstance(value, (str, os.PathLike)):
         return Mesh.load(value, unit_mm=unit_mm, _context=_context)
-    vertices, faces = _parts_of(value)
-    return Mesh(vertices, faces, unit_mm=unit_mm, name=name or "mesh", _context=_context)
-
-
-def _parts_of(value: Any) -> tuple[Any, Any]:
-    if isinstance(value, (tuple, list)) and len(value) == 2:
-        return value[0], value[1]
-    if hasattr(value, "vertices") and hasattr(value, "faces"):
-        return value.vertices, value.faces
-    if hasattr(value, "points") and hasattr(value, "cells_dict"):
-        cells = value.cells_dict
-        others = sorted(set(cells) - {"triangle", "vertex", "line"})
-        if "triangle" not in cells or others:
-            raise ArgumentError(f"the mesh has cells of the types {sorted(cells)}; give triangles")
-        return value.points, cells["triangle"]
-    if hasattr(value, "points") and hasattr(value, "faces"):
-        return value.points, _without_counts(value.faces)
-    raise ArgumentError(f"mesh is a {type(value).__name__}; give (vertices, faces), an object with vertices and faces, "
-                        "or the path of a file")
-
-
-def _without_counts(faces: Any) -> NDArray[Any]:
-    """[3, a, b, c, 3, a, b, c, ...] as rows a, b, c."""
-    array = _arrays.numbers(faces, "faces")
-    if array.ndim == 2:
-        return array
-    if array.ndim != 1 or array.size % 4 or (array[::4] != 3).any():
-        raise ArgumentError("faces are not triangles alone; call triangulate() first")
-    return array.reshape(-1, 4)[:, 1:]
+    vertices, faces = parts_of(value)
+    return Mesh(vertices, faces, unit_mm=1 if unit_mm is None else unit_mm, name=name or "mesh", _context=_context)

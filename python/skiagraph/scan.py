@@ -120,7 +120,7 @@ class Scan(Sequence[View]):
         return made
 
     def save(self, path: str | os.PathLike[str]) -> None:
-        """Writes the geometry: .csv (what load() reads, and ASTRA's cone_vec), .xml (RTK), .tigre.py or .cil.py."""
+        """Writes the geometry: .csv (what load() reads, and ASTRA's cone_vec), .xml (RTK), .tigre.py, .cil.py or transforms.json."""
         call("skg_scan_geometry_save", self._handle, encode(path, "path"))
 
     def __repr__(self) -> str:

@@ -77,11 +77,11 @@ class Scene(_gradient.Differentiable):
         return isinstance(label, str) and any(part.label == label for part in self)
 
     def add(self, label: str, mesh: Any, *, material: Material | str, inside: str | Part | None = None,
-            pose: Any = None, priority: int = 0, unit_mm: float = 1) -> Part:
+            pose: Any = None, priority: int = 0, unit_mm: float | None = None) -> Part:
         """Adds a part.
 
         mesh: a Mesh, (vertices, faces), an object of trimesh, meshio or PyVista, or the path of a file, in units of
-        unit_mm. material: a Material or a name. inside: the part that it displaces. pose: 4 x 4, mm.
+        unit_mm (None: the file's own, otherwise mm). material: a Material or a name. inside: the part that it displaces. pose: 4 x 4, mm.
         """
         parent = inside.label if isinstance(inside, Part) else inside
         state = self._state

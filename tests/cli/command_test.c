@@ -89,7 +89,9 @@ START_TEST(slips_of_the_finger_are_named) {
     ck_run_fails(2, "--device needs a value: --device NAME", "devices --device");
     ck_run_fails(2, "\"extra\" is one word too many", "devices extra");
     ck_run_fails(2, "mesh: FILE... is missing", "mesh");
-    ck_run_fails(2, "--unit inch is not known; known: um, mm, cm, dm, m", "mesh a.obj --unit inch");
+    ck_run_fails(2,
+                 "--unit inches is not known; did you mean inch; known: nm, um, mm, cm, dm, m, in, inch, ft",
+                 "mesh a.obj --unit inches");
 }
 END_TEST
 

@@ -128,12 +128,109 @@ START_TEST(inverted_components_are_turned) {
 }
 END_TEST
 
+/* A COLLADA file in centimetres is a scene graph, without a unit; beside it, a part that somebody made in metres is named; groups
+ * become parts. */
+static const char collada[] =
+    "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\"><asset>"
+    "<created>2026-01-01T00:00:00</created><unit meter=\"0.01\" name=\"cm\"/><up_axis>Y_UP</up_axis></asset>"
+    "<library_geometries><geometry id=\"g\"><mesh><source id=\"p\"><float_array id=\"a\" count=\"24\">"
+    "-1 -1 -1 1 -1 -1 -1 1 -1 1 1 -1 -1 -1 1 1 -1 1 -1 1 1 1 1 1</float_array><technique_common><accessor source=\"#a\" "
+    "count=\"8\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" type=\"float\"/><param name=\"Z\" "
+    "type=\"float\"/></accessor></technique_common></source><vertices id=\"v\"><input semantic=\"POSITION\" "
+    "source=\"#p\"/></vertices><triangles count=\"12\"><input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>0 2 3 0 3 "
+    "1 4 5 7 4 7 6 0 1 5 0 5 4 2 6 7 2 7 3 0 4 6 0 6 2 1 3 7 1 7 5</p></triangles></mesh></geometry></library_geometries>"
+    "<library_visual_scenes><visual_scene id=\"s\"><node id=\"n\"><instance_geometry url=\"#g\"/></node></visual_scene>"
+    "</library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>";
+
+START_TEST(files_bring_their_units_and_groups) {
+    write_text("engine.dae", collada);
+    write_text(
+        "engine.json",
+        "{\"Source\": {\"Shape\": \"PointSource\", \"Position\": [0, -500, 0, \"mm\"], \"Beam\": [{\"Energy\": 60, \"Unit\": "
+        "\"keV\", \"PhotonCount\": 1000}]}, \"Detector\": {\"Position\": [0, 250, 0, \"mm\"], \"UpVector\": [0, 0, -1], "
+        "\"NumberOfPixels\": [61, 61], \"Spacing\": [1, 1, \"mm\"]}, \"SceneGraph\": {\"Path\": \"engine.dae\", "
+        "\"Material\": \"Fe\", \"Label\": \"engine\"}, \"Samples\": [{\"Label\": \"small\", \"Path\": \"box.obj\", \"Group\": "
+        "\"lid\", \"Material\": \"Al\", \"Unit\": \"um\"}]}");
+    char text[1024];
+    snprintf(text, sizeof text, "g lid\n%so base\nv 0 0 0\nv 9 0 0\nv 0 9 0\nf 9 10 11\n", box);
+    write_text("box.obj", text);
+    ck_run(0, "lbuffer engine.json --part engine --json -o l.mha");
+    check_range(0, 20, 0.01); /* oblique rays: 20 (10 / 500)^2 / 2 */
+    ck_assert_ptr_nonnull(
+        strstr(complained, "small: its box is 0.04 mm long, under 1/500 of the field of view"));
+    ck_assert_ptr_nonnull(strstr(complained, "its unit is um, as named"));
+    ck_run(0, "image engine.json --only small -o a.mha --quantity attenuation --json");
+    check_range(0, 0.02, 0.02);
+    ck_run(0, "image engine.json --without \"s*\" -o a.mha --quantity transmission --quiet");
+    ck_run_fails(2, "did you mean \"engine\"", "image engine.json --only engin -o a.mha");
+    ck_run_fails(2, "no part is left", "image engine.json --without engine,s*l -o a.mha");
+    write_text("marked.txt", "\xEF\xBB\xBF"
+                             "60 1000\n");
+    write_text(
+        "marked.json",
+        "\xEF\xBB\xBF{\"Source\": {\"From\": \"front\", \"Beam\": {\"TextFile\": \"marked.txt\", \"Unit\": "
+        "\"keV\"}}, \"Samples\": [{\"Cube\": [20, \"mm\"], \"Material\": \"Al\"}]}");
+    ck_run(0, "plan marked.json --quiet"); /* byte-order marks in a scene and a spectrum */
+    ck_run(1, "mesh box.obj --groups");
+    ck_assert_ptr_nonnull(strstr(said, "group \"lid\": 12 triangles"));
+    ck_assert_ptr_nonnull(strstr(said, "unit: mm, assumed"));
+    ck_run(0, "mesh box.obj --split . --scene parts.json --unit cm");
+    ck_run(0, "mesh lid.ply");
+    ck_assert_ptr_nonnull(strstr(said, "x -50 to 150"));
+    ck_run(0, "lbuffer parts.json --part lid --json -o l.mha");
+    write_text("plain.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
+    ck_run_fails(3, "no groups", "mesh plain.obj --split .");
+}
+END_TEST
+
+/* Two boxes of one file that overlap by 2 mm along the rays, 12 triangles listed twice, and a cavity that leaves: sums with a
+ * warning, or the union. */
+START_TEST(overlaps_within_a_mesh) {
+    static const char lower[] =
+        "v -5 8 -15\nv 15 8 -15\nv -5 14 -15\nv 15 14 -15\nv -5 8 25\nv 15 8 25\nv -5 14 25\nv 15 14 25\n"
+        "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+    char text[2048];
+    snprintf(text, sizeof text, "%s%s", box, lower);
+    write_text("two.obj", text);
+    ck_run(1, "mesh two.obj --json");
+    json_t *object = said_json(), *file = json_array_get(member(object, "files"), 0);
+    ck_assert_int_eq(json_integer_value(json_object_get(file, "overlapping_components")), 1);
+    json_decref(object);
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --json");
+    check_range(0, 16, 40 * 2e-4 + 1e-3);
+    ck_assert_ptr_nonnull(strstr(complained, "overlaps a larger one: number 2 by up to 40 mm"));
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --json --set Repair=union");
+    check_range(0, 14, 40 * 2e-4 + 1e-3);
+    ck_assert_ptr_null(strstr(complained, "overlap"));
+    snprintf(text, sizeof text, "%s%s", box, strstr(box, "f 1"));
+    write_text("twice.obj", text);
+    ck_run(1, "mesh twice.obj --strict --json");
+    object = said_json(), file = json_array_get(member(object, "files"), 0);
+    ck_assert_int_eq(json_integer_value(json_object_get(file, "duplicates")), 12);
+    json_decref(object);
+    ck_run(0, "lbuffer twice.obj --material Al -o l.mha --json");
+    check_range(0, 20, 40 * 4e-4 + 1e-3);
+    ck_assert_ptr_nonnull(strstr(complained, "12 of 24 triangles are duplicates"));
+    ck_run(1, "plan twice.obj --material Al --kev 60 --strict");
+    ck_run(0, "lbuffer twice.obj --material Al -o l.mha --json --set 'Repair=[\"exact\", \"union\"]'");
+    check_range(0, 10, 40 * 2e-4 + 1e-3);
+    ck_assert_ptr_null(strstr(complained, "duplicates"));
+    ck_run(
+        0,
+        "image twice.obj --material Al --kev 60 --from top -o a.mha --quantity attenuation --json --set Repair=union "
+        "--set Samples.twice.Material='[\"mu\",0.5]'");
+    check_range(0, 2, 2e-3);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_box, tear_down);
     tcase_add_test(tests, a_mesh_needs_no_scene);
     tcase_add_test(tests, a_mesh_is_seen_from_any_side);
     tcase_add_test(tests, several_meshes);
     tcase_add_test(tests, inverted_components_are_turned);
+    tcase_add_test(tests, overlaps_within_a_mesh);
+    tcase_add_test(tests, files_bring_their_units_and_groups);
     tcase_add_loop_test(tests, bad_meshes_are_refused, 0, sizeof bad / sizeof *bad);
 }
 

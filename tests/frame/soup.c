@@ -39,16 +39,18 @@ void fill_sphere(soup *s) {
 
 skg_mesh *mesh_of(const soup *s) {
     skg_mesh *mesh = NULL;
-    ck_skg(skg_mesh_create(context, "sphere",
-                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
-                                              .vertices = s->vertices,
-                                              .positions = s->positions,
-                                              .position_stride = 3,
-                                              .triangles = s->triangles,
-                                              .corners = s->corners,
-                                              .triangle_stride = 3,
-                                              .unit_mm = 1},
-                           &mesh));
+    ck_skg(
+        skg_mesh_create(context, "sphere",
+                        &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                           .as_wound = 1, /* a turned triangle stays, as with Repair none */
+                                           .vertices = s->vertices,
+                                           .positions = s->positions,
+                                           .position_stride = 3,
+                                           .triangles = s->triangles,
+                                           .corners = s->corners,
+                                           .triangle_stride = 3,
+                                           .unit_mm = 1},
+                        &mesh));
     return mesh;
 }
 

@@ -129,6 +129,23 @@ START_TEST(an_outward_box_inside_another_is_inverted) {
 END_TEST
 
 /* All triangles the other way: the mesh is turned as a whole, and the same component contradicts. */
+/* Neither lies in the other: 2 of the 8 mm of the smaller one. */
+START_TEST(boxes_that_overlap_are_named) {
+    char text[512];
+    add_box(0, 0, 5, 1);
+    add_box(0, 7, 4, 1);
+    add_box(0, -20, 5, 1);
+    const skg_mesh_nesting nesting = nesting_of_boxes();
+    ck_assert_int_eq(nesting.inverted + nesting.leaving, 0);
+    ck_assert_int_eq(nesting.overlapping, 1);
+    ck_assert_int_eq(nesting.first_overlapping, 1);
+    ck_assert_double_eq_tol(nesting.overlapping_length, 2, 1e-9);
+    ck_assert_double_eq_tol(nesting.overlapping_place[2], 4, 1e-9);
+    ck_skg(skg_mesh_nesting_describe(&nesting, sizeof text, text));
+    ck_assert_ptr_nonnull(strstr(text, "1 of 3 components overlaps a larger one: number 2 by up to 2 mm"));
+}
+END_TEST
+
 START_TEST(a_flipped_mesh_gives_the_same) {
     add_box(0, 0, 10, -1);
     add_box(0, 0, 8, 1);
@@ -182,6 +199,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, what_is_right_is_silent);
     tcase_add_test(tests, an_inward_box_in_the_open_is_inverted);
     tcase_add_test(tests, an_outward_box_inside_another_is_inverted);
+    tcase_add_test(tests, boxes_that_overlap_are_named);
     tcase_add_test(tests, a_flipped_mesh_gives_the_same);
     tcase_add_test(tests, a_cavity_leaves_its_solid);
     tcase_add_test(tests, leaky_meshes_are_not_examined);

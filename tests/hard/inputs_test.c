@@ -152,6 +152,19 @@ static void put_entry(archive *a, const char *name, const char *text, size_t at,
     a->size += strlen(text);
 }
 
+enum { FILES_MAX = 4 };
+
+static void make_archive_of(archive *a, int count, const char *const *names, const char *const *texts) {
+    size_t at[FILES_MAX];
+    a->size = 0;
+    for (int f = 0; f < count; f++) at[f] = a->size, put_entry(a, names[f], texts[f], 0, 0);
+    a->directory = a->size;
+    for (int f = 0; f < count; f++) put_entry(a, names[f], texts[f], at[f], 1);
+    const size_t length = a->size - a->directory;
+    put(a, 0x06054b50, 4), put(a, 0, 4), put(a, (uint64_t)count, 2), put(a, (uint64_t)count, 2);
+    put(a, length, 4), put(a, a->directory, 4), put(a, 0, 2);
+}
+
 /* relations: instead of the usual text; NULL: that */
 static void make_archive_with(archive *a, const char *relations) {
     static const char *const names[] = {"[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"};
@@ -168,15 +181,8 @@ static void make_archive_with(archive *a, const char *relations) {
         "x=\"0\" y=\"1\" z=\"0\"/><vertex x=\"0\" y=\"0\" z=\"1\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" "
         "v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/><triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" "
         "v2=\"2\" v3=\"3\"/></triangles></mesh></object></resources><build><item objectid=\"1\"/></build></model>"};
-    size_t at[3];
-    a->size = 0;
-    for (int f = 0; f < 3; f++)
-        at[f] = a->size, put_entry(a, names[f], f == 1 && relations ? relations : texts[f], 0, 0);
-    a->directory = a->size;
-    for (int f = 0; f < 3; f++) put_entry(a, names[f], f == 1 && relations ? relations : texts[f], at[f], 1);
-    const size_t length = a->size - a->directory;
-    put(a, 0x06054b50, 4), put(a, 0, 4), put(a, 3, 2), put(a, 3, 2);
-    put(a, length, 4), put(a, a->directory, 4), put(a, 0, 2);
+    const char *const used[] = {texts[0], relations ? relations : texts[1], texts[2]};
+    make_archive_of(a, 3, names, used);
 }
 
 static void make_archive(archive *a) {
@@ -199,6 +205,56 @@ static void set(archive *a, size_t at, uint64_t value, int count) {
     put(a, value, count);
     a->size = size;
 }
+
+/* A 3MF file in inches whose object lies in another part (in mm), built twice, once mirrored and moved; a support is left out; and
+ * what is made of itself is refused. */
+START_TEST(objects_of_3mf_lie_anywhere) {
+    static archive a;
+    static const char *const names[] = {"_rels/.rels", "3D/3dmodel.model", "3D/Objects/a.model"};
+    static const char relations[] =
+        "<Relationships><Relationship Target=\"/3D/3dmodel.model\" Id=\"r\" "
+        "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+    static const char mesh_text[] =
+        "<model unit=\"millimeter\"><resources><object id=\"7\" name=\"A &amp; B\" type=\"model\"><mesh><vertices>"
+        "<vertex x=\"0\" y=\"0\" z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"2\" z=\"0\"/><vertex x=\"0\" "
+        "y=\"0\" z=\"3\"/></vertices><triangles><triangle v1=\"0\" v2=\"2\" v3=\"1\"/><triangle v1=\"0\" v2=\"1\" v3=\"3\"/>"
+        "<triangle v1=\"0\" v2=\"3\" v3=\"2\"/><triangle v1=\"1\" v2=\"2\" v3=\"3\"/></triangles></mesh></object></resources>"
+        "<build/></model>";
+    static const char build[] =
+        "<m:model unit=\"inch\" xmlns:m=\"core\" xmlns:p=\"production\"><m:resources><m:object id=\"2\" type=\"model\">"
+        "<m:components><m:component p:path=\"/3D/Objects/a.model\" objectid=\"7\"/></m:components></m:object>"
+        "<m:object id=\"3\" type=\"support\"/><m:object id=\"4\"><m:components><m:component objectid=\"4\"/></m:components>"
+        "</m:object></m:resources><m:build><m:item objectid=\"%s\"/><m:item objectid=\"3\"/><m:item objectid=\"2\" "
+        "transform=\"-1 0 0 0 1 0 0 0 1 2 0 0\"/></m:build></m:model>";
+    char text[2048];
+    skg_mesh *mesh = NULL;
+    skg_mesh_health health;
+    snprintf(text, sizeof text, build, "2");
+    make_archive_of(&a, 3, names, (const char *const[]){relations, text, mesh_text});
+    write_bytes("production.3mf", a.bytes, a.size);
+    ck_skg(skg_mesh_load(NULL, path, 0, &mesh));
+    skg_mesh_health_init(&health);
+    ck_skg(skg_mesh_health_get(mesh, &health));
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_int_eq(health.turned + health.flipped, 0);
+    ck_assert_double_eq_tol(health.volume, 2, 1e-12);
+    ck_assert_double_eq_tol(health.bounds[3], 2 * 25.4, 1e-12); /* the move is in inches, the object in mm */
+    ck_assert_double_eq_tol(health.bounds[5], 3, 1e-12);
+    skg_mesh_release(&mesh);
+    const skg_mesh_reading reading = {.size = sizeof reading, .unit_mm = 1, .group = "A & B"};
+    ck_skg(skg_mesh_load_as(NULL, path, &reading, &mesh));
+    ck_skg(skg_mesh_health_get(mesh, &health));
+    ck_assert_double_eq_tol(health.bounds[3], 2, 1e-12);
+    skg_mesh_release(&mesh);
+    snprintf(text, sizeof text, build, "4");
+    make_archive_of(&a, 3, names, (const char *const[]){relations, text, mesh_text});
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "made of each other");
+    make_archive_of(&a, 2, names, (const char *const[]){relations, text});
+    snprintf(text, sizeof text, build, "2");
+    make_archive_of(&a, 2, names, (const char *const[]){relations, text});
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "a.model\", which is not there");
+}
+END_TEST
 
 START_TEST(archives_are_measured_before_they_are_unpacked) {
     enum { LENGTH = 24, NAME = 28, ENTRY = 46 };
@@ -293,6 +349,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, damaged_parts_of_archives_are_refused, 0, 16);
     tcase_add_loop_test(tests, what_is_too_long_is_refused, 0, KINDS);
     tcase_add_test(tests, references_are_opened_alike);
+    tcase_add_test(tests, objects_of_3mf_lie_anywhere);
     tcase_add_test(tests, archives_are_measured_before_they_are_unpacked);
 }
 

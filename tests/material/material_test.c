@@ -165,6 +165,102 @@ START_TEST(formulas) {
 }
 END_TEST
 
+/* Dots of hydrates, whose numbers multiply all that follows, and decimals. What may be either is refused. */
+START_TEST(hydrates) {
+    static const char *const same[][2] = {{"CaSO4.2H2O", "CaSO4(H2O)2"},
+                                          {"CaSO4\u00B72H2O", "CaSO4(H2O)2"},
+                                          {"CaSO4*2H2O", "CaSO4(H2O)2"},
+                                          {"CuSO4.5H2O", "CuSO4(H2O)5"},
+                                          {"CaSO4.0.5H2O", "Ca2S2O9H2"},
+                                          {"CaO.SiO2", "CaSiO3"},
+                                          {"Mg0.9Fe0.1SO4.7H2O", "Mg9FeS10O110H140"},
+                                          {"Fe0.95O", "Fe95O100"},
+                                          {"Lu1.8Y0.2SiO5", "Lu9YSi5O25"},
+                                          {"CO1.5", "C2O3"},
+                                          {"(H2O)0.5Si", "H2OSi2"},
+                                          {"Al2O3\u00B72SiO2\u00B72H2O", "Al2Si2O9H4"}};
+    skg_material *none = NULL;
+    for (size_t i = 0; i < sizeof same / sizeof *same; i++)
+        ck_assert_double_eq_tol(mu_rho(same[i][0], 60) / mu_rho(same[i][1], 60), 1, 64 * DBL_EPSILON);
+    ck_assert_double_eq_tol(mu_rho("CaSO4.2H2O", 60), 0.34259, 5e-6);
+    ck_skg_fails(skg_material_create_named("Ca1.5Sr0O2", &none), SKG_ERR_MATERIAL, "ambiguous");
+    ck_skg_fails(skg_material_create_named("Al2O3.2SiO2.2H2O", &none), SKG_ERR_MATERIAL, "middle dot");
+    ck_skg_fails(skg_material_create_named("CaSO4..2H2O", &none), SKG_ERR_MATERIAL, "");
+    ck_skg_fails(skg_material_create_named("CaSO4*", &none), SKG_ERR_MATERIAL, "");
+}
+END_TEST
+
+/* Volumes add: 300 mg of iodine fill 0.3 / 4.93 ml. */
+START_TEST(solutions) {
+    skg_material *m = NULL;
+    const char *note = NULL;
+    ck_skg(skg_material_create_solution("Iodine", 300, &m));
+    const double volume = 0.3 / 4.93, density = 0.3 + 1 - volume;
+    ck_assert_double_eq_tol(density_of(m), density, 1e-12);
+    ck_assert_double_eq_tol(mass_mu(m, 60),
+                            (0.3 * mu_rho("I", 60) + (1 - volume) * mu_rho("H2O", 60)) / density, 1e-4);
+    ck_skg(skg_material_note_get(m, &note));
+    ck_assert_ptr_nonnull(strstr(note, "an assumption"));
+    skg_material_release(&m);
+    ck_assert_double_eq(mu_rho("solution:NaI:100", 60) > mu_rho("Water", 60), 1);
+    ck_skg(skg_material_create_named("Vacuum", &m));
+    skg_material_release(&m);
+    ck_skg_fails(skg_material_create_solution("Iodine", 5000, &m), SKG_ERR_MATERIAL,
+                 "more than the solute itself");
+    ck_skg_fails(skg_material_create_solution("KMnO4", 5, &m), SKG_ERR_MATERIAL, "density is not known");
+    ck_skg_fails(skg_material_create_named("solution:300", &m), SKG_ERR_MATERIAL,
+                 "solution:SOLUTE:MG_PER_ML");
+}
+END_TEST
+
+/* Materials of practice are there by the names that people write, and their fractions sum to 1. */
+START_TEST(materials_of_practice) {
+    static const struct {
+        const char *name;
+        double density;
+    } rows[] = {{"316L", 8},
+                {"304", 8},
+                {"Inconel 718", 8.19},
+                {"SAC305", 7.38},
+                {"FR4", 1.86},
+                {"PLA", 1.24},
+                {"PETG", 1.27},
+                {"PA12", 1.01},
+                {"ABS", 1.05},
+                {"PEEK", 1.32},
+                {"Epoxy", 1.2},
+                {"6061", 2.7},
+                {"Brass", 8.07},
+                {"Soda-lime glass", 2.4},
+                {"Borosilicate glass", 2.23},
+                {"Concrete", 2.3},
+                {"Wood", 0.64},
+                {"Hydroxyapatite", 3.16},
+                {"Gd2O2S:Tb", 7.44},
+                {"Carbon-fibre laminate", 1.56},
+                {"Barium sulphate suspension", 1.4667},
+                {"Ti-6Al-4V", 4.43}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        skg_material *m = NULL;
+        ck_skg(skg_material_create_named(rows[i].name, &m));
+        ck_assert_double_eq(density_of(m), rows[i].density);
+        skg_material_release(&m);
+    }
+    /* Those that are formulas agree with them, to the rounding of six digits. */
+    ck_assert_double_eq_tol(mu_rho("PLA", 60) / mu_rho("C3H4O2", 60), 1, 1e-4);
+    ck_assert_double_eq_tol(mu_rho("PA12", 60) / mu_rho("C12H23NO", 60), 1, 1e-4);
+    ck_assert_double_eq_tol(mu_rho("PETG", 60) / mu_rho("C1186H1110O400", 60), 1, 1e-4);
+    ck_assert_double_eq_tol(mu_rho("FR4", 60) / (0.528 * mu_rho("SiO2", 60) + 0.472 * mu_rho("C11H12O3", 60)),
+                            1, 1e-4);
+    ck_assert_double_eq_tol(mu_rho("Hydroxyapatite", 60) / mu_rho("Ca10(PO4)6(OH)2", 60), 1, 1e-4);
+    ck_assert_double_eq_tol(mu_rho("Barium sulphate suspension", 60) * 1.46667 /
+                                (0.6 * mu_rho("BaSO4", 60) + (1 - 0.6 / 4.5) * mu_rho("H2O", 60)),
+                            1, 1e-4);
+    skg_material *none = NULL;
+    ck_skg_fails(skg_material_create_named("PLX9", &none), SKG_ERR_MATERIAL, "PLX9");
+}
+END_TEST
+
 START_TEST(names_that_are_not_found) {
     skg_material *none = NULL;
     ck_skg_fails(skg_material_create_named("Watre", &none), SKG_ERR_MATERIAL, "did you mean \"Water\"");
@@ -475,6 +571,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, equations_14_and_15_from_hounsfield_numbers);
     tcase_add_test(tests, one_material_by_many_names);
     tcase_add_test(tests, formulas);
+    tcase_add_test(tests, hydrates);
+    tcase_add_test(tests, solutions);
+    tcase_add_test(tests, materials_of_practice);
     tcase_add_test(tests, names_that_are_not_found);
     tcase_add_test(tests, names_of_engineering);
     tcase_add_test(tests, alloys_without_hyphens_are_refused);

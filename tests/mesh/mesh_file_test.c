@@ -142,6 +142,64 @@ START_TEST(damaged_stl_is_refused) {
 }
 END_TEST
 
+#define FACETS                                                                                               \
+    "FACET NORMAL 0 0 1\nOUTER LOOP\nVERTEX 0 0 0\nVERTEX 1 0 0\nVERTEX 0 1 0\nEND LOOP\nEND FACET\n"
+
+/* Text as other programs write it: capitals, a byte-order mark, blank lines, "end solid"; bytes behind the last triangle. */
+START_TEST(text_of_other_programs) {
+    static const char *const texts[] = {
+        "SOLID A\n" FACETS "ENDSOLID A\n", "\xEF\xBB\xBFsolid a\n" FACETS "endsolid",
+        "\r\n \n\tSolid\r\n" FACETS "end solid a b\n", "solid\n" FACETS "End\tSolid"};
+    skg_mesh *mesh = NULL;
+    for (size_t t = 0; t < sizeof texts / sizeof *texts; t++) {
+        ck_skg(skg_mesh_load(NULL, file_of("a.stl", texts[t]), 1, &mesh));
+        ck_assert_int_eq(mesh->triangles, 1);
+        skg_mesh_release(&mesh);
+    }
+    refuse(file_of("b.stl", "\xFF\xFEs"), SKG_ERR_FORMAT, "UTF-16");
+    refuse(file_of("c.stl", "\xEF\xBB\xBFsolid a\n" FACETS), SKG_ERR_FORMAT, "truncated");
+    ck_skg(
+        skg_mesh_load(NULL, file_of("a.obj", "\xEF\xBB\xBFv 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n"), 1, &mesh));
+    skg_mesh_release(&mesh);
+    ck_skg(skg_mesh_load(
+        NULL,
+        file_of("a.ply",
+                "\xEF\xBB\xBFply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\n"
+                "property float z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n"
+                "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n"),
+        1, &mesh));
+    skg_mesh_release(&mesh);
+    ck_skg(skg_mesh_create_cube(20, &mesh));
+    ck_skg(skg_mesh_save(mesh, in_folder("long.stl")));
+    skg_mesh_release(&mesh);
+    FILE *stream = fopen(path, "ab");
+    fputs("made by a program", stream);
+    fclose(stream);
+    ck_skg(skg_mesh_load(NULL, path, 1, &mesh));
+    ck_assert_double_eq_tol(health_of(mesh).volume, 8000, 1e-9);
+    ck_assert_int_eq(health_of(mesh).trailing_bytes, 17);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* A strip whose triangles turn around alternately, and a second one behind -1: two tetrahedra but for a face. */
+START_TEST(strips_of_ply) {
+    skg_mesh *mesh = NULL;
+    ck_skg(skg_mesh_load(
+        NULL,
+        file_of("strip.ply", "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\n"
+                             "property float z\nelement tristrips 1\nproperty list int int vertex_indices\n"
+                             "end_header\n0 0 0\n0 1 0\n1 0 0\n0 0 1\n10 0 1 2 3 0 1 -1 0 0 1\n"),
+        1, &mesh));
+    const skg_mesh_health health = health_of(mesh);
+    ck_assert_int_eq(health.triangles, 4);
+    ck_assert_int_eq(health.closed, 1);
+    ck_assert_int_eq(health.turned, 0);
+    ck_assert_double_eq_tol(health.volume, 1. / 6, 1e-12);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
 START_TEST(files_that_are_none) {
     skg_mesh *mesh;
     refuse(in_folder("absent.stl"), SKG_ERR_FILE, "No such file");
@@ -150,8 +208,12 @@ START_TEST(files_that_are_none) {
     refuse(folder, SKG_ERR_FILE, "not a file");
     refuse(file_of("a.unknown", "what is this"), SKG_ERR_FORMAT, "a.unknown");
     refuse(file_of("a", "what is this"), SKG_ERR_FORMAT, "/a: ");
+    refuse(file_of("a.step", "ISO-10303-21;\nHEADER;\n"), SKG_ERR_FORMAT,
+           "holds curved solids, not triangles; mesh it first");
+    refuse(file_of("a.igs", "S 1\n"), SKG_ERR_FORMAT, "curved solids");
+    refuse(file_of("a.vtu", "<VTKFile/>"), SKG_ERR_FORMAT, "in Python, sk.Mesh.from_meshio");
     file_of("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n");
-    ck_skg_fails(skg_mesh_load(NULL, path, 0, &mesh), SKG_ERR_ARGUMENT, "unit 0 mm");
+    ck_skg_fails(skg_mesh_load(NULL, path, -1, &mesh), SKG_ERR_ARGUMENT, "unit -1 mm");
     ck_skg_fails(skg_mesh_load(NULL, path, (double)NAN, &mesh), SKG_ERR_ARGUMENT, "unit nan mm");
     ck_skg_fails(skg_mesh_load(NULL, NULL, 1, &mesh), SKG_ERR_ARGUMENT, "path is NULL");
     ck_skg_fails(skg_mesh_load(NULL, path, 1, NULL), SKG_ERR_ARGUMENT, "mesh is NULL");
@@ -316,6 +378,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, stl_comes_back_corner_by_corner);
     tcase_add_test(tests, ascii_stl_of_two_solids_is_one_mesh);
     tcase_add_test(tests, damaged_stl_is_refused);
+    tcase_add_test(tests, text_of_other_programs);
+    tcase_add_test(tests, strips_of_ply);
     tcase_add_test(tests, files_that_are_none);
     tcase_add_test(tests, obj_keeps_its_numbering);
     tcase_add_test(tests, damaged_obj_is_refused);

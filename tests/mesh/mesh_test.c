@@ -39,10 +39,12 @@ static void take_cube(void) {
     skg_mesh_release(&mesh);
 }
 
+static int32_t as_wound;
 static skg_mesh *make(int64_t vertices, const double *positions, int64_t triangles, const int32_t *corners) {
     skg_mesh *mesh;
     ck_skg(skg_mesh_create(NULL, "thing",
                            &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .as_wound = as_wound,
                                               .vertices = vertices,
                                               .positions = positions,
                                               .triangles = triangles,
@@ -266,7 +268,9 @@ START_TEST(health_agrees_with_brute_force) {
         for (int i = 0; i < FACES * 3; i++) corners[i] = (int32_t)draw(PLACES);
         skg_mesh_health brute = {0};
         brute_health(place, corners, &brute);
+        as_wound = 1;
         skg_mesh *mesh = make(PLACES, positions, FACES, corners);
+        as_wound = 0;
         skg_mesh_health health = health_of(mesh);
         ck_assert_int_eq(health.open_edges, brute.open_edges);
         ck_assert_int_eq(health.closed, brute.open_edges == 0);

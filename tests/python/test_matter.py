@@ -38,6 +38,16 @@ def test_components_that_face_the_wrong_way():
     assert two.oriented().health["volume"] == pytest.approx(2 / 6, rel=1e-14)  # a few roundings
 
 
+def test_mixed_winding_is_turned_with_a_warning():
+    cube = sk.Mesh.cube(20)
+    faces = cube.faces.copy()
+    faces[[0, 1, 7]] = faces[[0, 1, 7], ::-1]
+    with pytest.warns(sk.SkiagraphWarning, match="3 of 12 triangles were turned"):
+        turned = sk.Mesh(cube.vertices, faces)
+    assert turned.health["closed"] and turned.health["volume"] == pytest.approx(8000)
+    assert not sk.Mesh(cube.vertices, faces, as_wound=True).health["closed"]
+
+
 def test_units():
     assert sk.Mesh(VERTICES, FACES, unit_mm=10).health["volume"] == pytest.approx(1000 / 6, rel=1e-14)  # roundings
 
@@ -68,9 +78,13 @@ def test_meshes_of_other_packages():
                                     faces=np.hstack([np.full((4, 1), 3), FACES]).ravel())
     for value in (trimesh, meshio, pyvista):
         assert volume_of(value) == pytest.approx(1 / 6, rel=1e-7)  # floats
-    meshio.cells_dict["quad"] = np.zeros((1, 4), int)
-    with pytest.raises(sk.ArgumentError, match="quad"):
+    meshio.cells_dict["polygon"] = np.zeros((1, 5), int)
+    with pytest.raises(sk.ArgumentError, match="polygon"):
         as_mesh(meshio)
+    open3d = types.SimpleNamespace(vertices=VERTICES.tolist(), triangles=FACES.tolist())
+    scene = types.SimpleNamespace(geometry={}, dump=lambda concatenate: trimesh)
+    for value in (open3d, scene):
+        assert sk.Mesh.from_object(value).health["volume"] == pytest.approx(1 / 6)
     pyvista.faces = np.array([4, 0, 1, 2, 3])
     with pytest.raises(sk.ArgumentError, match="triangulate"):
         as_mesh(pyvista)
@@ -79,6 +93,26 @@ def test_meshes_of_other_packages():
         as_mesh(pyvista)
     with pytest.raises(sk.ArgumentError, match="mesh is a int"):
         as_mesh(3)
+
+
+def test_volume_cells_give_their_skin():
+    x, y, z = np.meshgrid([0, 1, 2], [0, 1], [0, 1], indexing="ij")
+    points = np.stack([x.ravel(), y.ravel(), z.ravel()], axis=1).astype(float)
+    number = np.arange(12).reshape(3, 2, 2)
+
+    def brick(i):
+        low, high = number[i], number[i + 1]
+        return [low[0, 0], high[0, 0], high[1, 0], low[1, 0], low[0, 1], high[0, 1], high[1, 1], low[1, 1]]
+
+    bricks = types.SimpleNamespace(points=points, cells_dict={"hexahedron": np.array([brick(0), brick(1)]),
+                                                              "quad": np.array([[0, 1, 2, 3]])})
+    mesh = sk.Mesh.from_object(bricks, unit_mm=10)
+    health = mesh.health
+    assert health["closed"] and health["triangles"] == 20 and health["volume"] == pytest.approx(2000)
+    assert health["turned"] == 0 and not health["flipped"]
+    wedge = types.SimpleNamespace(points=points, cells_dict={"wedge": np.array([[0, 4, 2, 1, 5, 3]]),
+                                                             "tetra": np.array([[4, 8, 6, 5]])})
+    assert sk.Mesh.from_meshio(wedge).health["volume"] == pytest.approx(1 / 2 + 1 / 6)
 
 
 def test_trimesh_itself():

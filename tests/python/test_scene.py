@@ -241,3 +241,17 @@ def test_a_warning_is_said_once(scene):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         scene.image(supersampling=2)  # another plan of the same scene
+
+
+def test_removed_meshes_are_let_go():
+    import gc
+    import weakref
+    scene = sk.Scene()
+    fixed = scene.add("fixed", sk.Mesh.cube(20), material="Al").mesh
+    gone = []
+    for _ in range(5):
+        gone.append(weakref.ref(scene.add("guest", sk.Mesh.sphere(10, 16), material="Al").mesh))
+        scene.remove("guest")
+    gc.collect()
+    assert [mesh() for mesh in gone] == [None] * 5
+    assert scene["fixed"].mesh is fixed

@@ -13,7 +13,7 @@ enum { COLUMNS = 320, ROWS = 2, SLICES = 1 };
 #define PI 3.14159265358979323846
 
 /* Radius that every projection sees: 400 mm times the sine of the fan, 80 mm at 600 mm. */
-static const double FIELD_MM = 52;
+static double field_mm = 52;
 
 typedef struct {
     double centre[3], radii[3], per_cm; /* more than what it lies in */
@@ -143,7 +143,7 @@ static double worst_error(double *outside, double *rms) {
                 near |= within(&bodies[b], point, margin) && !within(&bodies[b], point, -margin);
                 if (within(&bodies[b], point, 0)) expected += bodies[b].per_cm;
             }
-            if (near || hypot(point[0], point[1]) > FIELD_MM) continue;
+            if (near || hypot(point[0], point[1]) > field_mm) continue;
             const double got = (double)volume[(SLICES / 2 * side + y) * side + x];
             const double error = fabs(got - expected) / (expected > 0 ? expected : bodies[0].per_cm);
             double *which = expected > 0 ? &worst : outside;
@@ -212,6 +212,49 @@ START_TEST(a_full_turn_the_other_way) {
 }
 END_TEST
 
+static skg_fdk_report seen(void) {
+    skg_fdk_report report;
+    skg_fdk_report_init(&report);
+    ck_skg(skg_fdk_report_get(fdk, &report));
+    return report;
+}
+
+/* Half-fan: each side of the bodies is cut off in half of the turn, and Wang's weights make it as good as a whole one; to one side, to
+ * the other and the other way round, and in a parallel beam. */
+START_TEST(a_displaced_detector) {
+    geometry.detector_offset_mm[0] = _i == 1 ? -50 : 50;
+    if (_i == 1) geometry.step_rad = -geometry.step_rad;
+    if (_i == 2) {
+        view.projection = SKG_PROJECTION_PARALLEL;
+        view.column_step[0] = view.row_step[2] = -0.33;
+        geometry.detector_offset_mm[0] *= 0.66;
+    }
+    options.filter = SKG_FDK_FILTER_HANN;
+    reconstruct();
+    ck_smooth();
+    const skg_fdk_report report = seen();
+    ck_assert_int_eq(report.displaced, 1);
+    ck_assert_double_eq(report.truncated, 0);
+    ck_assert(report.overlap_mm > 15 && report.overlap_mm < 25 && report.covered_mm > field_mm);
+}
+END_TEST
+
+/* The detector sees 35 of 46 mm: every row is counted, and continued rows hold the bar up to 90 % of what is covered. */
+START_TEST(a_detector_that_is_too_narrow) {
+    view.column_step[0] = -0.33;
+    options.filter = SKG_FDK_FILTER_HANN;
+    options.truncation = SKG_FDK_TRUNCATION_EXTRAPOLATE;
+    field_mm = 31;
+    options.voxels[0] = options.voxels[1] = 56;
+    options.voxel_mm = 1.2;
+    reconstruct();
+    ck_smooth();
+    ck_assert_double_ge(seen().truncated, 0.7);
+    ck_assert_double_eq_tol(seen().covered_mm, 35, 0.5);
+    field_mm = 52;
+}
+END_TEST
+
 /* Parker's weights make a short scan as good as a full one, in both directions. */
 START_TEST(a_short_scan) {
     double range = 0;
@@ -252,8 +295,15 @@ START_TEST(what_is_refused) {
     geometry.pitch_mm = 100;
     ck_skg(skg_scan_create(&view, &geometry, &scan));
     ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED, "leaves its circle");
+    ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED,
+                 ".csv for ASTRA, .tigre.py for TIGRE");
     skg_scan_release(&scan);
     geometry.pitch_mm = 0;
+    geometry.detector_offset_mm[0] = 90;
+    ck_skg(skg_scan_create(&view, &geometry, &scan));
+    ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED, "does not see the axis");
+    geometry.detector_offset_mm[0] = 0;
+    skg_scan_release(&scan);
     geometry.projections = 100;
     ck_skg(skg_scan_create(&view, &geometry, &scan));
     ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED, "range of 74.25 degrees");
@@ -273,6 +323,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_quarter_of_a_pixel_aside);
     tcase_add_test(tests, a_full_turn_the_other_way);
     tcase_add_loop_test(tests, a_short_scan, 0, 2);
+    tcase_add_loop_test(tests, a_displaced_detector, 0, 3);
+    tcase_add_test(tests, a_detector_that_is_too_narrow);
     tcase_add_test(tests, a_parallel_beam);
     tcase_add_test(tests, a_detail);
     tcase_add_test(tests, what_is_refused);

@@ -201,8 +201,8 @@ static const struct {
     {"[\"mu\", 0.5]", "[\"mu\", 0.5], \"Transform\": [\"Scaling\", 1, 1, 2]", SKG_ERR_FORMAT,
      "Transform[0]: is a string"},
     {"[\"mu\", 0.5]", "[\"mu\", 0.5], \"Transform\": {}", SKG_ERR_FORMAT, "Transform: is an object"},
-    {"[\"mu\", 0.5]", "[\"mu\", 0.5], \"Transform\": [[\"Translation\", 1, 2, 3, \"inch\"]]", SKG_ERR_FORMAT,
-     "Transform[0][4]: \"inch\" is no unit"},
+    {"[\"mu\", 0.5]", "[\"mu\", 0.5], \"Transform\": [[\"Translation\", 1, 2, 3, \"ich\"]]", SKG_ERR_FORMAT,
+     "Transform[0][4]: \"ich\" is no unit"},
     {"[1, 2, 3, \"cm\"]", "[1, -2, 3, \"cm\"]", SKG_ERR_FORMAT, "Samples[1].Cuboid: "},
     {"\"Cuboid\": [1, 2, 3, \"cm\"]",
      "\"StepWedge\": {\"NumberOfSteps\": 5, \"TotalLength\": 5, \"Width\": 2, \"FirstStepHeight\": 1, "
@@ -210,7 +210,7 @@ static const struct {
      SKG_ERR_FORMAT, "heights have to rise"},
     {"\"Cuboid\": [1, 2, 3, \"cm\"]", "\"Path\": \"none.stl\", \"Unit\": \"mm\"", SKG_ERR_FILE,
      "line 21: Samples[1].Path: "},
-    {"\"Cuboid\": [1, 2, 3, \"cm\"]", "\"Path\": \"none.stl\"", SKG_ERR_FORMAT, "Unit is missing"},
+    {"\"Cuboid\": [1, 2, 3, \"cm\"]", "\"Path\": \"none.stl\"", SKG_ERR_FILE, "none.stl: cannot be read"},
 };
 
 START_TEST(bad_files_are_refused) {

@@ -164,6 +164,25 @@ START_TEST(a_detector_that_is_displaced) {
 }
 END_TEST
 
+/* Offset, drift and jitter of the detector do not turn a parallel beam, whose direction is that of the undisplaced pair. */
+START_TEST(a_displaced_detector_in_a_parallel_beam) {
+    view.projection = SKG_PROJECTION_PARALLEL;
+    options.projections = 5;
+    options.step_rad = 2 * PI / 5;
+    options.detector_offset_mm[0] = 20;
+    options.detector_drift_mm[2] = 7;
+    options.detector_jitter_mm = 0.5;
+    ck_skg(skg_scan_create(&view, &options, &scan));
+    for (int k = 0; k < 5; k++) {
+        const skg_view now = view_of(k);
+        const double angle = -k * options.step_rad;
+        double ray[3];
+        for (int i = 0; i < 3; i++) ray[i] = now.centre[i] - now.source[i];
+        ck_vector(ray, -1500 * sin(angle), 1500 * cos(angle), 0);
+    }
+}
+END_TEST
+
 START_TEST(drift_grows_to_its_end) {
     options.projections = 11;
     options.source_drift_mm[2] = 5;
@@ -290,6 +309,70 @@ START_TEST(tables_in_other_hands) {
 }
 END_TEST
 
+/* The value behind the next key. */
+static double number_behind(char **at, const char *key) {
+    *at = strstr(*at, key);
+    ck_assert_ptr_nonnull(*at);
+    *at += strlen(key);
+    return strtod(*at, at);
+}
+
+/* A camera of transforms.json sees a point where the ray through it meets the detector; the middle of pixel 0 is at 0.5. */
+START_TEST(nerf_sees_points_where_we_do) {
+    char text[8192], *at = text;
+    const double point[3] = {12, -34, 21};
+    options.projections = 5;
+    options.step_rad = 0.4;
+    options.detector_offset_mm[0] = 9, options.detector_offset_mm[1] = -4;
+    options.detector_tilt_rad[0] = 0.05, options.detector_tilt_rad[2] = -0.3;
+    snprintf(path, sizeof path, "%s/transforms.json", folder);
+    ck_skg(skg_scan_create(&view, &options, &scan));
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "mirrored");
+    skg_scan_release(&scan);
+    view.column_step[0] = 2;
+    ck_skg(skg_scan_create(&view, &options, &scan));
+    ck_skg(skg_scan_geometry_save(scan, path));
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(stream);
+    text[fread(text, 1, sizeof text - 1, stream)] = '\0';
+    fclose(stream);
+    unlink(path);
+    at = strstr(text, "frames");
+    for (int k = 0; k < 5; k++) {
+        const skg_view v = view_of(k);
+        double m[12], c[3] = {0}, normal[3], ray[3], seen[2];
+        const double fx = number_behind(&at, "fl_x\": "), fy = number_behind(&at, "fl_y\": "),
+                     cx = number_behind(&at, "cx\": "), cy = number_behind(&at, "cy\": ");
+        at = strstr(at, "matrix\": [");
+        for (int i = 0; i < 12; i++) {
+            at += strcspn(at, "-0123456789");
+            m[i] = strtod(at, &at);
+        }
+        for (int i = 0; i < 3; i++)
+            for (int r = 0; r < 3; r++) c[i] += m[4 * r + i] * (point[r] - m[4 * r + 3]);
+        for (int i = 0; i < 3; i++) {
+            const int a = (i + 1) % 3, b = (i + 2) % 3;
+            normal[i] = v.column_step[a] * v.row_step[b] - v.column_step[b] * v.row_step[a];
+            ray[i] = point[i] - v.source[i];
+        }
+        double down = 0, along = 0;
+        for (int i = 0; i < 3; i++)
+            down += normal[i] * (v.centre[i] - v.source[i]), along += normal[i] * ray[i];
+        for (int s = 0; s < 2; s++) {
+            const double *step = s ? v.row_step : v.column_step;
+            double on = 0, square = 0;
+            for (int i = 0; i < 3; i++) {
+                on += step[i] * (v.source[i] + ray[i] * down / along - v.centre[i]);
+                square += step[i] * step[i];
+            }
+            seen[s] = on / square + 0.5 * (double)(s ? v.rows : v.columns);
+        }
+        ck_assert_double_eq_tol(cx + fx * c[0] / -c[2], seen[0], 1e-9);
+        ck_assert_double_eq_tol(cy - fy * c[1] / -c[2], seen[1], 1e-9);
+    }
+}
+END_TEST
+
 /* RTK's matrix applied to a point gives the place where the ray through it meets the detector. Its world has y along the
  * axis (z of ours), z from the axis to the source (-y), x = y cross z (x). */
 START_TEST(rtk_projects_points_where_we_do) {
@@ -393,6 +476,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, laminography);
     tcase_add_test(tests, tomosynthesis_on_a_line_and_on_an_arc);
     tcase_add_test(tests, a_detector_that_is_displaced);
+    tcase_add_test(tests, a_displaced_detector_in_a_parallel_beam);
     tcase_add_test(tests, drift_grows_to_its_end);
     tcase_add_test(tests, jitter_is_normal_and_repeatable);
     tcase_add_test(tests, times);
@@ -400,6 +484,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_short_scan);
     tcase_add_test(tests, a_table_is_read_as_it_was_written);
     tcase_add_test(tests, tables_in_other_hands);
+    tcase_add_test(tests, nerf_sees_points_where_we_do);
     tcase_add_test(tests, rtk_projects_points_where_we_do);
     tcase_add_test(tests, what_cannot_be_written);
     tcase_add_test(tests, options_out_of_range);

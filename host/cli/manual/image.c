@@ -54,6 +54,14 @@ const cli_flag cli_flag_image_variance = {
     "electronic noise or steps.",
     NULL, CLI_NAMES_OUTPUT};
 
+const cli_flag cli_flag_image_only = {
+    "--only", "PART,...",
+    "Only the parts with these labels, in which * stands for any text. What lies in a part that is left out lies in what that lay in; "
+    "view and beam stay. May be repeated.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_image_without = {"--without", "PART,...", "All parts but these, likewise.", NULL,
+                                         CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Computes one image and writes it to the file of every -o. A .png holds 16-bit grey levels through --display "
     "and --range. A .tif or .mha holds floats, or doubles with --precision double; a .mha also holds the "
@@ -89,6 +97,8 @@ static const cli_flag *const flags[] = {&cli_flag_output,
                                         &cli_flag_meshes_kev,
                                         &cli_flag_meshes_filter,
                                         &cli_flag_meshes_from,
+                                        &cli_flag_image_only,
+                                        &cli_flag_image_without,
                                         &cli_flag_mesh_unit,
                                         &cli_flag_device,
                                         &cli_flag_precision,

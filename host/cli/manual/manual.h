@@ -64,14 +64,15 @@ extern const cli_item cli_flag_meshes_from_names[]; /* the sides; a direction is
 extern const char cli_text_meshes[];                /* a paragraph on them */
 
 /* Flags of one verb. */
-extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
+extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands, cli_flag_image_only, cli_flag_image_without,
     cli_flag_image_band_weight, cli_flag_image_scatter, cli_flag_image_scatter_image,
     cli_flag_image_scatter_sigma, cli_flag_image_mean, cli_flag_image_variance;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames,
     cli_flag_cost_sensitivity;
 extern const cli_flag cli_flag_devices_test, cli_flag_devices_warm;
-extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output;
+extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output, cli_flag_mesh_groups, cli_flag_mesh_group,
+    cli_flag_mesh_split, cli_flag_mesh_scene;
 extern const cli_flag cli_flag_distance_map, cli_flag_distance_output, cli_flag_distance_high,
     cli_flag_distance_sampling, cli_flag_distance_spacing;
 extern const cli_flag cli_flag_fit_target, cli_flag_fit_phase, cli_flag_fit_output, cli_flag_fit_parameters,
@@ -95,7 +96,7 @@ extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_si
     cli_flag_view_sensitivity;
 extern const cli_flag cli_flag_live_port, cli_flag_live_no_open, cli_flag_live_bind, cli_flag_live_idle;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,
-    cli_flag_reconstruct_filter;
+    cli_flag_reconstruct_filter, cli_flag_reconstruct_truncation;
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,
     cli_flag_scan_overwrite, cli_flag_scan_breathing, cli_flag_scan_subframes, cli_flag_scan_geometry,
     cli_flag_scan_flats, cli_flag_scan_darks, cli_flag_scan_shard, cli_flag_scan_join, cli_flag_scan_mixed,

@@ -18,18 +18,30 @@ static const cli_item filters[] = {{"ramp", "the band-limited ramp (the default)
 const cli_flag cli_flag_reconstruct_filter = {"--filter", NULL, "The filter of the rows of the projections.",
                                               filters, CLI_NAMES_NOTHING};
 
+/* In the order of SKG_FDK_TRUNCATION_. */
+static const cli_item truncations[] = {
+    {"none", "nothing (the default): a warning says how many rows are cut off"},
+    {"extrapolate",
+     "rows are continued as the projection of an ellipse that fits, else by their mirror image (Ohnesorge 2000)"},
+    {NULL, NULL}};
+const cli_flag cli_flag_reconstruct_truncation = {
+    "--truncation", NULL, "What is done about projections that the detector cuts off.", truncations,
+    CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Reconstructs a circular scan by the method of Feldkamp, Davis and Kress, to look at what the scan gives. "
-    "Scans of less than a turn get Parker's weights. The scan is an .h5 that `skiagraph scan` wrote.",
+    "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. The scan is an .h5 that `skiagraph scan` wrote.",
     "The volume holds attenuation coefficients in 1/cm. It is centred on the centre of rotation, and its axes are those "
     "of the scene.",
-    "--json prints {projections, size, voxel_mm, range, seconds, file}; range has the least and the largest value.",
+    "--json prints {projections, size, voxel_mm, range, displaced, covered_mm, truncated, seconds, file}; range has the least and the largest value, "
+    "truncated the share of the rows that are cut off.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_reconstruct_output,
                                         &cli_flag_reconstruct_size,
                                         &cli_flag_reconstruct_voxel,
                                         &cli_flag_reconstruct_filter,
+                                        &cli_flag_reconstruct_truncation,
                                         &cli_flag_json,
                                         &cli_flag_strict,
                                         &cli_flag_quiet,

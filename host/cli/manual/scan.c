@@ -70,7 +70,7 @@ const cli_flag cli_flag_scan_verify = {
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
-    "cone_vec of ASTRA), .xml (RTK), .tigre.py (TIGRE) or .cil.py (CIL). May be repeated.",
+    "cone_vec of ASTRA), .xml (RTK), .tigre.py (TIGRE), .cil.py (CIL) or transforms.json (NeRF, Gaussian splatting). May be repeated.",
     NULL, CLI_NAMES_FILE};
 
 static const char *const text[] = {

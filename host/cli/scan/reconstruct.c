@@ -21,6 +21,7 @@ typedef struct {
     float *image;
     int64_t projections;
     double seconds;
+    skg_fdk_report report;
 } reconstruction;
 
 /* A file of projections alone, which does not say where source and detector were. */
@@ -47,6 +48,8 @@ static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t
         exit_status = cli_number(arguments, &cli_flag_reconstruct_voxel, 1e-6, 1e6, &r->options.voxel_mm);
     if (exit_status == CLI_DONE)
         exit_status = cli_choice(arguments, &cli_flag_reconstruct_filter, &r->options.filter);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_choice(arguments, &cli_flag_reconstruct_truncation, &r->options.truncation);
     return exit_status;
 }
 
@@ -97,6 +100,24 @@ static skg_status add_projections(reconstruction *r) {
     return status;
 }
 
+/* Says what the detector did not see. */
+static void warn(const reconstruction *r) {
+    const skg_fdk_report *seen = &r->report;
+    if (seen->displaced)
+        cli_note(
+            "the detector is displaced: rays are weighted for it, and %.4g mm about the axis are covered",
+            seen->covered_mm);
+    if (seen->truncated > 0)
+        cli_warn(
+            "projections are truncated: in %.3g %% of the rows the shadow goes beyond the detector, and values are %s, "
+            "above all near %.4g mm from the axis, where it ends%s",
+            100 * seen->truncated,
+            r->options.truncation == SKG_FDK_TRUNCATION_NONE ? "wrong everywhere" : "estimates",
+            seen->covered_mm,
+            r->options.truncation == SKG_FDK_TRUNCATION_NONE ? "; --truncation extrapolate continues the rows"
+                                                             : "; the rows were continued");
+}
+
 static int print(const cli_arguments *arguments, const reconstruction *r) {
     const int64_t *n = r->options.voxels, count = n[0] * n[1] * n[2];
     const float *volume = NULL;
@@ -113,6 +134,9 @@ static int print(const cli_arguments *arguments, const reconstruction *r) {
         json_object_set_new(object, "size", json_integer(n[0]));
         json_object_set_new(object, "voxel_mm", cli_json_number(r->options.voxel_mm));
         json_object_set_new(object, "range", cli_json_numbers(range, 2));
+        json_object_set_new(object, "displaced", json_boolean(r->report.displaced));
+        json_object_set_new(object, "covered_mm", cli_json_number(r->report.covered_mm));
+        json_object_set_new(object, "truncated", cli_json_number(r->report.truncated));
         json_object_set_new(object, "seconds", cli_json_number(r->seconds));
         json_object_set_new(object, "file", cli_json_text(r->place));
         return cli_json_print(object);
@@ -133,6 +157,9 @@ int cli_reconstruct(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) {
         skg_status status = prepare(arguments, &r, size);
         if (status == SKG_OK) status = add_projections(&r);
+        skg_fdk_report_init(&r.report);
+        if (status == SKG_OK) status = skg_fdk_report_get(r.fdk, &r.report);
+        if (status == SKG_OK) warn(&r);
         if (status == SKG_OK) status = skg_fdk_save(r.fdk, r.place);
         exit_status = status == SKG_OK                ? print(arguments, &r)
                       : status == SKG_ERR_UNSUPPORTED ? (cli_fail(status), CLI_INPUT)

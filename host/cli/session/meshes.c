@@ -16,8 +16,8 @@
 /* mm of aluminium in front of a tube if no --filter is given: what IEC 60601-1-3 asks of tubes from 70 kV on. */
 static const double DEFAULT_FILTER_MM = 2.5;
 
-static const char *const extensions[] = {".stl", ".ply", ".obj", ".off", ".gltf",
-                                         ".glb", ".3ds", ".fbx", ".dae"};
+static const char *const extensions[] = {".stl", ".ply", ".obj", ".off", ".gltf", ".glb",
+                                         ".3ds", ".fbx", ".dae", ".3mf", ".amf",  ".x3d"};
 
 /* Flags that describe meshes, and have no meaning for a scene file. */
 static const cli_flag *const flags[] = {&cli_flag_meshes_kvp, &cli_flag_meshes_kev, &cli_flag_meshes_filter,
@@ -141,7 +141,7 @@ static json_t *label_of(const cli_arguments *arguments, int operand) {
 
 /* One material for all meshes, or one for each. */
 static int read_samples(const cli_arguments *arguments, json_t *samples) {
-    int32_t unit = 1;
+    int32_t unit = -1;
     int materials = 0;
     while (cli_nth_value(arguments, &cli_flag_meshes_material, materials)) materials++;
     if (materials != 1 && materials != arguments->operand_count)
@@ -155,10 +155,12 @@ static int read_samples(const cli_arguments *arguments, json_t *samples) {
         skg_status status = skg_material_create_named(name, &material);
         skg_material_release(&material);
         if (status != SKG_OK) return cli_fail(status);
-        json_array_append_new(samples, json_pack("{s:o,s:o,s:s,s:o,s:n}", "Label", label_of(arguments, i),
-                                                 "Path", cli_json_text(arguments->operands[i]), "Unit",
-                                                 cli_flag_mesh_unit.values[unit].name, "Material",
-                                                 cli_json_text(name), "Parent"));
+        json_t *sample =
+            json_pack("{s:o,s:o,s:o,s:n}", "Label", label_of(arguments, i), "Path",
+                      cli_json_text(arguments->operands[i]), "Material", cli_json_text(name), "Parent");
+        if (unit >= 0)
+            json_object_set_new(sample, "Unit", cli_json_text(cli_flag_mesh_unit.values[unit].name));
+        json_array_append_new(samples, sample);
     }
     return exit_status;
 }

@@ -100,6 +100,7 @@ int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_sessi
 }
 
 void cli_close_session(cli_session *session) {
+    skg_scene_release(&session->chosen);
     skg_setup_release(&session->setup);
     skg_context_release(&session->context);
 }

@@ -10,7 +10,8 @@ typedef struct {
     skg_context *context;
     skg_device_info device;
     skg_setup *setup;
-    skg_scene *scene;       /* owned by the set-up */
+    skg_scene *scene;       /* owned by the set-up, or `chosen` */
+    skg_scene *chosen;      /* of its own, with some of the parts; or NULL */
     skg_spectrum *spectrum; /* owned by the set-up */
     skg_view view;
     skg_plan_options options;

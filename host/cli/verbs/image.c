@@ -1,6 +1,7 @@
 #include "verbs/verbs.h"
 
 #include "common/say.h"
+#include "session/chosen.h"
 #include "session/render.h"
 
 #include <math.h>
@@ -51,6 +52,7 @@ int cli_image(const cli_arguments *arguments) {
     cli_beside_read(arguments, &beside);
     if (exit_status == CLI_DONE) exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &rendering.session);
+    if (exit_status == CLI_DONE) exit_status = cli_choose_parts(arguments, &rendering.session);
     if (exit_status == CLI_DONE) {
         cli_scattering_ask(&scattering, &rendering.session);
         rendering.session.options.quantity = quantity;

@@ -9,9 +9,14 @@
 static skg_status read_text(int is_input, const char *path, char **text, size_t *length) {
     FILE *stream = stdin;
     if (!is_input) SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &stream, NULL));
-    const skg_status status = skg_input_read(stream, path, SKG_INPUT_TEXT, text, length);
+    size_t mark = 0;
+    skg_status status = skg_input_read(stream, path, SKG_INPUT_TEXT, text, length);
     if (!is_input) fclose(stream);
-    return status;
+    if (status == SKG_OK) status = skg_text_mark(path, *text, *length, &mark);
+    if (status != SKG_OK) return status;
+    memmove(*text, *text + mark, *length - mark + 1);
+    *length -= mark;
+    return SKG_OK;
 }
 
 /* Blanks a comma before a closing bracket, which JSON does not allow but people write. Returns its line; 0: there is

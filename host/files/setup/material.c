@@ -133,11 +133,33 @@ static skg_status read_table(skg_setup_reader *reader, const skg_json_node *path
     return skg_json_at(path_node, skg_material_load_table(path, unit, material));
 }
 
+/* ["Solution", "Iodine", 300, "mg/ml"] */
+static skg_status read_solution(skg_setup_reader *reader, const skg_json_node *node, int64_t count,
+                                skg_material **material) {
+    static const char *const units[] = {"mg/ml", "g/l", "g/ml", "kg/l"};
+    static const double mg_ml[] = {1, 1, 1000, 1000};
+    const char *solute = NULL;
+    double amount = 0;
+    int64_t unit = 0;
+    if (count != 4)
+        return skg_json_fail(node, SKG_ERR_FORMAT,
+                             "has %" PRId64 " elements; give [\"Solution\", \"Iodine\", 300, \"mg/ml\"]",
+                             count);
+    const skg_json_node name = skg_json_element(node, 1), number = skg_json_element(node, 2),
+                        word = skg_json_element(node, 3);
+    SKG_TRY(skg_json_text(&name, &solute));
+    SKG_TRY(skg_json_number(&number, &amount));
+    SKG_TRY(skg_json_choice(&word, "unit of a solution", units, 4, &unit));
+    SKG_TRY(skg_json_at(node, skg_material_create_solution(solute, amount * mg_ml[unit], material)));
+    return tell_note(reader, node, *material);
+}
+
 /* The material without the density that the sample gives. */
 static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node, const char *label,
                             skg_material **material) {
-    enum { MU, ELEMENT, MIXTURE, COMPOUND, HU, TABLE, KINDS };
-    static const char *const kinds[KINDS] = {"mu", "Element", "Mixture", "Compound", "HU", "Table"};
+    enum { MU, ELEMENT, MIXTURE, COMPOUND, HU, TABLE, SOLUTION, KINDS };
+    static const char *const kinds[KINDS] = {"mu", "Element", "Mixture", "Compound",
+                                             "HU", "Table",   "Solution"};
     int64_t count = 0, kind = 0;
     double per_cm = 0;
     if (json_is_string(node->value)) return read_named(node, "", material);
@@ -145,6 +167,7 @@ static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node,
     skg_json_node name = skg_json_element(node, 0), value = skg_json_element(node, 1);
     skg_json_node unit = skg_json_element(node, 2);
     SKG_TRY(skg_json_choice(&name, "kind of material", kinds, KINDS, &kind));
+    if (kind == SOLUTION) return read_solution(reader, node, count, material);
     if (count != (kind == TABLE ? 3 : 2))
         return skg_json_fail(node, SKG_ERR_FORMAT, "has %" PRId64 " elements; give %s", count,
                              kind == MU      ? "[\"mu\", 0.2], in 1/cm"

@@ -11,6 +11,7 @@ static const skg_json_key sample_keys[] = {
     {"Label", NULL, SKG_KEY_READ},
     {"Path", NULL, SKG_KEY_READ},
     {"Unit", NULL, SKG_KEY_READ},
+    {"Group", NULL, SKG_KEY_READ},
     {"Cube", NULL, SKG_KEY_READ},
     {"Cuboid", NULL, SKG_KEY_READ},
     {"Parallelepiped", "Cuboid", SKG_KEY_READ},
@@ -242,7 +243,7 @@ skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node 
                                   const skg_json_node *graph) {
     int64_t count = 0;
     sample_list list = {.outer_part = -1};
-    skg_mesh_cache cache = {0};
+    skg_mesh_cache cache = {.as_wound = reader->setup->as_wound};
     skg_status status = SKG_OK;
     if (node->value) SKG_TRY(skg_json_array(node, "an array of samples [ ... ]", &count));
     SKG_TRY(skg_scene_create(reader->context, &reader->setup->scene));

@@ -102,19 +102,21 @@ skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node
 /* The meshes loaded so far: a file that several samples use is loaded once. */
 typedef struct {
     struct skg_loaded_mesh {
-        const char *path;
-        double unit_mm;
+        const char *path, *group; /* of the scene's text; group NULL: the whole file */
+        double unit_mm;           /* 0: the file's */
         int32_t flip;
         skg_mesh *mesh;
     } * loaded;
     int64_t count;
     struct skg_fetched_mesh { /* loaded beforehand, by several threads */
         char *path;
+        const char *group;
         double unit_mm;
         skg_loaded
             loaded; /* its mesh is NULL if that failed; the failure is found again where the sample is read */
     } * fetched;
     int64_t fetched_count;
+    int32_t as_wound; /* as in skg_mesh_reading */
 } skg_mesh_cache;
 
 void skg_mesh_cache_clear(skg_mesh_cache *cache);
@@ -127,8 +129,11 @@ skg_status skg_mesh_cache_want(const skg_setup_reader *reader, const skg_json_ob
 skg_status skg_mesh_cache_fetch(skg_mesh_cache *cache);
 
 /* Takes a mesh that was loaded beforehand, or loads it. */
-skg_status skg_mesh_cache_load(skg_mesh_cache *cache, skg_context *context, const char *path, double unit_mm,
-                               skg_mesh **mesh);
+skg_status skg_mesh_cache_load(skg_mesh_cache *cache, skg_context *context, const char *path,
+                               const char *group, double unit_mm, skg_mesh **mesh);
+
+/* Whether two names of groups are the same; NULL: no group. */
+int skg_mesh_cache_same(const char *a, const char *b);
 
 /* The mesh of a sample: from its Path, or generated. flip: turn a leaky mesh inside out (the normals of a closed one
  * point outward anyway). The caller releases the mesh. own: pose of the generated mesh in the axes of the schema. */

@@ -53,23 +53,25 @@ static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     return SKG_OK;
 }
 
-/* One word of Repair: what to do about leaky meshes, or that inverted components are turned. */
+/* One word of Repair: what to do about leaky meshes, that inverted components are turned, or that components are united. */
 static skg_status read_repair_word(skg_setup *setup, const skg_json_node *node) {
-    enum { ORIENTATION = 3 };
+    enum { ORIENTATION = 3, UNION = 4 };
     static const char *const names[] = {[SKG_REPAIR_NONE] = "none",
                                         [SKG_REPAIR_NEIGHBOURS] = "neighbours",
                                         [SKG_REPAIR_EXACT] = "exact",
-                                        [ORIENTATION] = "orientation"};
+                                        [ORIENTATION] = "orientation",
+                                        [UNION] = "union"};
     int64_t choice = 0;
-    SKG_TRY(skg_json_choice(node, "repair", names, 4, &choice));
-    if (choice == ORIENTATION) {
-        setup->orient = 1;
+    SKG_TRY(skg_json_choice(node, "repair", names, 5, &choice));
+    if (choice == ORIENTATION || choice == UNION) {
+        *(choice == UNION ? &setup->unite : &setup->orient) = 1;
         return SKG_OK;
     }
     if (setup->has_repair)
         return skg_json_fail(node, SKG_ERR_FORMAT, "a repair of leaky meshes was chosen before");
     setup->has_repair = 1;
     setup->repair = (int32_t)choice;
+    setup->as_wound = choice == SKG_REPAIR_NONE;
     return SKG_OK;
 }
 
@@ -352,6 +354,7 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->falloff != SKG_FALLOFF_AUTO) ours.falloff = setup->falloff;
     if (setup->has_repair) ours.repair = setup->repair;
     if (setup->clip) ours.clip = 1;
+    if (setup->unite) ours.unite = 1;
     if (setup->has_band_weight) ours.band_weight = setup->band_weight;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
     if (setup->has_heel) ours.heel = &setup->heel;

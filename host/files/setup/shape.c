@@ -20,12 +20,12 @@ static const struct {
 enum { SECTORS_MAX = 100000 };
 
 /* The mesh gets one more owner; the path belongs to the set-up. */
-static skg_status remember(skg_mesh_cache *cache, const char *path, double unit_mm, int32_t flip,
-                           skg_mesh *mesh) {
+static skg_status remember(skg_mesh_cache *cache, const char *path, const char *group, double unit_mm,
+                           int32_t flip, skg_mesh *mesh) {
     SKG_TRY(skg_realloc(cache->count + 1, sizeof *cache->loaded, "meshes", &cache->loaded));
     SKG_TRY(skg_mesh_retain(mesh));
-    cache->loaded[cache->count++] =
-        (struct skg_loaded_mesh){.path = path, .unit_mm = unit_mm, .flip = flip, .mesh = mesh};
+    cache->loaded[cache->count++] = (struct skg_loaded_mesh){
+        .path = path, .group = group, .unit_mm = unit_mm, .flip = flip, .mesh = mesh};
     return SKG_OK;
 }
 
@@ -63,6 +63,7 @@ static skg_status turn_inside_out(const skg_setup_reader *reader, const skg_json
                                     &(skg_mesh_source){.size = sizeof(skg_mesh_source),
                                                        .vertices = health.vertices,
                                                        .positions = positions,
+                                                       .as_wound = reader->setup->as_wound,
                                                        .position_stride = 3,
                                                        .triangles = health.triangles,
                                                        .corners = corners,
@@ -96,24 +97,26 @@ static skg_status orient(const skg_setup_reader *reader, const skg_json_node *no
 
 static skg_status load(skg_setup_reader *reader, const skg_json_object *sample, const skg_json_node *node,
                        int32_t flip, skg_mesh_cache *cache, skg_mesh **mesh) {
-    const char *name = NULL, *path = NULL;
-    double unit_mm = 1;
-    skg_json_node unit;
+    const char *name = NULL, *path = NULL, *group = NULL;
+    double unit_mm = 0; /* the file's */
+    const skg_json_node unit = skg_json_member(sample, "Unit"), piece = skg_json_member(sample, "Group");
     SKG_TRY(skg_json_text(node, &name));
-    SKG_TRY(skg_json_need(sample, "Unit", "\"mm\"", &unit));
-    SKG_TRY(skg_json_unit_of_length(&unit, &unit_mm));
+    if (unit.value) SKG_TRY(skg_json_unit_of_length(&unit, &unit_mm));
+    if (piece.value) SKG_TRY(skg_json_text(&piece, &group));
     SKG_TRY(skg_setup_find_file(reader, name, &path));
     for (int64_t i = 0; i < cache->count; i++) {
         const struct skg_loaded_mesh *known = &cache->loaded[i];
-        if (strcmp(known->path, path) != 0 || known->unit_mm != unit_mm || known->flip != flip) continue;
+        if (strcmp(known->path, path) != 0 || known->unit_mm != unit_mm || known->flip != flip ||
+            !skg_mesh_cache_same(known->group, group))
+            continue;
         SKG_TRY(skg_mesh_retain(known->mesh));
         *mesh = known->mesh;
         return SKG_OK;
     }
-    SKG_TRY(skg_json_at(node, skg_mesh_cache_load(cache, reader->context, path, unit_mm, mesh)));
+    SKG_TRY(skg_json_at(node, skg_mesh_cache_load(cache, reader->context, path, group, unit_mm, mesh)));
     if (flip) SKG_TRY(turn_inside_out(reader, node, mesh));
     if (reader->setup->orient) SKG_TRY(orient(reader, node, mesh));
-    return remember(cache, path, unit_mm, flip, *mesh);
+    return remember(cache, path, group, unit_mm, flip, *mesh);
 }
 
 static const skg_json_key wedge_keys[] = {

@@ -22,6 +22,15 @@ enum skg_fdk_filter {
     SKG_FDK_FILTER_HANN = 1
 };
 
+/** What is done about projections that the detector cuts off. */
+enum skg_fdk_truncation {
+    /** Nothing: values rise towards the edge of what the detector sees. */
+    SKG_FDK_TRUNCATION_NONE = 0,
+    /** Rows are continued beyond the detector as the projection of an ellipse that fits their outermost columns; where none does, by
+     * their mirror image about the edge, which falls to 0 (B. Ohnesorge et al., Med. Phys. 27 (2000) 39-46). */
+    SKG_FDK_TRUNCATION_EXTRAPOLATE = 1
+};
+
 /** What is reconstructed. Prepare with skg_fdk_options_init: axis z through the origin, 128 voxels of 1 mm along
  * each side, the ramp. */
 typedef struct {
@@ -41,13 +50,35 @@ typedef struct {
     double middle[3];
     /** Steps are projections. Retained by the reconstruction; NULL: nobody wants to know. */
     skg_progress *progress;
+    /** enum skg_fdk_truncation */
+    int32_t truncation;
+    /** 0 */
+    int32_t reserved;
 } skg_fdk_options;
 
 SKG_INIT(skg_fdk_options)
 
+/** What the detector saw of the bodies. The library fills it; prepare with skg_fdk_report_init. */
+typedef struct {
+    /** Set by skg_fdk_report_init. */
+    int32_t size;
+    /** 1: the detector is displaced by more than a column, and a full turn is weighted for it. */
+    int32_t displaced;
+    /** The radius about the axis within which every line is measured, mm. */
+    double covered_mm;
+    /** The radius about the axis that the near side of a displaced detector reaches, mm; otherwise as covered_mm. */
+    double overlap_mm;
+    /** The share of the rows that were added so far whose values do not fall to 5 % of the largest of the projection at an edge of the
+     * detector that has to show air: truncated ones. */
+    double truncated;
+} skg_fdk_report;
+
+SKG_INIT(skg_fdk_report)
+
 /** Begins a reconstruction.
  *
- *     scan      retained. The angles are those of its views about the axis. A full turn needs no weights; from 180
+ *     scan      retained. The angles are those of its views about the axis. A full turn needs no weights, unless the
+ *               detector is displaced by more than a column (half-fan): then Wang's (Med. Phys. 29 (2002) 1634-1636); from 180
  *               degrees plus the fan on, Parker's weights are used (Med. Phys. 9 (1982) 254-257)
  *     options   NULL: the defaults
  *     fdk       result; the caller releases it
@@ -65,6 +96,9 @@ SKG_API void skg_fdk_release(skg_fdk **fdk);
  *     image   [row][column] of -ln(I / I0)
  *     errors  SKG_ERR_CANCELLED: the projection was not added; SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
 SKG_API skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image);
+
+/** Gets what the detector saw, of the projections that were added so far. */
+SKG_API skg_status skg_fdk_report_get(const skg_fdk *fdk, skg_fdk_report *report);
 
 /** Gets the volume, 1/cm: [z][y][x]. It is valid as long as the reconstruction. */
 SKG_API skg_status skg_fdk_volume_get(const skg_fdk *fdk, const float **volume);

@@ -174,6 +174,8 @@ SKG_API skg_status skg_scan_short_range_get(const skg_view *view, const skg_scan
  *              .tigre.py: a Python file that makes `geo` and `angles` for TIGRE. z of the volume runs along the axis, from
  *              the detector's first row to its last one, and x to the source at angle 0. All kinds of scans of point sources
  *              are written; each projection has its own distances, offsets and rotation of the detector
+ *              transforms.json: cameras of NeRF and Gaussian splatting (instant-ngp, nerfstudio): x along the columns, y against
+ *              the rows, z from the scene to the source, in mm and in the axes of the scan; point sources only.
  *              .cil.py: a Python file that makes `geometry` for CIL (AcquisitionGeometry). z as for TIGRE, y from the source
  *              to the axis. Scans that only turn are Cone3D or Parallel3D; others have positions and directions for each
  *              projection (Cone3D_SOUV)

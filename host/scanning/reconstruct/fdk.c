@@ -13,7 +13,8 @@
 #include <math.h>
 #include <string.h>
 
-enum { VOXELS_MAX = 4096 };
+/* FITTED: columns at an edge that the continuation of a row is fitted to. */
+enum { VOXELS_MAX = 4096, FITTED = 16 };
 
 struct skg_fdk {
     skg_scan *scan;
@@ -21,9 +22,11 @@ struct skg_fdk {
     skg_orbit orbit;
     skg_row_filter filter;
     int64_t columns, rows, projections, fine;
-    int64_t added; /* projections */
-    float *image;  /* [rows][fine], weighted and filtered */
-    float *volume; /* [z][y][x], 1/cm */
+    int64_t pad[2];    /* columns that are added before the first and behind the last one */
+    int64_t added;     /* projections */
+    int64_t truncated; /* rows of them */
+    float *image;      /* [rows][fine], weighted and filtered */
+    float *volume;     /* [z][y][x], 1/cm */
 };
 
 void skg_fdk_options_init_sized(void *options, int32_t size) {
@@ -39,6 +42,10 @@ static skg_status check_options(const skg_fdk_options *o) {
         if (o->voxels[k] < 1 || o->voxels[k] > VOXELS_MAX)
             return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: %" PRId64 " voxels along %c; give 1 to %d",
                             o->voxels[k], "xyz"[k], VOXELS_MAX);
+    if (o->truncation != SKG_FDK_TRUNCATION_NONE && o->truncation != SKG_FDK_TRUNCATION_EXTRAPOLATE)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "reconstruction: truncation %" PRId32 " is no SKG_FDK_TRUNCATION_ value",
+                        o->truncation);
     if (!(o->voxel_mm > 0) || isinf(o->voxel_mm))
         return skg_fail(SKG_ERR_ARGUMENT, "reconstruction: voxels of %g mm", o->voxel_mm);
     if (!skg_all_finite(o->axis, 3) || !(skg_length(o->axis) > 0) || !skg_all_finite(o->centre, 3) ||
@@ -46,6 +53,30 @@ static skg_status check_options(const skg_fdk_options *o) {
         return skg_fail(SKG_ERR_ARGUMENT,
                         "reconstruction: axis, centre or middle is not finite, or the axis has no "
                         "length");
+    return SKG_OK;
+}
+
+/* Whether column 0 is on the side of the near edge of a displaced detector. */
+static int near_is_first(const skg_fdk *fdk, const skg_orbit_pose *pose) {
+    return fdk->orbit.displaced * skg_orbit_place(pose, fdk->rows / 2, 0) < 0;
+}
+
+/* Columns that are added to each row. A filtered row goes on where the detector ends: a displaced detector is made symmetrical, for
+ * voxels are seen there, too. Rows that are continued may become three times as long. */
+static skg_status find_padding(skg_fdk *fdk) {
+    const skg_orbit *orbit = &fdk->orbit;
+    skg_orbit_pose pose = {0};
+    SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, orbit, 0, &pose));
+    const int64_t more = fdk->options.truncation == SKG_FDK_TRUNCATION_EXTRAPOLATE ? fdk->columns : 0;
+    fdk->pad[0] = fdk->pad[1] = more;
+    if (!orbit->displaced) return SKG_OK;
+    const double wide = fmax(-orbit->low, orbit->high);
+    const int first = near_is_first(fdk, &pose), step = first ? -1 : 1;
+    int64_t column = first ? 0 : fdk->columns - 1, *pad = &fdk->pad[first ? 0 : 1];
+    for (*pad = 0; *pad < 4 * fdk->columns && fabs(skg_orbit_place(&pose, fdk->rows / 2, column)) < wide;
+         ++*pad)
+        column += step;
+    *pad += more;
     return SKG_OK;
 }
 
@@ -58,8 +89,10 @@ static skg_status prepare(skg_fdk *fdk) {
     fdk->columns = view.columns;
     fdk->rows = view.rows;
     const int64_t *n = fdk->options.voxels;
-    SKG_TRY(skg_row_filter_create(view.columns, fdk->options.filter == SKG_FDK_FILTER_HANN, &fdk->filter));
-    fdk->fine = skg_row_fine(&fdk->filter, view.columns);
+    SKG_TRY(find_padding(fdk));
+    const int64_t padded = fdk->pad[0] + view.columns + fdk->pad[1];
+    SKG_TRY(skg_row_filter_create(padded, fdk->options.filter == SKG_FDK_FILTER_HANN, &fdk->filter));
+    fdk->fine = skg_row_fine(&fdk->filter, padded);
     SKG_TRY(skg_alloc(fdk->fine * view.rows, sizeof(float), "projection", &fdk->image));
     return skg_alloc(n[0] * n[1] * n[2], sizeof(float), "volume", &fdk->volume);
 }
@@ -97,32 +130,154 @@ void skg_fdk_release(skg_fdk **fdk) {
     skg_free(fdk);
 }
 
-/* Weights each ray by its share and by the cosine of its angle with the plane across the axis, then filters the row. */
-static void filter_row(skg_fdk *fdk, const skg_orbit_pose *pose, const float *image, int64_t row,
-                       double *work) {
-    double *weighted = work + 2 * (fdk->filter.fine + fdk->filter.length);
-    for (int64_t c = 0; c < fdk->columns; c++) {
-        double ray[3];
-        skg_orbit_ray(pose, row, c, ray);
-        const double cosine = skg_dot(ray, pose->forward) / skg_length(ray);
-        weighted[c] =
-            (double)image[row * fdk->columns + c] * cosine * skg_orbit_weight(&fdk->orbit, pose, ray);
+/* How a row goes on beyond an edge. The square of a projection of an ellipse, over that of the cosine of the ray in the fan, is a
+ * parabola along the row: it is fitted to the outermost columns, and followed to where it ends. */
+typedef struct {
+    int is_cut, is_ellipse;
+    double parabola[3]; /* of the columns beyond the edge */
+} continuation;
+
+/* Fits a parabola to `count` values at 0, -1, -2, ... by least squares: sums of powers, and Cramer's rule. */
+static void fit_parabola(const double *values, int64_t count, double parabola[3]) {
+    double m[5] = {0}, v[3] = {0};
+    for (int64_t k = 0; k < count; k++) {
+        double power = 1;
+        for (int i = 0; i < 5; i++, power *= -(double)k) {
+            m[i] += power;
+            if (i < 3) v[i] += power * values[k];
+        }
     }
-    skg_row_filter_apply(&fdk->filter, fdk->columns, weighted, work, fdk->image + row * fdk->fine);
+    const double rows[3][3] = {{m[0], m[1], m[2]}, {m[1], m[2], m[3]}, {m[2], m[3], m[4]}};
+    double cofactors[3];
+    skg_cross(rows[1], rows[2], cofactors);
+    const double whole = skg_dot(rows[0], cofactors);
+    for (int i = 0; i < 3; i++) {
+        double columns[3][3];
+        for (int r = 0; r < 3; r++)
+            for (int c = 0; c < 3; c++) columns[r][c] = c == i ? v[r] : rows[r][c];
+        skg_cross(columns[1], columns[2], cofactors);
+        parabola[i] = skg_dot(columns[0], cofactors) / whole;
+    }
+}
+
+/* most: columns up to which the parabola has to end. cosines: of the outermost columns */
+static void find_continuation(const float *edge, int64_t next, const double *cosines, int64_t count,
+                              int64_t most, continuation *on) {
+    double squares[FITTED];
+    for (int64_t k = 0; k < count; k++) {
+        const double value = (double)edge[k * next] / cosines[k];
+        squares[k] = value * value;
+    }
+    fit_parabola(squares, count, on->parabola);
+    const double *q = on->parabola;
+    const double inside = q[1] * q[1] - 4 * q[2] * q[0];
+    on->is_ellipse = count > 3 && q[2] < 0 && q[0] > 0 && (q[1] + sqrt(inside)) / (-2 * q[2]) <= (double)most;
+}
+
+/* The value `steps` columns beyond an edge: of an ellipse, otherwise the mirror image about the edge, which ends at 0, under a cosine
+ * that does so at the last column. next: from one column to the next, into the detector. */
+static double beyond(const continuation *on, const float *edge, int64_t next, int64_t steps, int64_t columns,
+                     int64_t most, double cosine) {
+    const double x = (double)steps, *q = on->parabola;
+    if (on->is_ellipse) {
+        const double square = q[0] + x * (q[1] + x * q[2]);
+        const int is_behind = 2 * q[2] * x + q[1] > 0; /* the parabola rises: its top lies beyond the edge */
+        return square > 0 || is_behind ? cosine * sqrt(fmax(square, 0)) : 0;
+    }
+    if (most == 0 || steps >= columns) return 0;
+    for (int64_t k = 1; k < steps; k++)
+        if ((double)edge[k * next] >= 2 * (double)edge[0]) return 0;
+    const double mirrored = 2 * (double)edge[0] - (double)edge[steps * next];
+    const double share = cos(0.5 * SKG_PI * x / (double)(most + 1));
+    return mirrored > 0 ? mirrored * share * share : 0;
+}
+
+/* Whether a row is cut off: the mean of the outermost columns is above a share of the largest value. */
+static int is_cut(const float *edge, int64_t next, int64_t columns, double largest) {
+    enum { MEAN_OF = 4 };
+    static const double SHARE = 0.05;
+    const int64_t count = columns < MEAN_OF ? columns : MEAN_OF;
+    double sum = 0;
+    for (int64_t k = 0; k < count; k++) sum += (double)edge[k * next];
+    return sum > SHARE * largest * (double)count;
+}
+
+/* What holds for all rows of a projection. */
+typedef struct {
+    const skg_orbit_pose *pose;
+    const float *image;
+    double largest;
+    int open[2]; /* 1: this side has to show air, and is continued if it does not */
+} projection;
+
+static double cosine_of(const skg_orbit_pose *pose, int64_t row, int64_t column, double *ray) {
+    skg_orbit_ray(pose, row, column, ray);
+    return skg_dot(ray, pose->forward) / skg_length(ray);
+}
+
+/* How a row goes on beyond its first (side 0) or last column. */
+static continuation look_beyond(const skg_fdk *fdk, const projection *p, int64_t row, int side) {
+    continuation on = {0};
+    double cosines[FITTED], ray[3];
+    const int64_t next = side ? -1 : 1, first = side ? fdk->columns - 1 : 0;
+    const int64_t count = fdk->columns / 4 < FITTED ? fdk->columns / 4 : FITTED;
+    const float *edge = p->image + row * fdk->columns + first;
+    on.is_cut = p->open[side] && is_cut(edge, next, fdk->columns, p->largest);
+    if (!on.is_cut || fdk->options.truncation != SKG_FDK_TRUNCATION_EXTRAPOLATE) return on;
+    for (int64_t k = 0; k < count; k++) cosines[k] = cosine_of(p->pose, row, first + k * next, ray);
+    find_continuation(edge, next, cosines, count, fdk->pad[side], &on);
+    return on;
+}
+
+/* Weights each ray by its share and by the cosine of its angle with the plane across the axis, then filters the row. Returns whether
+ * it is cut off. */
+static int filter_row(skg_fdk *fdk, const projection *p, int64_t row, double *work) {
+    double *weighted = work + 2 * (fdk->filter.fine + fdk->filter.length);
+    const float *values = p->image + row * fdk->columns;
+    const int64_t last = fdk->columns - 1, padded = fdk->pad[0] + fdk->columns + fdk->pad[1];
+    const int goes_on = fdk->options.truncation == SKG_FDK_TRUNCATION_EXTRAPOLATE;
+    const continuation on[2] = {look_beyond(fdk, p, row, 0), look_beyond(fdk, p, row, 1)};
+    for (int64_t c = 0; c < padded; c++) {
+        const int64_t column = c - fdk->pad[0];
+        const int side = column > last, is_inside = column >= 0 && column <= last;
+        double ray[3];
+        weighted[c] = 0;
+        if (!is_inside && !(goes_on && on[side].is_cut)) continue;
+        const double cosine = cosine_of(p->pose, row, column, ray);
+        const double place = fdk->orbit.displaced ? skg_orbit_place(p->pose, row, column) : 0;
+        const double value =
+            is_inside ? (double)values[column]
+            : side    ? beyond(&on[1], values + last, -1, column - last, fdk->columns, fdk->pad[1], cosine)
+                      : beyond(&on[0], values, 1, -column, fdk->columns, fdk->pad[0], cosine);
+        weighted[c] = value * cosine * skg_orbit_weight(&fdk->orbit, p->pose, ray, place);
+    }
+    skg_row_filter_apply(&fdk->filter, padded, weighted, work, fdk->image + row * fdk->fine);
+    return on[0].is_cut || on[1].is_cut;
+}
+
+static void look_at(const skg_fdk *fdk, const skg_orbit_pose *pose, const float *image, projection *p) {
+    *p = (projection){.pose = pose, .image = image, .open = {1, 1}};
+    if (fdk->orbit.displaced) p->open[near_is_first(fdk, pose) ? 0 : 1] = 0;
+    for (int64_t i = 0; i < fdk->rows * fdk->columns; i++) p->largest = fmax(p->largest, (double)image[i]);
 }
 
 static skg_status filter_image(skg_fdk *fdk, const skg_orbit_pose *pose, const float *image) {
     int failed = 0;
-#pragma omp parallel reduction(| : failed)
+    int64_t truncated = 0;
+    projection p;
+    look_at(fdk, pose, image, &p);
+#pragma omp parallel reduction(| : failed) reduction(+ : truncated)
     {
         double *work = NULL;
-        failed = skg_alloc(2 * (fdk->filter.fine + fdk->filter.length) + fdk->columns, sizeof *work, "filter",
-                           &work) != SKG_OK;
+        failed =
+            skg_alloc(2 * (fdk->filter.fine + fdk->filter.length) + fdk->pad[0] + fdk->columns + fdk->pad[1],
+                      sizeof *work, "filter", &work) != SKG_OK;
 #pragma omp for schedule(static)
         for (int64_t row = 0; row < fdk->rows; row++)
-            if (!failed) filter_row(fdk, pose, image, row, work);
+            if (!failed) truncated += filter_row(fdk, &p, row, work);
         skg_free(&work);
     }
+    if (!failed) fdk->truncated += truncated;
     return failed ? skg_fail(SKG_ERR_MEMORY, "reconstruction: no memory for the filter") : SKG_OK;
 }
 
@@ -172,7 +327,8 @@ static void find_map(const skg_orbit_pose *pose, pixel_map *map) {
 
 /* The filtered image between pixels; 0 beyond its edge. */
 static double image_at(const skg_fdk *fdk, double column, double row) {
-    const double fine = (double)fdk->filter.finer * column, c = floor(fine), r = floor(row);
+    const double fine = (double)fdk->filter.finer * (column + (double)fdk->pad[0]), c = floor(fine),
+                 r = floor(row);
     if (!(c >= 0 && r >= 0 && c < (double)(fdk->fine - 1) && r < (double)(fdk->rows - 1))) return 0;
     const float *at = fdk->image + (int64_t)r * fdk->fine + (int64_t)c;
     const double u = fine - c, v = row - r;
@@ -225,6 +381,26 @@ skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image) {
     if (++fdk->added == fdk->projections)
         (void)skg_progress_step(fdk->options.progress, fdk->added, fdk->projections);
     return SKG_OK;
+}
+
+void skg_fdk_report_init_sized(void *report, int32_t size) {
+    const skg_fdk_report defaults = {0};
+    skg_struct_init(report, size, &defaults, sizeof defaults);
+}
+
+skg_status skg_fdk_report_get(const skg_fdk *fdk, skg_fdk_report *report) {
+    SKG_NEEDS(fdk);
+    SKG_NEEDS(report);
+    const skg_orbit *orbit = &fdk->orbit;
+    skg_orbit_pose pose = {0};
+    SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, orbit, 0, &pose));
+    const double least = fmin(-orbit->low, orbit->high), most = fmax(-orbit->low, orbit->high);
+    const double rows = (double)fdk->rows * (double)fdk->added;
+    const skg_fdk_report ours = {.displaced = orbit->displaced != 0,
+                                 .covered_mm = skg_orbit_radius(&pose, orbit->displaced ? most : least),
+                                 .overlap_mm = skg_orbit_radius(&pose, least),
+                                 .truncated = rows > 0 ? (double)fdk->truncated / rows : 0};
+    return skg_struct_write(&ours, sizeof ours, "skg_fdk_report", report);
 }
 
 skg_status skg_fdk_volume_get(const skg_fdk *fdk, const float **volume) {

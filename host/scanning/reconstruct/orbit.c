@@ -3,6 +3,12 @@
 #include "core/maths.h"
 
 #include <math.h>
+#include <string.h>
+
+/* For helical scans, laminography and tables. */
+#define SKG_OTHER_TOOLS                                                                                                               \
+    "; for other scans, `skiagraph scan SCENE --geometry FILE` writes .xml for RTK, .csv for ASTRA, .tigre.py for TIGRE and .cil.py " \
+    "for CIL"
 
 /* The largest cosine between the rows of the detector and the axis. */
 static const double max_oblique = 0.1;
@@ -27,6 +33,7 @@ static skg_status find_forward(const skg_fdk_options *o, const double *axis, int
         return skg_fail(SKG_ERR_UNSUPPORTED, "projection %lld: the beam runs along the axis",
                         (long long)index);
     normalise(to);
+    memcpy(pose->centre, o->centre, sizeof pose->centre);
     return SKG_OK;
 }
 
@@ -36,9 +43,10 @@ static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose
     const double length = skg_length(view->column_step);
     double to_detector[3];
     if (fabs(skg_dot(view->column_step, axis)) > max_oblique * length)
-        return skg_fail(SKG_ERR_UNSUPPORTED,
-                        "projection %lld: the rows of the detector do not run across the axis of rotation",
-                        (long long)index);
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "projection %lld: the rows of the detector do not run across the axis of rotation" SKG_OTHER_TOOLS,
+            (long long)index);
     pose->spacing = fabs(skg_dot(view->column_step, pose->across));
     if (pose->is_parallel) return SKG_OK;
     skg_add_scaled(view->centre, -1, view->source, to_detector);
@@ -80,6 +88,23 @@ void skg_orbit_ray(const skg_orbit_pose *pose, int64_t row, int64_t column, doub
 
 static double fan_angle(const skg_orbit_pose *pose, const double *ray) {
     return atan2(skg_dot(ray, pose->across), skg_dot(ray, pose->forward));
+}
+
+double skg_orbit_place(const skg_orbit_pose *pose, int64_t row, int64_t column) {
+    const skg_view *view = &pose->view;
+    double ray[3];
+    if (!pose->is_parallel) {
+        skg_orbit_ray(pose, row, column, ray);
+        return fan_angle(pose, ray);
+    }
+    skg_add_scaled(view->centre, (double)column - 0.5 * (double)(view->columns - 1), view->column_step, ray);
+    skg_add_scaled(ray, (double)row - 0.5 * (double)(view->rows - 1), view->row_step, ray);
+    skg_add_scaled(ray, -1, pose->centre, ray);
+    return skg_dot(ray, pose->across);
+}
+
+double skg_orbit_radius(const skg_orbit_pose *pose, double place) {
+    return fabs(pose->is_parallel ? place : pose->radius * sin(place));
 }
 
 /* The widest fan of a projection, from the corners of its detector. */
@@ -129,10 +154,26 @@ static skg_status check_circle(skg_scan *scan, const skg_fdk_options *o, const s
             return skg_fail(
                 SKG_ERR_UNSUPPORTED,
                 "projection %lld: the source leaves its circle, or angles are not evenly spaced; only "
-                "circular scans are reconstructed",
+                "circular scans are reconstructed" SKG_OTHER_TOOLS,
                 (long long)k);
     }
     return SKG_OK;
+}
+
+/* Whether the detector of a full turn is displaced, and sees the axis. */
+static skg_status find_displacement(skg_scan *scan, const skg_fdk_options *o, skg_orbit *orbit) {
+    skg_orbit_pose pose = {0};
+    SKG_TRY(skg_orbit_pose_get(scan, o, orbit, 0, &pose));
+    const int64_t row = pose.view.rows / 2, last = pose.view.columns - 1;
+    const double ends[2] = {skg_orbit_place(&pose, row, 0), skg_orbit_place(&pose, row, last)};
+    orbit->low = fmin(ends[0], ends[1]), orbit->high = fmax(ends[0], ends[1]);
+    const double column = (orbit->high - orbit->low) / fmax((double)last, 1), lean = orbit->low + orbit->high;
+    orbit->displaced = !orbit->is_full || fabs(lean) <= column ? 0 : lean > 0 ? 1 : -1;
+    if (!orbit->displaced || (-orbit->low > 2 * column && orbit->high > 2 * column)) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "the detector does not see the axis of rotation with two columns beyond it, so that lines are missing; displace "
+        "it less");
 }
 
 skg_status skg_orbit_find(skg_scan *scan, const skg_fdk_options *o, skg_orbit *orbit) {
@@ -145,13 +186,24 @@ skg_status skg_orbit_find(skg_scan *scan, const skg_fdk_options *o, skg_orbit *o
     if (!orbit->is_full && orbit->range + 1.5 * orbit->step < least)
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
-            "the scan has a range of %.4g degrees; a reconstruction needs 180 degrees plus the fan, %.4g",
+            "the scan has a range of %.4g degrees; a reconstruction needs 180 degrees plus the fan, %.4g" SKG_OTHER_TOOLS,
             orbit->range * 180 / SKG_PI, least * 180 / SKG_PI);
-    return SKG_OK;
+    return find_displacement(scan, o, orbit);
 }
 
-double skg_orbit_weight(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray) {
-    if (orbit->is_full) return SKG_PI / (orbit->range + orbit->step); /* 1/2 for each turn */
+/* The weight of a displaced detector: it rises from 0 at the near edge to 1 at the same distance on the wide side. */
+static double displaced_share(const skg_orbit *orbit, double place) {
+    const double overlap = fmin(-orbit->low, orbit->high), at = orbit->displaced * place / overlap;
+    if (at <= -1) return 0;
+    if (at >= 1) return 1;
+    const double root = sin(SKG_PI / 4 * (1 + at));
+    return root * root;
+}
+
+double skg_orbit_weight(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray, double place) {
+    const double half = SKG_PI / (orbit->range + orbit->step); /* 1/2 for each turn */
+    if (orbit->displaced) return 2 * half * displaced_share(orbit, place);
+    if (orbit->is_full) return half;
     const double gamma = fan_angle(pose, ray), beta = pose->angle;
     const double delta = fmax(0.5 * (orbit->range - SKG_PI), fabs(gamma) + 1e-6);
     double share = 1;

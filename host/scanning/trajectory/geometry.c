@@ -25,6 +25,7 @@ static const struct {
     skg_status (*write)(const skg_scan *scan, FILE *stream);
 } formats[] = {{".tigre.py", skg_scan_write_tigre},
                {".cil.py", skg_scan_write_cil},
+               {"transforms.json", skg_scan_write_nerf},
                {".csv", write_table},
                {".xml", skg_scan_write_rtk}};
 
@@ -36,12 +37,12 @@ skg_status skg_scan_geometry_save(const skg_scan *scan, const char *path) {
     SKG_NEEDS(path);
     for (; f < sizeof formats / sizeof *formats; f++) {
         const size_t length = strlen(path), ending = strlen(formats[f].ending);
-        if (length > ending && skg_same_name(path + length - ending, formats[f].ending)) break;
+        if (length >= ending && skg_same_name(path + length - ending, formats[f].ending)) break;
     }
     if (f == sizeof formats / sizeof *formats)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "%s: a geometry is written to a .csv, or, for RTK, an .xml, for TIGRE, a .tigre.py, "
-                        "for CIL, a .cil.py",
+                        "for CIL, a .cil.py, for NeRF, a transforms.json",
                         path);
     SKG_TRY(skg_output_open(path, &file));
     skg_status status = formats[f].write(scan, file.stream);

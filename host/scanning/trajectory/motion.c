@@ -27,14 +27,20 @@ void skg_scan_turn(const double *axis, const double *centre, double angle, int i
     for (int k = 0; k < 2 && !is_detector_fixed; k++) skg_pose_point(turn, steps[k], steps[k]);
 }
 
+/* Moves the detector. The rays of a parallel beam go from the source to the detector's centre: a displaced detector does not turn
+ * them, so the point that stands for the source goes along. */
+static void move_detector(double factor, const double *way, skg_view *view) {
+    skg_add_scaled(view->centre, factor, way, view->centre);
+    if (view->projection == SKG_PROJECTION_PARALLEL) skg_add_scaled(view->source, factor, way, view->source);
+}
+
 void skg_scan_displace_detector(const skg_scan_options *options, skg_view *view) {
     double axes[3][3], turn[16];
     skg_scale_vector(1 / skg_length(view->column_step), view->column_step, axes[0]);
     skg_scale_vector(1 / skg_length(view->row_step), view->row_step, axes[1]);
     skg_cross(axes[0], axes[1], axes[2]);
     skg_scale_vector(1 / skg_length(axes[2]), axes[2], axes[2]);
-    for (int k = 0; k < 2; k++)
-        skg_add_scaled(view->centre, options->detector_offset_mm[k], axes[k], view->centre);
+    for (int k = 0; k < 2; k++) move_detector(options->detector_offset_mm[k], axes[k], view);
     if (options->detector_skew_rad != 0) {
         const double length = skg_length(view->row_step), lean = options->detector_skew_rad;
         skg_scale_vector(cos(lean), view->row_step, view->row_step);
@@ -70,12 +76,13 @@ void skg_scan_disturb(const skg_scan_options *options, double position, int64_t 
         skg_add_scaled(view->source, travelled, options->source_travel_mm, view->source);
         skg_add_scaled(view->source, share, options->source_drift_mm, view->source);
     }
-    skg_add_scaled(view->centre, share, options->detector_drift_mm, view->centre);
+    move_detector(share, options->detector_drift_mm, view);
     for (int k = 0; k < 3; k++) {
         if (options->source_jitter_mm > 0 && has_point)
             view->source[k] += options->source_jitter_mm * normal(options, index, k);
+        const double axis[3] = {k == 0, k == 1, k == 2};
         if (options->detector_jitter_mm > 0)
-            view->centre[k] += options->detector_jitter_mm * normal(options, index, 3 + k);
+            move_detector(options->detector_jitter_mm * normal(options, index, 3 + k), axis, view);
     }
 }
 

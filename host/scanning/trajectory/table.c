@@ -69,7 +69,7 @@ skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *opt
     *scan = NULL;
     SKG_NEEDS(path);
     FILE *file = NULL;
-    SKG_TRY(skg_input_open(path, SKG_INPUT_TEXT, &file, NULL));
+    SKG_TRY(skg_text_open(path, &file));
     skg_status status = read_lines(&t, file);
     fclose(file);
     if (status == SKG_OK) status = skg_scan_create_table(view, options, t.count, t.poses, scan);

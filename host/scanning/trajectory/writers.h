@@ -42,5 +42,6 @@ void skg_tool_write_world(const skg_tool_world *world, FILE *stream);
 skg_status skg_scan_write_rtk(const skg_scan *scan, FILE *stream);
 skg_status skg_scan_write_tigre(const skg_scan *scan, FILE *stream);
 skg_status skg_scan_write_cil(const skg_scan *scan, FILE *stream);
+skg_status skg_scan_write_nerf(const skg_scan *scan, FILE *stream);
 
 #endif

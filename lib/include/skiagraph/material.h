@@ -29,6 +29,8 @@ typedef struct skg_material skg_material;
  *                            fractions by mass were probably meant
  *     "weight:Ti90Al6V4"     fractions by mass, in parts of 100
  *     "HU:52"                tissue by Hounsfield number, see skg_material_create_hounsfield
+ *     "solution:Iodine:300"  300 mg/ml in water, see skg_material_create_solution
+ *     "Vacuum"               nothing
  *     "mu:0.2"               this linear attenuation coefficient in 1/cm at every energy
  *
  * For a name that is not found the message has the nearest known ones. */
@@ -56,6 +58,14 @@ SKG_API skg_status skg_material_create_formula(const char *formula, double densi
 SKG_API skg_status skg_material_create_mixture(const char *name, int64_t count, const int32_t *z,
                                                const double *fractions, double density,
                                                skg_material **material);
+
+/** Makes a solution in water. It is taken that volumes add: a millilitre holds the solute at the density of the tables, and
+ * water. skg_material_note_get says so, with the density that follows.
+ *
+ *     solute   an element, or a compound whose density the tables have: "Iodine", "NaI"
+ *     mg_ml    mass of the solute in a millilitre of the solution, mg, above 0 and below that of the solute itself
+ *     errors   SKG_ERR_MATERIAL */
+SKG_API skg_status skg_material_create_solution(const char *solute, double mg_ml, skg_material **material);
 
 /** Makes human tissue from its Hounsfield number.
  *

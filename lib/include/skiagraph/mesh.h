@@ -24,8 +24,9 @@ typedef struct skg_mesh skg_mesh;
 typedef struct {
     /** Set by skg_mesh_source_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** 0, the default: triangles that are wound otherwise than their neighbours are turned (skg_mesh_health.turned); 1: they stay, and
+     * the mesh is leaky. */
+    int32_t as_wound;
     /** Number of vertices. */
     int64_t vertices;
     /** Rows of x, y, z in units of unit_mm. */
@@ -53,14 +54,34 @@ SKG_INIT(skg_mesh_source)
  *     errors    SKG_ERR_ARGUMENT, SKG_ERR_MEMORY; SKG_ERR_MESH if there are no triangles, or for the first corner that
  *               is out of range or vertex that is not finite
  *
- * If a closed mesh points inward as a whole, it is turned outward and a warning says so
- * (skg_mesh_health.flipped). The caller's numbering stays. */
+ * Triangles that are wound otherwise than their neighbours are turned: their second and third corner are exchanged, and a warning
+ * says how many and where the first is. Edges of more than two triangles join no neighbours. If a closed mesh points inward as a
+ * whole, it is turned outward and a warning says so (skg_mesh_health.flipped). The caller's numbering stays. */
 SKG_API skg_status skg_mesh_create(skg_context *context, const char *name, const skg_mesh_source *source,
                                    skg_mesh **mesh);
 
-/** Reads a mesh from a file: STL (text or binary), PLY, OBJ, or another format that Assimp reads.
+/** How a file is read. */
+typedef struct {
+    /** Set by skg_mesh_reading_init. */
+    int32_t size;
+    /** As in skg_mesh_source. */
+    int32_t as_wound;
+    /** mm per unit of the file, finite; 0, the default: the unit that the file or its format names (skg_mesh_unit), otherwise 1 */
+    double unit_mm;
+    /** NULL, the default: everything; or the name of a group or an object of an OBJ file, of an object of a 3MF file, or of a node of
+     * another format: only its triangles, and the vertices that they use. */
+    const char *group;
+} skg_mesh_reading;
+
+SKG_INIT(skg_mesh_reading)
+
+/** As skg_mesh_load, with more wishes. */
+SKG_API skg_status skg_mesh_load_as(skg_context *context, const char *path, const skg_mesh_reading *reading,
+                                    skg_mesh **mesh);
+
+/** Reads a mesh from a file: STL (text or binary), PLY, OBJ, 3MF, or another format that Assimp reads.
  *
- *     unit_mm   mm per unit of the file
+ *     unit_mm   mm per unit of the file; 0: the unit that the file or its format names, otherwise mm
  *     mesh      result, named like the file without its folder; the caller releases it
  *     errors    SKG_ERR_FILE (cannot be read), SKG_ERR_FORMAT (truncated, or no mesh), SKG_ERR_MESH
  *
@@ -199,6 +220,21 @@ typedef struct {
     double area;
     /** Least x, y, z, then greatest x, y, z, mm. */
     double bounds[6];
+    /** Number of directed edges, as in open_edges, of edges that belong to two triangles which both ran along them in the same
+     * direction, as given. */
+    int64_t same_way_edges;
+    /** Number of triangles that were turned, because they were wound otherwise than their neighbours. */
+    int64_t turned;
+    /** Number of the first of them; -1: none. */
+    int64_t first_turned;
+    /** Its middle, mm. */
+    double first_turned_position[3];
+    /** Number of patches that are one-sided, as a Moebius strip is: they stay as they are. */
+    int64_t one_sided;
+    /** Number of points and lines of the file that a mesh has not. */
+    int64_t left_out;
+    /** Number of bytes of a binary STL file behind its last triangle, which were not read. */
+    int64_t trailing_bytes;
 } skg_mesh_health;
 
 SKG_INIT(skg_mesh_health)
@@ -241,6 +277,14 @@ typedef struct {
     double leaving_length;
     /** The middle of that stretch, mm. */
     double leaving_place[3];
+    /** Number of components that overlap a larger one without lying in it: there, lengths add. */
+    int64_t overlapping;
+    /** Number of the component that overlaps most; -1: none. */
+    int64_t first_overlapping;
+    /** The length of its longest stretch inside others, along z, mm. */
+    double overlapping_length;
+    /** The middle of that stretch, mm. */
+    double overlapping_place[3];
 } skg_mesh_nesting;
 
 SKG_INIT(skg_mesh_nesting)
@@ -266,6 +310,48 @@ SKG_API skg_status skg_mesh_nesting_describe(const skg_mesh_nesting *nesting, in
  *     context    receives a warning about a cavity that leaves its solid; may be NULL
  *     oriented   result; the caller releases it */
 SKG_API skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh *mesh, skg_mesh **oriented);
+
+/** Where the unit of a mesh comes from. */
+enum skg_unit_from {
+    /** Nobody named one: mm. */
+    SKG_UNIT_ASSUMED = 0,
+    /** The file or its format: 3MF and AMF (`unit`), COLLADA (`<unit meter>`), X3D and VRML (metres unless they say otherwise), glTF
+     * (metres), FBX (its scale factor). */
+    SKG_UNIT_FILE = 1,
+    /** The caller. */
+    SKG_UNIT_NAMED = 2
+};
+
+/** The unit that the numbers of a mesh were in. The library fills it; prepare with skg_mesh_unit_init. */
+typedef struct {
+    /** Set by skg_mesh_unit_init. */
+    int32_t size;
+    /** enum skg_unit_from */
+    int32_t from;
+    /** mm per unit */
+    double mm;
+    /** mm per unit that the file names, even where the caller named another one; 0: none */
+    double file_mm;
+    /** Its name: "nm", "um", "mm", "cm", "dm", "m", "inch", "ft", ..., or such as "2.5 mm". */
+    char name[32];
+} skg_mesh_unit;
+
+SKG_INIT(skg_mesh_unit)
+
+/** Gets the unit of a mesh. */
+SKG_API skg_status skg_mesh_unit_get(const skg_mesh *mesh, skg_mesh_unit *unit);
+
+/** Gets the number of named pieces of the mesh's file: groups and objects of OBJ, objects of 3MF, nodes of other formats. */
+SKG_API skg_status skg_mesh_group_count(const skg_mesh *mesh, int64_t *count);
+
+/** Gets one of them. Several may have the same name.
+ *
+ *     group       from 0 on
+ *     name        result: valid as long as the mesh; NULL: none; may be NULL
+ *     first       result: its first triangle; may be NULL
+ *     triangles   result: their number; may be NULL */
+SKG_API skg_status skg_mesh_group_get(const skg_mesh *mesh, int64_t group, const char **name, int64_t *first,
+                                      int64_t *triangles);
 
 /** Gets the mesh's name, valid as long as the mesh. */
 SKG_API skg_status skg_mesh_name_get(const skg_mesh *mesh, const char **name);

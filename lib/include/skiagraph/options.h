@@ -419,6 +419,12 @@ typedef struct {
      * than 20 % of the beam by itself. The field of the beam may not be wider than the heel's anode and the bow-tie's
      * profile allow. */
     const skg_scatter *scatter;
+    /** 1: of a closed mesh whose components overlap, or whose triangles are listed more than once, the lengths are those of the union
+     * of what it encloses: where the winding number is above 0. The hits of all closed parts are listed, which costs what priorities
+     * cost. The lengths SKG_LENGTHS_SURFACE stay sums, and there are no derivatives. 0 (default): lengths of components add, and a warning names them. */
+    int32_t unite;
+    /** 0 */
+    int32_t reserved_2;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.
