@@ -68,7 +68,7 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
     SKG_TRY(make_lengths(recipe, machine));
     SKG_TRY(skg_attenuator_create(context, &machine->attenuator));
     SKG_TRY(
-        skg_buffer_reserve(context, &machine->negative, 3 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+        skg_buffer_reserve(context, &machine->negative, 4 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
     SKG_TRY(skg_leaky_memory_create(context, recipe->leaky_count, &machine->leaky));
     SKG_TRY(skg_pass_memory_create(recipe->scene->count, skg_recipe_max_fine(recipe) * recipe->view.columns,
                                    skg_recipe_max_fine(recipe) * recipe->view.rows, &machine->pass));

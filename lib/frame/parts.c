@@ -75,7 +75,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
         const skg_placed_mesh *placed = skg_placement_of(memory->placement, mesh, recipe->meshes.of_part[p]);
         if (placed)
             skg_extent_find_within(&pass->camera, mesh, placed->lowest, placed->highest, pose, last_bit,
-                                   extent);
+                                   skg_mesh_layers_unseen(mesh), extent);
         else
             skg_extent_find(&pass->camera, mesh, pose, last_bit, extent);
         pass->parts[p] =

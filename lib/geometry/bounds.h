@@ -64,9 +64,10 @@ typedef struct {
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double last_bit,
                      skg_extent *extent);
 
-/* The same from other bounds, mm from the mesh's origin. */
+/* The same from other bounds, mm from the mesh's origin, and as many layers. */
 void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, const float lowest[3],
-                            const float highest[3], const double *pose, double last_bit, skg_extent *extent);
+                            const float highest[3], const double *pose, double last_bit, int64_t layers,
+                            skg_extent *extent);
 
 /* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded
  * outward as skg_shared.h wants them. The last row may lie beyond the detector. */

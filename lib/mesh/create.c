@@ -219,6 +219,7 @@ void skg_mesh_release(skg_mesh **mesh) {
     skg_free(&last->offsets);
     skg_free(&last->corners);
     skg_free(&last->weld);
+    skg_free(&last->piece);
     skg_free(&last);
 }
 
@@ -299,7 +300,7 @@ skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64
     set_offsets(mesh);
     set_bounds(mesh);
     mesh->version++;
-    return SKG_OK;
+    return skg_mesh_count_layers(mesh);
 }
 
 skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **origin) {
@@ -320,5 +321,5 @@ skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
         for (int k = 0; k < 3; k++)
             if (mesh->offsets[3 * i + k] != mesh->offsets[3 * (int64_t)mesh->weld[i] + k])
                 return torn(mesh, i);
-    return SKG_OK;
+    return skg_mesh_count_layers(mesh);
 }

@@ -194,7 +194,7 @@ static skg_status examine_edges(skg_mesh *mesh) {
     health->closed = health->open_edges == 0;
     groups_free(&edges);
     for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = root_of(parent, t);
-    status = skg_mesh_count_layers(mesh, parent, multiplicity);
+    status = skg_mesh_set_pieces(mesh, parent, multiplicity);
     skg_free(&parent);
     return status;
 }

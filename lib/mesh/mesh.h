@@ -21,8 +21,12 @@ struct skg_mesh {
     int64_t version;     /* of the positions, from 1 */
     float lowest[3];     /* bounds of the finite offsets, mm from origin */
     float highest[3];
-    int64_t first_bad;      /* first vertex that is not finite; -1: none */
-    int32_t layers;         /* how many times over a ray may be inside at once, in version 1 */
+    int64_t first_bad; /* first vertex that is not finite; -1: none */
+    int64_t layers;    /* how many times over a ray may be inside at once */
+    int32_t
+        multiplicity; /* how often an edge runs in one direction: coincident copies weld into one component */
+    int32_t pieces;   /* components that are joined by shared edges */
+    int32_t *piece;   /* [triangles] the number of each one's; NULL: there is one */
     skg_mesh_health health; /* volume, area, bounds and degenerate_triangles of version 1 */
 };
 
@@ -48,12 +52,22 @@ void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_
 /* Fills health and orientation of a new mesh, and its weld map. */
 skg_status skg_mesh_examine(skg_mesh *mesh);
 
-/* Sets mesh->layers: how many components may lie over each other, judged by their boxes, times `multiplicity`.
+/* Takes the components of a new mesh, and counts its layers.
  *
  * root           [triangles] a triangle of the same component, the same one for all of its triangles; components are
  *                joined by shared edges
- * multiplicity   how often an edge runs in one direction: coincident copies weld into one component */
-skg_status skg_mesh_count_layers(skg_mesh *mesh, const int32_t *root, int32_t multiplicity);
+ * multiplicity   how often an edge runs in one direction */
+skg_status skg_mesh_set_pieces(skg_mesh *mesh, const int32_t *root, int32_t multiplicity);
+
+/* Sets mesh->layers for the present positions: how many components may lie over each other, judged by their boxes, times
+ * the multiplicity; or the largest winding number along columns, if that is more. */
+skg_status skg_mesh_count_layers(skg_mesh *mesh);
+
+/* The layers of positions that the host does not know: all components may lie over each other. */
+static inline int64_t skg_mesh_layers_unseen(const skg_mesh *mesh) {
+    const int64_t all = (int64_t)mesh->pieces * mesh->multiplicity;
+    return all > mesh->layers ? all : mesh->layers;
+}
 
 /* Numbers the pieces that are connected through welded vertices, in the order of their first triangles.
  *
