@@ -69,6 +69,34 @@ void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, cons
                             const float highest[3], const double *pose, double last_bit, int64_t layers,
                             skg_extent *extent);
 
+/* --- Parts that touch each other in flat faces (lib/mesh/flat.c). */
+
+typedef struct {
+    int32_t part;
+    int32_t root; /* workspace */
+    const skg_mesh *mesh;
+    const skg_mesh_layout *layout;
+    const double *pose;
+    double low[3], high[3]; /* mm, world; workspace */
+} skg_touching;
+
+/* Finds which parts touch. groups: [parts] result: the number of one part of its group, which is the same for all. */
+void skg_touching_find(int64_t count, skg_touching *boxes, int32_t *groups);
+
+/* A group in the picture. */
+typedef struct {
+    int32_t members;
+    int32_t pixel[2];       /* from which its parts count */
+    double low[2], high[2]; /* columns and rows */
+    double farthest;        /* coordinate, from that pixel */
+    double noise;           /* pixels that rounding the positions of meshes to doubles moves them */
+} skg_touching_group;
+
+int skg_touching_is_huge(const skg_camera *camera, const double columns[2], const double rows[2]);
+void skg_touching_join(skg_touching_group *group, const double columns[2], const double rows[2],
+                       double noise);
+void skg_touching_measure(const skg_camera *camera, skg_touching_group *group);
+
 /* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded
  * outward as skg_shared.h wants them. The last row may lie beyond the detector. */
 void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]);

@@ -52,6 +52,13 @@ static int64_t largest(cell_grid *grid) {
     return most;
 }
 
+static void stretch(float *box, const float *at) {
+    for (int k = 0; k < 3; k++) {
+        box[k] = at[k] < box[k] ? at[k] : box[k];
+        box[3 + k] = at[k] > box[3 + k] ? at[k] : box[3 + k];
+    }
+}
+
 /* How many boxes of components meet in a cell: at least as many as components that meet at a point. */
 static skg_status count_boxes(const skg_mesh *mesh, int64_t *most) {
     cell_grid grid = {0};
@@ -60,14 +67,10 @@ static skg_status count_boxes(const skg_mesh *mesh, int64_t *most) {
     SKG_TRY_CLEANUP(skg_alloc(mesh->pieces * 6, sizeof *boxes, mesh->name, &boxes));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)EDGES * EDGES * EDGES, sizeof *grid.counts, mesh->name, &grid.counts));
     for (int64_t i = 0; i < mesh->pieces * 6; i++) boxes[i] = i % 6 < 3 ? FLT_MAX : -FLT_MAX;
-    for (int64_t c = 0; c < 3 * mesh->triangles; c++) {
-        float *box = boxes + 6 * (int64_t)mesh->piece[c / 3];
-        const float *at = mesh->offsets + 3 * (int64_t)mesh->corners[c];
-        for (int k = 0; k < 3; k++) {
-            box[k] = at[k] < box[k] ? at[k] : box[k];
-            box[3 + k] = at[k] > box[3 + k] ? at[k] : box[3 + k];
-        }
-    }
+    for (int64_t v = 0; !mesh->pieces_share && v < mesh->vertices; v++)
+        if (mesh->piece[v] >= 0) stretch(boxes + 6 * (int64_t)mesh->piece[v], mesh->offsets + 3 * v);
+    for (int64_t c = 0; mesh->pieces_share && c < 3 * mesh->triangles; c++)
+        stretch(boxes + 6 * (int64_t)mesh->piece[c / 3], mesh->offsets + 3 * (int64_t)mesh->corners[c]);
     for (int k = 0; k < 3; k++) {
         grid.low[k] = (double)mesh->lowest[k];
         grid.step[k] = ((double)mesh->highest[k] - (double)mesh->lowest[k]) / CELLS;
@@ -226,27 +229,56 @@ static skg_status sample_winding(const skg_mesh *mesh, int64_t *most) {
     return status;
 }
 
+/* Columns take much longer than moving the vertices of a mesh of one component. What they would have shown is said by the frames that it
+ * concerns (kernels/planes.clh). */
+static int is_due(const skg_mesh *mesh) {
+    enum { FIRST = 4, EVERY = 16 };
+    return mesh->version <= FIRST || mesh->version % EVERY == 0;
+}
+
 skg_status skg_mesh_count_layers(skg_mesh *mesh) {
-    int64_t boxes = 1, winding = 0;
-    mesh->layers = mesh->multiplicity;
+    int64_t boxes = 1;
     if (mesh->first_bad >= 0) return SKG_OK; /* no frame shows it */
     if (mesh->pieces > 1) SKG_TRY(count_boxes(mesh, &boxes));
-    SKG_TRY(sample_winding(mesh, &winding));
+    if (is_due(mesh)) SKG_TRY(sample_winding(mesh, &mesh->winding));
     mesh->layers = boxes * mesh->multiplicity;
-    if (winding > mesh->layers) mesh->layers = winding;
+    if (mesh->winding > mesh->layers) mesh->layers = mesh->winding;
     return SKG_OK;
 }
 
+/* The component of each vertex. Returns 0 if components share vertices. */
+static int number_vertices(const skg_mesh *mesh, const int32_t *of_triangle, int32_t *of_vertex) {
+    for (int64_t v = 0; v < mesh->vertices; v++) of_vertex[v] = -1;
+    for (int64_t c = 0; c < 3 * mesh->triangles; c++) {
+        int32_t *own = &of_vertex[mesh->corners[c]];
+        if (*own >= 0 && *own != of_triangle[c / 3]) return 0;
+        *own = of_triangle[c / 3];
+    }
+    return 1;
+}
+
 /* Components are numbered in the order of their root triangles. */
-skg_status skg_mesh_set_pieces(skg_mesh *mesh, const int32_t *root, int32_t multiplicity) {
-    int32_t count = 0;
-    mesh->multiplicity = multiplicity;
-    for (int64_t t = 0; t < mesh->triangles; t++) count += root[t] == t;
-    mesh->pieces = count;
-    if (count < 2) return skg_mesh_count_layers(mesh);
-    SKG_TRY(skg_alloc(mesh->triangles, sizeof *mesh->piece, mesh->name, &mesh->piece));
-    count = 0;
+static skg_status number_pieces(skg_mesh *mesh, const int32_t *root) {
+    int32_t *of_triangle = NULL, *of_vertex = NULL, count = 0;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(mesh->triangles, sizeof *of_triangle, mesh->name, &of_triangle));
+    SKG_TRY_CLEANUP(skg_alloc(mesh->vertices, sizeof *of_vertex, mesh->name, &of_vertex));
     for (int64_t t = 0; t < mesh->triangles; t++)
-        mesh->piece[t] = root[t] == t ? count++ : mesh->piece[root[t]];
+        of_triangle[t] = root[t] == t ? count++ : of_triangle[root[t]];
+    mesh->pieces_share = !number_vertices(mesh, of_triangle, of_vertex);
+    int32_t **kept = mesh->pieces_share ? &of_triangle : &of_vertex;
+    mesh->piece = *kept;
+    *kept = NULL;
+cleanup:
+    skg_free(&of_triangle);
+    skg_free(&of_vertex);
+    return status;
+}
+
+skg_status skg_mesh_set_pieces(skg_mesh *mesh, const int32_t *root, int32_t multiplicity) {
+    mesh->layers = mesh->multiplicity = multiplicity;
+    mesh->pieces = 0;
+    for (int64_t t = 0; t < mesh->triangles; t++) mesh->pieces += root[t] == t;
+    if (mesh->pieces > 1) SKG_TRY(number_pieces(mesh, root));
     return skg_mesh_count_layers(mesh);
 }
