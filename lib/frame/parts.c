@@ -1,10 +1,7 @@
 #include "frame/parts.h"
 #include "frame/overrides.h"
-
-#include "core/maths.h"
 #include "geometry/optics.h"
 
-#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -105,36 +102,6 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                    recipe->options.precision == SKG_PRECISION_DOUBLE ? 64 : 32, &pass->scale);
 }
 
-/* The pixels by which kernels for parts that touch move the edges of a group for coverage (triangle.clh). In single precision, four
- * halves of the last bit of the largest coordinate. In double, half a million of them, which no image shows: so the depths of a face that is
- * wider than that agree within a millionth. Positions of a mesh far from its origin have been rounded before, and corners of a flat face
- * no longer lie in a plane: their rounding counts likewise. */
-static double shift_of(const skg_recipe *recipe, const skg_touching_group *group) {
-    const int is_double = recipe->options.precision == SKG_PRECISION_DOUBLE;
-    const double own =
-        is_double ? 0x1p-32 * fmax(group->farthest, 64) : 2 * (double)FLT_EPSILON * group->farthest;
-    return fmax(own, (is_double ? 0x1p21 : 0x1p18) * group->noise);
-}
-
-/* The pixels that rounding the positions of a mesh moves them. */
-static double noise_of(const skg_camera *camera, const skg_mesh *mesh, const skg_geometry_part *part) {
-    const double t = camera->parallel ? 1 : part->reference, *places[2] = {part->columns, part->rows};
-    double most = 0;
-    for (int r = 0; r < 2; r++) {
-        const double at = camera->parallel ? 0 : 0.5 * (places[r][0] + places[r][1]);
-        double noise = 0;
-        for (int k = 0; k < 3; k++) {
-            const double along[3] = {part->pose[k], part->pose[4 + k], part->pose[8 + k]};
-            const double rate = skg_dot(camera->matrix[r], along) - at * skg_dot(camera->matrix[2], along);
-            const double far = fmax(fabs(mesh->origin[k] + (double)mesh->lowest[k]),
-                                    fabs(mesh->origin[k] + (double)mesh->highest[k]));
-            noise += fabs(rate) * far;
-        }
-        most = fmax(most, 0.5 * DBL_EPSILON * noise / t);
-    }
-    return isfinite(most) ? most : 0;
-}
-
 /* The groups of parts that touch, unless they are known for these poses and meshes. */
 static void find_groups(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
                         const skg_pass *pass) {
@@ -170,9 +137,10 @@ static void find_touching(const skg_recipe *recipe, const skg_frame_work *work, 
             skg_touching_group own = {.members = 0};
             skg_touching_join(&own, part->columns, part->rows, 0);
             skg_touching_measure(&pass->camera, &own);
-            part->shift = is_double ? 0x1p-44 * own.farthest : shift_of(recipe, &own);
+            part->shift = is_double ? 0x1p-44 * own.farthest : skg_touching_shift(&own, 0);
         } else {
-            const double noise = noise_of(&pass->camera, mesh_of(recipe, work, p), part);
+            const double noise = skg_touching_noise(&pass->camera, mesh_of(recipe, work, p), part->pose,
+                                                    &pass->extents[p].scale);
             skg_touching_join(&memory->groups[memory->group_of[p]], part->columns, part->rows, noise);
         }
     }
@@ -183,7 +151,7 @@ static void find_touching(const skg_recipe *recipe, const skg_frame_work *work, 
         if (!memory->geometry->layouts[recipe->meshes.of_part[p]].flat || part->shift > 0) continue;
         const skg_touching_group *group = &memory->groups[memory->group_of[p]];
         if (group->members < 2) continue;
-        part->shift = shift_of(recipe, group);
+        part->shift = skg_touching_shift(group, is_double);
         part->touches = 1;
         part->shared[0] = group->pixel[0], part->shared[1] = group->pixel[1];
     }

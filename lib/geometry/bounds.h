@@ -97,6 +97,13 @@ void skg_touching_join(skg_touching_group *group, const double columns[2], const
                        double noise);
 void skg_touching_measure(const skg_camera *camera, skg_touching_group *group);
 
+/* The pixels by which kernels move the edges of a group for coverage (kernels/triangle.clh). */
+double skg_touching_shift(const skg_touching_group *group, int32_t is_double);
+
+/* The pixels that rounding the positions of a mesh to doubles moves them. at: its extent. */
+double skg_touching_noise(const skg_camera *camera, const skg_mesh *mesh, const double *pose,
+                          const skg_scale_part *at);
+
 /* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded
  * outward as skg_shared.h wants them. The last row may lie beyond the detector. */
 void skg_extent_pixels(const skg_camera *camera, const skg_extent *extent, int32_t pixels[4]);

@@ -3,6 +3,7 @@
 #include "core/maths.h"
 #include "geometry/bounds.h"
 
+#include <float.h>
 #include <math.h>
 #include <stdlib.h>
 
@@ -133,4 +134,32 @@ void skg_touching_measure(const skg_camera *camera, skg_touching_group *group) {
         const double far = bounded ? fmax(group->pixel[k] - low, high - group->pixel[k]) : 16 * all;
         group->farthest = fmax(group->farthest, far);
     }
+}
+
+/* In single precision, four halves of the last bit of the largest coordinate. In double, half a million of them, which no image shows: so
+ * the depths of a face that is wider than that agree within a millionth. Positions far from the origin of their mesh have been rounded
+ * before, and corners of a flat face no longer lie in a plane: their rounding counts likewise, up to what an image would show. */
+double skg_touching_shift(const skg_touching_group *group, int32_t is_double) {
+    const double own =
+        is_double ? 0x1p-32 * fmax(group->farthest, 64) : 2 * (double)FLT_EPSILON * group->farthest;
+    return fmax(own, fmin((is_double ? 0x1p21 : 0x1p18) * group->noise, 0x1p-10));
+}
+
+double skg_touching_noise(const skg_camera *camera, const skg_mesh *mesh, const double *pose,
+                          const skg_scale_part *at) {
+    const double t = camera->parallel ? 1 : 0.5 * (at->low_depth + at->high_depth);
+    const double middle[2] = {0.5 * (at->low_column + at->high_column), 0.5 * (at->low_row + at->high_row)};
+    double most = 0;
+    for (int r = 0; r < 2; r++) {
+        double noise = 0;
+        for (int k = 0; k < 3; k++) {
+            const double along[3] = {pose[k], pose[4 + k], pose[8 + k]};
+            const double deep = camera->parallel ? 0 : middle[r] * skg_dot(camera->matrix[2], along);
+            const double far = fmax(fabs(mesh->origin[k] + (double)mesh->lowest[k]),
+                                    fabs(mesh->origin[k] + (double)mesh->highest[k]));
+            noise += fabs(skg_dot(camera->matrix[r], along) - deep) * far;
+        }
+        most = fmax(most, 0.5 * DBL_EPSILON * noise / t);
+    }
+    return isfinite(most) ? most : 0;
 }
