@@ -47,14 +47,15 @@ static void place_plane(const skg_touching *of, int32_t plane, double corner[3],
 
 static int share_plane(const skg_touching *a, const skg_touching *b) {
     const double margin = margin_of(a, b);
+    double to[SKG_MESH_PLANES][3], other[SKG_MESH_PLANES][3];
+    for (int32_t k = 0; k < b->layout->plane_count; k++) place_plane(b, k, to[k], other[k]);
     for (int32_t i = 0; i < a->layout->plane_count; i++) {
         double from[3], normal[3];
         place_plane(a, i, from, normal);
         for (int32_t k = 0; k < b->layout->plane_count; k++) {
-            double to[3], other[3], way[3];
-            place_plane(b, k, to, other);
-            if (!(fabs(skg_dot(normal, other)) > 1 - TURNED)) continue;
-            skg_add_scaled(to, -1, from, way);
+            double way[3];
+            if (!(fabs(skg_dot(normal, other[k])) > 1 - TURNED)) continue;
+            skg_add_scaled(to[k], -1, from, way);
             if (fabs(skg_dot(way, normal)) <= margin) return 1;
         }
     }
