@@ -102,9 +102,11 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                    recipe->options.precision == SKG_PRECISION_DOUBLE ? 64 : 32, &pass->scale);
 }
 
-/* The groups of parts that touch, unless they are known for these poses and meshes. */
+/* The groups of parts that touch, unless they are known for these poses and meshes. Parts whose vertices move together go on touching:
+ * of meshes that move, every sixteenth version is looked at, because that takes a twentieth of a frame. */
 static void find_groups(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
                         const skg_pass *pass) {
+    enum { EVERY = 16 };
     int64_t count = 0;
     int known = 1;
     for (int64_t p = 0; p < pass->scene->count; p++) {
@@ -112,9 +114,9 @@ static void find_groups(const skg_recipe *recipe, const skg_frame_work *work, co
         const skg_mesh_layout *layout = &memory->geometry->layouts[recipe->meshes.of_part[p]];
         const double *pose = pass->parts[p].pose;
         if (!layout->flat) continue;
-        known &= memory->versions[p] == mesh->version &&
+        known &= memory->versions[p] == 1 + mesh->version / EVERY &&
                  memcmp(memory->poses[p], pose, sizeof *memory->poses) == 0;
-        memory->versions[p] = mesh->version;
+        memory->versions[p] = 1 + mesh->version / EVERY;
         memcpy(memory->poses[p], pose, sizeof *memory->poses);
         memory->touching[count++] =
             (skg_touching){.part = (int32_t)p, .mesh = mesh, .layout = layout, .pose = pose};

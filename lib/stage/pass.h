@@ -20,7 +20,7 @@ typedef struct {
     skg_touching_group *groups;   /* [parts] workspace */
     int32_t *group_of;            /* [parts] of those that may touch: the group, for these poses and meshes */
     double (*poses)[16];          /* [parts] */
-    int64_t *versions;            /* [parts] of their meshes; 0: not known */
+    int64_t *versions;            /* [parts] sixteenths of those of their meshes, from 1; 0: not known */
     skg_scale_grid grid;          /* workspace of the scale */
     const skg_geometry *geometry; /* borrowed: of the machine */
     const skg_placement *placement; /* borrowed: of the machine */
