@@ -52,6 +52,28 @@ static int64_t largest(cell_grid *grid) {
     return most;
 }
 
+/* The same count for few boxes: it is reached in a cell that begins some box along each axis. */
+enum { FEW_BOXES = 6 };
+static int64_t largest_of_few(const cell_grid *grid, int64_t count, const float *boxes) {
+    int64_t from[FEW_BOXES][3], to[FEW_BOXES][3], most = 1;
+    for (int64_t i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            from[i][k] = cell_of(grid, k, (double)boxes[6 * i + k]);
+            to[i][k] = cell_of(grid, k, (double)boxes[6 * i + 3 + k]);
+        }
+    for (int64_t n = 0; n < count * count * count; n++) {
+        const int64_t cell[3] = {from[n % count][0], from[n / count % count][1], from[n / count / count][2]};
+        int64_t met = 0;
+        for (int64_t i = 0; i < count; i++) {
+            int in = 1;
+            for (int k = 0; k < 3; k++) in &= from[i][k] <= cell[k] && cell[k] <= to[i][k];
+            met += in;
+        }
+        most = met > most ? met : most;
+    }
+    return most;
+}
+
 static void stretch(float *box, const float *at) {
     for (int k = 0; k < 3; k++) {
         box[k] = at[k] < box[k] ? at[k] : box[k];
@@ -65,7 +87,6 @@ static skg_status count_boxes(const skg_mesh *mesh, int64_t *most) {
     float *boxes = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(mesh->pieces * 6, sizeof *boxes, mesh->name, &boxes));
-    SKG_TRY_CLEANUP(skg_alloc((int64_t)EDGES * EDGES * EDGES, sizeof *grid.counts, mesh->name, &grid.counts));
     for (int64_t i = 0; i < mesh->pieces * 6; i++) boxes[i] = i % 6 < 3 ? FLT_MAX : -FLT_MAX;
     for (int64_t v = 0; !mesh->pieces_share && v < mesh->vertices; v++)
         if (mesh->piece[v] >= 0) stretch(boxes + 6 * (int64_t)mesh->piece[v], mesh->offsets + 3 * v);
@@ -75,6 +96,11 @@ static skg_status count_boxes(const skg_mesh *mesh, int64_t *most) {
         grid.low[k] = (double)mesh->lowest[k];
         grid.step[k] = ((double)mesh->highest[k] - (double)mesh->lowest[k]) / CELLS;
     }
+    if (mesh->pieces <= FEW_BOXES) {
+        *most = largest_of_few(&grid, mesh->pieces, boxes);
+        goto cleanup;
+    }
+    SKG_TRY_CLEANUP(skg_alloc((int64_t)EDGES * EDGES * EDGES, sizeof *grid.counts, mesh->name, &grid.counts));
     for (int64_t i = 0; i < mesh->pieces; i++) add_box(&grid, boxes + 6 * i);
     *most = largest(&grid);
 cleanup:
