@@ -307,6 +307,18 @@ static void skg_count_negative(const skg_strip *strip, const skg_pixels *pixels)
 #endif
 }
 
+#if SKG_BOUNDED
+/* Counts rays with a sum beyond its bound. */
+static void skg_count_wrapped(const skg_strip *strip, const skg_pixels *pixels) {
+    skg_realv wrapped[SKG_RUNS];
+    skg_intv any = 0;
+    SKG_EACH_RUN any |= pixels->wrapped[r];
+    if (!skg_any(any)) return;
+    SKG_EACH_RUN wrapped[r] = -SKG_TO_REAL_V(pixels->wrapped[r]);
+    skg_count(wrapped, 0, strip->args.layout.columns - strip->column, strip->negative + 3);
+}
+#endif
+
 /* SKG_RUNS runs of SKG_WIDE pixels of a row. */
 static void skg_attenuate_runs(const skg_strip *strip) {
     skg_pixels pixels;
@@ -331,6 +343,9 @@ static void skg_attenuate_runs(const skg_strip *strip) {
     if (strip->args.noise == SKG_NOISE_APART) SKG_EACH_CHANNEL skg_show_channel(strip, pixels.spread[c], SKG_CHANNELS + c);
 #endif
     skg_count_negative(strip, &pixels);
+#if SKG_BOUNDED
+    skg_count_wrapped(strip, &pixels);
+#endif
 }
 
 /* SKG_STRIP times as many pixels, as far as the row reaches; of all rows of rays that make a row of the image. */
@@ -355,6 +370,7 @@ SKG_APART void skg_attenuate_strip(const skg_strip *whole) {
  * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `args.limit` (the exponent
  *                is below -limit): more was subtracted for children than their parent has there
  *                negative[2] counts the values that are not finite
+ *                negative[3] counts the rays with a sum of 32 bits beyond its bound
  * output         the image; with SKG_NOISE_APART, deviations follow behind the means of all channels */
 __kernel void skg_attenuate(skg_attenuate_args args, __global const skg_sum *copies, __global const int *used,
                             __constant const skg_real *coefficients, __constant const skg_real *weights,

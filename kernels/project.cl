@@ -1,5 +1,5 @@
 /* Projects every vertex of every part to (x, y, z, t): x, y in pixels relative to the part's pixel, z = r / t, t. With SKG_RESTS
- * the rests of x and y stand for t (fine.clh). A work-item takes one vertex on a GPU; on a CPU a run, so that compilers can turn
+ * the rests of x and y stand for t (fine.clh), with SKG_ROW_RESTS that of y. A work-item takes one vertex on a GPU; on a CPU a run, so that compilers can turn
  * the loop over the vertices of a part into vectors. */
 #define SKG_RUN (SKG_CPU ? SKG_CPU_RUN : 1)
 
@@ -17,8 +17,9 @@ static skg_real4 skg_project_one(skg_real x, skg_real y, skg_real z, const skg_p
     /* 0 * x is 0 only for finite x. A vertex that is not finite is put where it does no harm. */
     const skg_real zero = 0 * (across + down + r) + 0 * (x + y + z);
     *finite = zero == 0;
-    const skg_real high = skg_on_row(seen.y, p->shift), last = SKG_RESTS ? 0 : seen.w;
-    return *finite ? (skg_real4)(seen.x, high, seen.z, last) : (skg_real4)(0, 0, 0, !SKG_RESTS);
+    const skg_real high = skg_on_row(seen.y, p->shift);
+    const skg_real last = SKG_ROW_RESTS ? seen.y - high : SKG_RESTS ? 0 : seen.w;
+    return *finite ? (skg_real4)(seen.x, high, seen.z, last) : (skg_real4)(0, 0, 0, SKG_RESTS + SKG_ROW_RESTS == 0);
 }
 
 /* Vertices from this number on. projected: the place of the first of them. */

@@ -59,6 +59,8 @@
     real row1[3], offset_y;                                                                                  \
     real row2[3], offset_r;                                                                                  \
     real anchor_x, anchor_y, reference;                                                                      \
+    real low0[3], low_x, low1[3], low_y, low2[3], low_r; /* what rounding these to floats has lost */        \
+    real low_anchor_x, low_anchor_y, low_reference;                                                          \
     real highest;  /* of r: where the ray ends, at the pixel */                                              \
     real start[3]; /* parallel: paths start at r = start[0] + start[1] i + start[2] j */                     \
     real steepest; /* gradient of z (per pixel) times a coordinate above which a face is steep */            \
@@ -72,7 +74,7 @@
     SKG_INT triangles;                                                                                       \
     SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
     SKG_INT first_contribution, contributions;                                                               \
-    SKG_INT fine; /* 1: behind the mesh's vertices stands what rounding them to floats has lost */
+    SKG_INT fine; /* 1: behind the mesh's vertices stands what rounding them to floats has lost, and it counts */
 
 /* What a hit of a part adds to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count
  * plane has weight 0 and bias 1. */
@@ -358,8 +360,8 @@ typedef struct {
 typedef struct {
     SKG_CONTRIBUTION_MEMBERS(double)
 } skg_contribution_double;
-_Static_assert(sizeof(skg_part_float) == 21 * 4 + 12 * 4, "layout of a part, single");
-_Static_assert(sizeof(skg_part_double) == 21 * 8 + 12 * 4, "layout of a part, double");
+_Static_assert(sizeof(skg_part_float) == 36 * 4 + 12 * 4, "layout of a part, single");
+_Static_assert(sizeof(skg_part_double) == 36 * 8 + 12 * 4, "layout of a part, double");
 _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");

@@ -2,14 +2,27 @@
 #include "core/maths.h"
 #include "plan/decisions.h"
 
+#include <string.h>
+
+static skg_status find_planes(const skg_mesh *mesh, skg_mesh_layout *layout) {
+    int32_t planes[SKG_MESH_PLANES][3];
+    layout->plane_count = skg_mesh_flat_faces(mesh, planes);
+    layout->flat = layout->plane_count > 0;
+    if (!layout->flat) return SKG_OK;
+    SKG_TRY(skg_alloc(layout->plane_count, sizeof *layout->planes, "flat faces", &layout->planes));
+    memcpy(layout->planes, planes, (size_t)layout->plane_count * sizeof *planes);
+    return SKG_OK;
+}
+
 /* Marks the meshes with flat faces where at least two parts have one. */
-static void find_flat(const skg_recipe *recipe, skg_mesh_layout *layouts) {
+static skg_status find_flat(const skg_recipe *recipe, skg_mesh_layout *layouts) {
     const skg_plan_meshes *meshes = &recipe->meshes;
     int64_t parts = 0;
     for (int64_t i = 0; recipe->scene->count > 1 && i < meshes->count; i++)
-        layouts[i].flat = skg_mesh_has_flat_face(meshes->meshes[i]);
+        SKG_TRY(find_planes(meshes->meshes[i], &layouts[i]));
     for (int64_t p = 0; p < recipe->scene->count; p++) parts += layouts[meshes->of_part[p]].flat;
     for (int64_t i = 0; parts < 2 && i < meshes->count; i++) layouts[i].flat = 0;
+    return SKG_OK;
 }
 
 static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) {
@@ -19,7 +32,7 @@ static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) 
     SKG_TRY(skg_alloc(meshes->count, sizeof *layouts, "meshes", &layouts));
     for (int64_t i = 0; i < meshes->count && status == SKG_OK; i++)
         status = skg_mesh_layout_create(meshes->meshes[i], &layouts[i]);
-    if (status == SKG_OK) find_flat(recipe, layouts);
+    if (status == SKG_OK) status = find_flat(recipe, layouts);
     if (status == SKG_OK)
         status = skg_geometry_create(machine->context, skg_recipe_kernel_precision(recipe), meshes->count,
                                      layouts, recipe->scene->count, meshes->of_part, &machine->geometry);
@@ -68,11 +81,12 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
     SKG_TRY(make_lengths(recipe, machine));
     SKG_TRY(skg_attenuator_create(context, &machine->attenuator));
     SKG_TRY(
-        skg_buffer_reserve(context, &machine->negative, 3 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
+        skg_buffer_reserve(context, &machine->negative, 4 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
     SKG_TRY(skg_leaky_memory_create(context, recipe->leaky_count, &machine->leaky));
     SKG_TRY(skg_pass_memory_create(recipe->scene->count, skg_recipe_max_fine(recipe) * recipe->view.columns,
                                    skg_recipe_max_fine(recipe) * recipe->view.rows, &machine->pass));
     machine->pass.placement = &machine->placement;
+    machine->pass.geometry = &machine->geometry;
     return SKG_OK;
 }
 

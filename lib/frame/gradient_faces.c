@@ -58,7 +58,8 @@ static skg_status list_faces(skg_job *job, const skg_pass *pass, const skg_gathe
         if (gathered->has_edges && has_edges(moments, triangles))
             SKG_TRY(skg_edge_weights_read(job, p, &w->of_edges));
         SKG_TRY(skg_gradient_place_faces(job, pass, p, faces));
-        skg_camera_part(&pass->camera, part->pose, part->origin, part->reference, part->flipped, &entry);
+        const skg_camera_place place = skg_geometry_place(part, 0);
+        skg_camera_part(&pass->camera, &place, &entry);
         SKG_TRY(skg_gradient_find_planes(geometry, faces->mesh, geometry->mesh_of_part[p],
                                          &job->machine->gradient, &faces->planes));
         w->edges[p] = (skg_part_edges){.all = &w->of_edges, .part = p};

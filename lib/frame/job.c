@@ -28,7 +28,7 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
                                               &made->outputs[made->output_count]));
     SKG_TRY_CLEANUP(skg_staging_take(&made->staging, count, sizeof *made->ends, "events", &made->ends));
     SKG_TRY_CLEANUP(
-        skg_staging_take(&made->staging, 3, sizeof *results->negative, "counters", &results->negative));
+        skg_staging_take(&made->staging, 4, sizeof *results->negative, "counters", &results->negative));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 2, sizeof *results->listed, "counters", &results->listed));
     SKG_TRY_CLEANUP(skg_staging_take(&made->staging, count, sizeof *results->bad_vertex, "counters",

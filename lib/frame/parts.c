@@ -3,6 +3,7 @@
 #include "geometry/optics.h"
 
 #include <math.h>
+#include <string.h>
 
 /* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
 static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *work, skg_pass *pass) {
@@ -58,6 +59,10 @@ static double largest_weight(const skg_pass *pass, int64_t part) {
     return largest;
 }
 
+static const skg_mesh *mesh_of(const skg_recipe *recipe, const skg_frame_work *work, int64_t part) {
+    return work->meshes ? &work->meshes[recipe->meshes.of_part[part]] : recipe->scene->parts[part].mesh;
+}
+
 /* Where the parts lie, what they may contribute, and the scale that follows from both. */
 static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
                         skg_pass *pass) {
@@ -68,14 +73,14 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
     pass->parts = memory->parts;
     pass->extents = memory->extents;
     for (int64_t p = 0; p < scene->count; p++) {
-        const skg_mesh *mesh = work->meshes ? &work->meshes[recipe->meshes.of_part[p]] : scene->parts[p].mesh;
+        const skg_mesh *mesh = mesh_of(recipe, work, p);
         const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;
         const int64_t count = pass->first[p + 1] - pass->first[p];
         skg_extent *extent = &pass->extents[p];
         const skg_placed_mesh *placed = skg_placement_of(memory->placement, mesh, recipe->meshes.of_part[p]);
         if (placed)
             skg_extent_find_within(&pass->camera, mesh, placed->lowest, placed->highest, pose, last_bit,
-                                   extent);
+                                   skg_mesh_layers_unseen(mesh), extent);
         else
             skg_extent_find(&pass->camera, mesh, pose, last_bit, extent);
         pass->parts[p] =
@@ -95,6 +100,63 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
     }
     skg_scale_find(&grid, contributing, memory->scales,
                    recipe->options.precision == SKG_PRECISION_DOUBLE ? 64 : 32, &pass->scale);
+}
+
+/* The groups of parts that touch, unless they are known for these poses and meshes. Parts whose vertices move together go on touching:
+ * of meshes that move, every sixteenth version is looked at, because that takes a twentieth of a frame. */
+static void find_groups(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
+                        const skg_pass *pass) {
+    enum { EVERY = 16 };
+    int64_t count = 0;
+    int known = 1;
+    for (int64_t p = 0; p < pass->scene->count; p++) {
+        const skg_mesh *mesh = mesh_of(recipe, work, p);
+        const skg_mesh_layout *layout = &memory->geometry->layouts[recipe->meshes.of_part[p]];
+        const double *pose = pass->parts[p].pose;
+        if (!layout->flat) continue;
+        known &= memory->versions[p] == 1 + mesh->version / EVERY &&
+                 memcmp(memory->poses[p], pose, sizeof *memory->poses) == 0;
+        memory->versions[p] = 1 + mesh->version / EVERY;
+        memcpy(memory->poses[p], pose, sizeof *memory->poses);
+        memory->touching[count++] =
+            (skg_touching){.part = (int32_t)p, .mesh = mesh, .layout = layout, .pose = pose};
+    }
+    if (!known) skg_touching_find(count, memory->touching, memory->group_of);
+}
+
+/* Gives the parts that touch what they have in common. Near the plane of the source, coordinates of single precision have no rests
+ * (fine.clh), and are better off with the part's own pixel. */
+static void find_touching(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
+                          skg_pass *pass) {
+    const int is_double = recipe->options.precision == SKG_PRECISION_DOUBLE;
+    const int apart = pass->kernels.source_plane && !is_double && !pass->camera.parallel;
+    find_groups(recipe, work, memory, pass);
+    for (int64_t p = 0; p < pass->scene->count; p++) memory->groups[p].members = 0;
+    for (int64_t p = 0; p < pass->scene->count; p++) {
+        skg_geometry_part *part = &pass->parts[p];
+        if (!memory->geometry->layouts[recipe->meshes.of_part[p]].flat) continue;
+        if (apart || skg_touching_is_huge(&pass->camera, part->columns, part->rows)) {
+            skg_touching_group own = {.members = 0};
+            skg_touching_join(&own, part->columns, part->rows, 0);
+            skg_touching_measure(&pass->camera, &own);
+            part->shift = is_double ? 0x1p-44 * own.farthest : skg_touching_shift(&own, 0);
+        } else {
+            const double noise = skg_touching_noise(&pass->camera, mesh_of(recipe, work, p), part->pose,
+                                                    &pass->extents[p].scale);
+            skg_touching_join(&memory->groups[memory->group_of[p]], part->columns, part->rows, noise);
+        }
+    }
+    for (int64_t p = 0; p < pass->scene->count; p++)
+        if (memory->groups[p].members > 1) skg_touching_measure(&pass->camera, &memory->groups[p]);
+    for (int64_t p = 0; p < pass->scene->count; p++) {
+        skg_geometry_part *part = &pass->parts[p];
+        if (!memory->geometry->layouts[recipe->meshes.of_part[p]].flat || part->shift > 0) continue;
+        const skg_touching_group *group = &memory->groups[memory->group_of[p]];
+        if (group->members < 2) continue;
+        part->shift = skg_touching_shift(group, is_double);
+        part->touches = 1;
+        part->shared[0] = group->pixel[0], part->shared[1] = group->pixel[1];
+    }
 }
 
 /* Whether a part that competes, or falls with one that does, adds anything to this frame. */
@@ -137,6 +199,7 @@ skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, i
     SKG_TRY(list_contributions(recipe, work, pass));
     SKG_TRY(mix_planes(recipe, work, pass));
     place_parts(recipe, work, memory, pass);
+    find_touching(recipe, work, memory, pass);
     SKG_TRY(find_priorities(recipe, work, pass));
     kernels->precision = skg_recipe_kernel_precision(recipe);
     kernels->half = recipe->options.precision == SKG_PRECISION_HALF;

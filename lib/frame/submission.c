@@ -112,7 +112,7 @@ static int is_for_later(const skg_job *job) {
 static skg_status clear_counters(const skg_machine *machine) {
     const cl_int none = 0;
     SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
-                                   sizeof none, 0, 3 * sizeof none, 0, NULL, NULL));
+                                   sizeof none, 0, 4 * sizeof none, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -144,7 +144,7 @@ skg_status skg_submission_finish(skg_job *job) {
     if (machine->context->held == job) machine->context->held = NULL;
     if (job->last) return SKG_OK;
     results->frames = job->enqueued;
-    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 3 * sizeof *results->negative,
+    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 4 * sizeof *results->negative,
                              results->negative));
     if (job->main.raster) /* scatter alone has none */
         SKG_TRY(skg_raster_read_listed(job->main.raster, results->listed));

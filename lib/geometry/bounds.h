@@ -64,9 +64,45 @@ typedef struct {
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double last_bit,
                      skg_extent *extent);
 
-/* The same from other bounds, mm from the mesh's origin. */
+/* The same from other bounds, mm from the mesh's origin, and as many layers. */
 void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, const float lowest[3],
-                            const float highest[3], const double *pose, double last_bit, skg_extent *extent);
+                            const float highest[3], const double *pose, double last_bit, int64_t layers,
+                            skg_extent *extent);
+
+/* --- Parts that touch each other in flat faces (lib/mesh/flat.c). */
+
+typedef struct {
+    int32_t part;
+    int32_t root; /* workspace */
+    const skg_mesh *mesh;
+    const skg_mesh_layout *layout;
+    const double *pose;
+    double low[3], high[3]; /* mm, world; workspace */
+} skg_touching;
+
+/* Finds which parts touch. groups: [parts] result: the number of one part of its group, which is the same for all. */
+void skg_touching_find(int64_t count, skg_touching *boxes, int32_t *groups);
+
+/* A group in the picture. */
+typedef struct {
+    int32_t members;
+    int32_t pixel[2];       /* from which its parts count */
+    double low[2], high[2]; /* columns and rows */
+    double farthest;        /* coordinate, from that pixel */
+    double noise;           /* pixels that rounding the positions of meshes to doubles moves them */
+} skg_touching_group;
+
+int skg_touching_is_huge(const skg_camera *camera, const double columns[2], const double rows[2]);
+void skg_touching_join(skg_touching_group *group, const double columns[2], const double rows[2],
+                       double noise);
+void skg_touching_measure(const skg_camera *camera, skg_touching_group *group);
+
+/* The pixels by which kernels move the edges of a group for coverage (kernels/triangle.clh). */
+double skg_touching_shift(const skg_touching_group *group, int32_t is_double);
+
+/* The pixels that rounding the positions of a mesh to doubles moves them. at: its extent. */
+double skg_touching_noise(const skg_camera *camera, const skg_mesh *mesh, const double *pose,
+                          const skg_scale_part *at);
 
 /* The pixels that its rectangle and 2 pixels more for rounding cover: rows from, to, columns from, to, rounded
  * outward as skg_shared.h wants them. The last row may lie beyond the detector. */

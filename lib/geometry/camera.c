@@ -3,6 +3,7 @@
 #include "core/maths.h"
 
 #include <math.h>
+#include <string.h>
 
 /* matrix = [a b c]^-1, by cofactors. Returns the determinant of [a b c]. */
 static double invert(const double a[3], const double b[3], const double c[3], double matrix[3][3]) {
@@ -88,55 +89,102 @@ static double determinant(double m[3][3]) {
     return skg_dot(m[0], c);
 }
 
-/* One axis of the picture: anchor, offset and row of the part, relative to its pixel (skg_shared.h). */
-static void point_axis(double h, double depth, const double linear[3], const double deep[3], int64_t count,
-                       double row[3], double *offset, double *anchor, SKG_INT *pixel) {
-    const int seen = depth > (double)SKG_NEAR; /* otherwise the origin of the mesh has no projection */
-    const double at = seen ? h / depth : 0.5 * (double)(count - 1);
-    const double own = own_pixel(at, count);
+/* --- Sums of two doubles: `low` is what rounding has lost. The place of a part far from the source or the origin is a small
+ * difference of large numbers, and parts that touch must agree on it by less than a thousandth of what doubles leave. */
+typedef struct {
+    double high, low;
+} pair;
+
+/* sum + a b. Written so that no compiler may contract anything. */
+static pair add_product(pair sum, double a, double b) {
+    const double product = a * b, high = sum.high + product, of_b = high - sum.high;
+    const double lost = (sum.high - (high - of_b)) + (product - of_b);
+    const double rest = fma(a, b, -product);
+    return (pair){high, sum.low + lost + rest};
+}
+
+/* As skg_pose_point and skg_camera_see, with twice the digits. */
+static void see_exactly(const skg_camera *camera, const double *pose, const double *origin, pair h[3]) {
+    pair v[3];
+    for (int r = 0; r < 3; r++) {
+        v[r] = (pair){pose[4 * r + 3], 0};
+        for (int k = 0; k < 3; k++) v[r] = add_product(v[r], pose[4 * r + k], origin[k]);
+        v[r] = add_product(v[r], -1, camera->origin[r]);
+    }
+    for (int r = 0; r < 3; r++) {
+        h[r] = (pair){0, 0};
+        for (int k = 0; k < 3; k++) h[r] = add_product(h[r], camera->matrix[r][k], v[k].high);
+        double low = h[r].low;
+        for (int k = 0; k < 3; k++) low = fma(camera->matrix[r][k], v[k].low, low);
+        h[r].low = low;
+    }
+}
+
+static void see_origin(const skg_camera *camera, const double *pose, const double *origin, int32_t exact,
+                       pair h[3]) {
+    double world[3], seen[3];
+    if (exact) {
+        see_exactly(camera, pose, origin, h);
+        return;
+    }
+    for (int r = 0; r < 3; r++) world[r] = skg_dot(pose + 4 * r, origin) + pose[4 * r + 3];
+    skg_camera_see(camera, world, seen);
+    for (int r = 0; r < 3; r++) h[r] = (pair){seen[r], 0};
+}
+
+/* One axis of the picture: anchor, offset and row of the part, relative to its pixel (skg_shared.h). shared: the pixel, if it is
+ * given. */
+static void point_axis(pair h, pair depth, const double linear[3], const double deep[3], int64_t count,
+                       const int32_t *shared, double row[3], double *offset, double *anchor, SKG_INT *pixel) {
+    const int seen = depth.high > (double)SKG_NEAR; /* otherwise the origin of the mesh has no projection */
+    const double at = seen ? h.high / depth.high : 0.5 * (double)(count - 1);
+    const double rest = fma(-at, depth.high, h.high) + (h.low - at * depth.low);
+    const double own = shared ? *shared : own_pixel(at, count);
     const double relative_to = seen ? at : own;
     *pixel = (SKG_INT)own;
-    *anchor = seen ? at - own : 0;
-    *offset = seen ? 0 : h - own * depth;
+    *anchor = seen ? (at - own) + (h.low != 0 || depth.low != 0 ? rest / depth.high : 0) : 0;
+    *offset = seen ? 0 : h.high - own * depth.high;
     for (int k = 0; k < 3; k++) row[k] = linear[k] - relative_to * deep[k];
 }
 
-static void parallel_axis(double h, const double linear[3], int64_t count, double row[3], double *offset,
-                          double *anchor, SKG_INT *pixel) {
-    const double own = own_pixel(h, count);
+static void parallel_axis(pair h, const double linear[3], int64_t count, const int32_t *shared, double row[3],
+                          double *offset, double *anchor, SKG_INT *pixel) {
+    const double own = shared ? *shared : own_pixel(h.high, count);
     *pixel = (SKG_INT)own;
-    *anchor = h - own;
+    *anchor = (h.high - own) + h.low;
     *offset = 0;
     for (int k = 0; k < 3; k++) row[k] = linear[k];
 }
 
-void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double reference,
-                     int32_t flipped, skg_part_double *part) {
-    double pose_linear[3][3], linear[3][3], world[3], h[3];
-    for (int r = 0; r < 3; r++) {
+void skg_camera_part(const skg_camera *camera, const skg_camera_place *place, skg_part_double *part) {
+    const double *pose = place->pose;
+    const int32_t *shared = place->shared;
+    double pose_linear[3][3], linear[3][3];
+    pair h[3];
+    for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++) pose_linear[r][c] = pose[4 * r + c];
-        world[r] = skg_dot(pose_linear[r], origin) + pose[4 * r + 3];
-    }
     for (int r = 0; r < 3; r++)
         for (int c = 0; c < 3; c++)
             linear[r][c] = camera->matrix[r][0] * pose[c] + camera->matrix[r][1] * pose[4 + c] +
                            camera->matrix[r][2] * pose[8 + c];
-    skg_camera_see(camera, world, h);
-    const double depth = camera->parallel ? h[2] + 1 : h[2];
+    see_origin(camera, pose, place->origin, place->exact, h);
+    const pair depth = !camera->parallel ? h[2]
+                       : place->exact    ? add_product(h[2], 1, 1)
+                                         : (pair){h[2].high + 1, 0};
     if (camera->parallel) {
-        parallel_axis(h[0], linear[0], camera->columns, part->row0, &part->offset_x, &part->anchor_x,
+        parallel_axis(h[0], linear[0], camera->columns, shared, part->row0, &part->offset_x, &part->anchor_x,
                       &part->pixel_i);
-        parallel_axis(h[1], linear[1], camera->rows, part->row1, &part->offset_y, &part->anchor_y,
-                      &part->pixel_j);
+        parallel_axis(h[1], linear[1], camera->rows, shared ? shared + 1 : NULL, part->row1, &part->offset_y,
+                      &part->anchor_y, &part->pixel_j);
     } else {
-        point_axis(h[0], depth, linear[0], linear[2], camera->columns, part->row0, &part->offset_x,
+        point_axis(h[0], depth, linear[0], linear[2], camera->columns, shared, part->row0, &part->offset_x,
                    &part->anchor_x, &part->pixel_i);
-        point_axis(h[1], depth, linear[1], linear[2], camera->rows, part->row1, &part->offset_y,
-                   &part->anchor_y, &part->pixel_j);
+        point_axis(h[1], depth, linear[1], linear[2], camera->rows, shared ? shared + 1 : NULL, part->row1,
+                   &part->offset_y, &part->anchor_y, &part->pixel_j);
     }
     for (int k = 0; k < 3; k++) part->row2[k] = linear[2][k];
-    part->reference = camera->parallel || reference > 0 ? reference : 1;
-    part->offset_r = depth - part->reference;
+    part->reference = camera->parallel || place->reference > 0 ? place->reference : 1;
+    part->offset_r = (depth.high - part->reference) + depth.low;
     part->highest = 1 - part->reference;
     part->start[0] = camera->start[0] + camera->start[1] * part->pixel_i + camera->start[2] * part->pixel_j -
                      part->reference;
@@ -146,7 +194,12 @@ void skg_camera_part(const skg_camera *camera, const double *pose, const double 
     part->fine = 0;
     /* Seen from the source, the far faces of an outward mesh turn in the sense of the picture's axes. */
     const int mirrored = (determinant(pose_linear) < 0) != (camera->determinant < 0);
-    part->turned = mirrored != (flipped != 0) ? -1 : 0;
+    part->turned = mirrored != (place->flipped != 0) ? -1 : 0;
+    memset(part->low0, 0, sizeof part->low0);
+    memset(part->low1, 0, sizeof part->low1);
+    memset(part->low2, 0, sizeof part->low2);
+    part->low_x = part->low_y = part->low_r = part->low_anchor_x = part->low_anchor_y = part->low_reference =
+        0;
 }
 
 double skg_camera_pixel_area(const skg_camera *camera) {

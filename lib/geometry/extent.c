@@ -54,7 +54,7 @@ static void start_range(const skg_camera *camera, double *first, double *last) {
 
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double last_bit,
                      skg_extent *extent) {
-    skg_extent_find_within(camera, mesh, mesh->lowest, mesh->highest, pose, last_bit, extent);
+    skg_extent_find_within(camera, mesh, mesh->lowest, mesh->highest, pose, last_bit, mesh->layers, extent);
 }
 
 /* A range of t, and that of the planes where rays start. */
@@ -100,12 +100,13 @@ static void widen(range *t, double rounding) {
 }
 
 void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, const float lowest[3],
-                            const float highest[3], const double *pose, double last_bit, skg_extent *extent) {
+                            const float highest[3], const double *pose, double last_bit, int64_t layers,
+                            skg_extent *extent) {
     const box of = {mesh->origin, lowest, highest};
     double h[8][3], reach;
     range t = {HUGE_VAL, -HUGE_VAL, 0, 0};
     skg_scale_part *part = &extent->scale;
-    *extent = (skg_extent){.scale = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0, 0, 0, mesh->layers}};
+    *extent = (skg_extent){.scale = {HUGE_VAL, -HUGE_VAL, HUGE_VAL, -HUGE_VAL, 0, 0, 0, (double)layers}};
     see_corners(camera, &of, pose, h, &reach);
     for (int k = 0; k < 8; k++) t.low = lesser(t.low, h[k][2]), t.high = greater(t.high, h[k][2]);
     if (camera->parallel) start_range(camera, &t.first, &t.last);

@@ -39,15 +39,19 @@ skg_status skg_camera_make(const skg_view *view, const double *source, double sh
 /* h of a world point. */
 void skg_camera_see(const skg_camera *camera, const double world[3], double h[3]);
 
+/* Where a part stands. */
+typedef struct {
+    const double *pose;    /* 4x4, row by row */
+    const double *origin;  /* of the offsets of the mesh, mm */
+    double reference;      /* the path parameter that depths of the part are relative to */
+    int32_t flipped;       /* 1: the triangles of the mesh are turned over */
+    int32_t exact;         /* 1: the place of the origin has twice the digits on the way */
+    const int32_t *shared; /* [2] the pixel that columns and rows are counted from; NULL: the part's own */
+} skg_camera_place;
+
 /* Fills the projection of a part's entry (skg_shared.h), but neither its place in the tables, nor its contributions, nor which
- * of its faces are steep, nor how far edges are moved.
- *
- * pose        4x4, row by row
- * origin      of the offsets of the mesh, mm
- * reference   the path parameter that depths of the part are relative to
- * flipped     the triangles of the mesh are turned over */
-void skg_camera_part(const skg_camera *camera, const double *pose, const double *origin, double reference,
-                     int32_t flipped, skg_part_double *part);
+ * of its faces are steep, nor how far edges are moved. */
+void skg_camera_part(const skg_camera *camera, const skg_camera_place *place, skg_part_double *part);
 
 /* The area of a pixel in mm2. */
 double skg_camera_pixel_area(const skg_camera *camera);

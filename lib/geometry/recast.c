@@ -167,7 +167,10 @@ skg_status skg_recast(const skg_camera *camera, const skg_mesh *mesh, const skg_
         skg_mesh_vertex(mesh, v, at);
         vertices[v] = see(camera, pose, at);
     }
-    skg_camera_part(camera, pose, origin, 1, mesh->orientation < 0, &part);
+    skg_camera_part(
+        camera,
+        &(skg_camera_place){.pose = pose, .origin = origin, .reference = 1, .flipped = mesh->orientation < 0},
+        &part);
     const casting c = {camera, pixels, paths, part.turned != 0};
     for (int64_t k = 0; k < pixels->count; k++) paths[k] = 0;
     for (int64_t t = 0; t < mesh->triangles; t++) {

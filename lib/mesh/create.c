@@ -109,7 +109,7 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
     mesh->unit_mm = arrays->unit_mm, mesh->file_unit_mm = arrays->file_unit_mm;
     mesh->unit_from = arrays->unit_from;
     mesh->health.left_out = arrays->left_out, mesh->health.trailing_bytes = arrays->trailing;
-    mesh->pieces = arrays->pieces, mesh->piece_count = arrays->piece_count;
+    mesh->groups = arrays->pieces, mesh->group_count = arrays->piece_count;
     *arrays = (skg_mesh_arrays){0};
     SKG_TRY(skg_alloc(3 * mesh->vertices, sizeof *mesh->offsets, name, &mesh->offsets));
     set_offsets(mesh);
@@ -241,11 +241,12 @@ void skg_mesh_release(skg_mesh **mesh) {
     skg_free(&last->offsets);
     skg_free(&last->corners);
     skg_free(&last->weld);
-    for (int64_t i = 0; i < last->piece_count; i++) {
-        skg_free(&last->pieces[i].object);
-        skg_free(&last->pieces[i].group);
+    for (int64_t i = 0; i < last->group_count; i++) {
+        skg_free(&last->groups[i].object);
+        skg_free(&last->groups[i].group);
     }
-    skg_free(&last->pieces);
+    skg_free(&last->groups);
+    skg_free(&last->piece);
     skg_free(&last);
 }
 
@@ -326,7 +327,7 @@ skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64
     set_offsets(mesh);
     set_bounds(mesh);
     mesh->version++;
-    return SKG_OK;
+    return skg_mesh_count_layers(mesh);
 }
 
 skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const double **origin) {
@@ -347,7 +348,7 @@ skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
         for (int k = 0; k < 3; k++)
             if (mesh->offsets[3 * i + k] != mesh->offsets[3 * (int64_t)mesh->weld[i] + k])
                 return torn(mesh, i);
-    return SKG_OK;
+    return skg_mesh_count_layers(mesh);
 }
 
 void skg_mesh_unit_init_sized(void *unit, int32_t size) {
@@ -367,18 +368,18 @@ skg_status skg_mesh_unit_get(const skg_mesh *mesh, skg_mesh_unit *unit) {
 skg_status skg_mesh_group_count(const skg_mesh *mesh, int64_t *count) {
     SKG_NEEDS(mesh);
     SKG_NEEDS(count);
-    *count = mesh->piece_count;
+    *count = mesh->group_count;
     return SKG_OK;
 }
 
 skg_status skg_mesh_group_get(const skg_mesh *mesh, int64_t group, const char **name, int64_t *first,
                               int64_t *triangles) {
     SKG_NEEDS(mesh);
-    if (group < 0 || group >= mesh->piece_count)
+    if (group < 0 || group >= mesh->group_count)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: group %" PRId64 " of %" PRId64, mesh->name, group,
-                        mesh->piece_count);
-    const skg_mesh_piece *piece = &mesh->pieces[group];
-    const int64_t end = group + 1 < mesh->piece_count ? piece[1].first : mesh->triangles;
+                        mesh->group_count);
+    const skg_mesh_piece *piece = &mesh->groups[group];
+    const int64_t end = group + 1 < mesh->group_count ? piece[1].first : mesh->triangles;
     if (name) *name = skg_mesh_piece_name(piece);
     if (first) *first = piece->first;
     if (triangles) *triangles = end - piece->first;

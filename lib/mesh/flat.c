@@ -37,21 +37,28 @@ static int holds(const plane *p, const double v[3][3], double near) {
 }
 
 /* Triangles of a flat face follow each other in the files that programs write. */
-int skg_mesh_has_flat_face(const skg_mesh *mesh) {
+int32_t skg_mesh_flat_faces(const skg_mesh *mesh, int32_t (*vertices)[3]) {
     const double *bounds = mesh->health.bounds, all = mesh->health.area;
     const double diagonal[3] = {bounds[3] - bounds[0], bounds[4] - bounds[1], bounds[5] - bounds[2]};
     const double near = NEAR * skg_length(diagonal);
     plane last = {.area = 0};
     double together = 0;
-    for (int64_t t = 0; t < mesh->triangles; t++) {
+    int32_t count = 0;
+    int listed = 0; /* 1: the plane of the last triangle is among those found */
+    for (int64_t t = 0; t < mesh->triangles && count < SKG_MESH_PLANES; t++) {
         double v[3][3];
         for (int c = 0; c < 3; c++) skg_mesh_vertex(mesh, mesh->corners[3 * t + c], v[c]);
         const plane own = plane_of(v);
         if (!(own.area > 0)) continue;
         const int same = last.area > 0 && holds(&last, v, near);
         together = same ? together + own.area : own.area;
-        if (own.area >= ALONE * all || (same && together >= TOGETHER * all)) return 1;
+        listed &= same;
+        if (!listed && (own.area >= ALONE * all || (same && together >= TOGETHER * all))) {
+            if (!vertices) return 1;
+            for (int c = 0; c < 3; c++) vertices[count][c] = mesh->corners[3 * t + c];
+            count++, listed = 1;
+        }
         last = own;
     }
-    return 0;
+    return count;
 }

@@ -201,7 +201,7 @@ static skg_status examine_edges(skg_mesh *mesh) {
         health->same_way_edges = same_way; /* as the caller wound them */
     }
     for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = root_of(parent, t);
-    status = skg_mesh_count_layers(mesh, parent, multiplicity);
+    status = skg_mesh_set_pieces(mesh, parent, multiplicity);
 cleanup:
     groups_free(&edges);
     skg_free(&parent);

@@ -76,7 +76,7 @@ skg_status skg_mesh_layout_create(const skg_mesh *mesh, skg_mesh_layout *layout)
     skg_status status = SKG_OK;
     int32_t sorted = 0, *of = NULL;
     *layout =
-        (skg_mesh_layout){.vertices = mesh->vertices, .triangles = mesh->triangles, .fine = is_thin(mesh)};
+        (skg_mesh_layout){.vertices = mesh->vertices, .triangles = mesh->triangles, .thin = is_thin(mesh)};
     SKG_TRY_CLEANUP(skg_alloc(3 * mesh->triangles, sizeof *layout->corners, mesh->name, &layout->corners));
     SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, layout->corners, &sorted));
     const int merged = pays_to_merge(mesh);
@@ -113,4 +113,5 @@ cleanup:
 void skg_mesh_layout_release(skg_mesh_layout *layout) {
     skg_free(&layout->source);
     skg_free(&layout->corners);
+    skg_free(&layout->planes);
 }

@@ -22,12 +22,19 @@ struct skg_mesh {
     int64_t version;     /* of the positions, from 1 */
     float lowest[3];     /* bounds of the finite offsets, mm from origin */
     float highest[3];
-    int64_t first_bad;            /* first vertex that is not finite; -1: none */
-    int32_t layers;               /* how many times over a ray may be inside at once, in version 1 */
+    int64_t first_bad; /* first vertex that is not finite; -1: none */
+    int64_t layers;    /* how many times over a ray may be inside at once */
+    int32_t
+        multiplicity; /* how often an edge runs in one direction: coincident copies weld into one component */
+    int32_t pieces;   /* components that are joined by shared edges */
+    int32_t pieces_share; /* 1: some of them share vertices */
+    int32_t *
+        piece; /* [vertices], or [triangles] if they share vertices: the number of each one's; NULL: there is one */
+    int64_t winding;              /* the largest winding number along columns, when these were last swept */
     double unit_mm, file_unit_mm; /* as skg_mesh_unit.mm and .file_mm */
     int32_t unit_from;            /* enum skg_unit_from */
-    skg_mesh_piece *pieces;       /* named ones of the file, in the order of their triangles */
-    int64_t piece_count;
+    skg_mesh_piece *groups;       /* named ones of the file, in the order of their triangles */
+    int64_t group_count;
     skg_mesh_health health; /* volume, area, bounds and degenerate_triangles of version 1 */
 };
 
@@ -55,12 +62,23 @@ void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_
 /* Fills health and orientation of a new mesh, and its weld map. */
 skg_status skg_mesh_examine(skg_mesh *mesh);
 
-/* Sets mesh->layers: how many components may lie over each other, judged by their boxes, times `multiplicity`.
+/* Takes the components of a new mesh, and counts its layers.
  *
  * root           [triangles] a triangle of the same component, the same one for all of its triangles; components are
  *                joined by shared edges
- * multiplicity   how often an edge runs in one direction: coincident copies weld into one component */
-skg_status skg_mesh_count_layers(skg_mesh *mesh, const int32_t *root, int32_t multiplicity);
+ * multiplicity   how often an edge runs in one direction */
+skg_status skg_mesh_set_pieces(skg_mesh *mesh, const int32_t *root, int32_t multiplicity);
+
+/* Sets mesh->layers for the present positions: how many components may lie over each other, judged by their boxes, times
+ * the multiplicity; or the largest winding number along columns, if that is more. Columns are swept at the first three moves and every
+ * sixteenth version. */
+skg_status skg_mesh_count_layers(skg_mesh *mesh);
+
+/* The layers of positions that the host does not know: all components may lie over each other. */
+static inline int64_t skg_mesh_layers_unseen(const skg_mesh *mesh) {
+    const int64_t all = (int64_t)mesh->pieces * mesh->multiplicity;
+    return all > mesh->layers ? all : mesh->layers;
+}
 
 /* Numbers the pieces that are connected through welded vertices, in the order of their first triangles.
  *
@@ -93,9 +111,13 @@ enum { SKG_MESH_SMALL = 4096 };
  * *sorted is 1 if the triangles were reordered. */
 skg_status skg_mesh_sorted_corners(const skg_mesh *mesh, int32_t *corners, int32_t *sorted);
 
-/* 1: the mesh has a face that is flat, such as a block's: in this other parts may touch it, and rays may run along it. Faces whose
- * triangles are scattered over the list, and smaller ones than a thousandth of the surface, are not found. */
-int skg_mesh_has_flat_face(const skg_mesh *mesh);
+/* The flat faces of a mesh, such as a block's: in these other parts may touch it, and rays may run along them. Faces whose
+ * triangles are scattered over the list, and smaller ones than a thousandth of the surface, are not found.
+ *
+ * vertices   [SKG_MESH_PLANES][3] result: of a triangle of each; may be NULL
+ * returns how many; at most SKG_MESH_PLANES */
+enum { SKG_MESH_PLANES = 64 };
+int32_t skg_mesh_flat_faces(const skg_mesh *mesh, int32_t (*vertices)[3]);
 
 /* The vertices and triangles of a mesh as a device has them. Vertices at the same place are merged. Those of a closed
  * mesh stay together (skg_mesh_positions_set). Those of a leaky one may part, so the layout lists their copies as well. */
@@ -106,9 +128,11 @@ typedef struct {
     int32_t *
         source; /* [vertices + copies] the mesh's number of each; NULL: as the mesh numbers them, none merged */
     int32_t *corners; /* [triangles][3] */
-    /* 1: a thin mesh, of which the device has also what rounding the vertices to floats has lost */
-    int32_t fine;
-    int32_t flat; /* 1: the mesh has a flat face, and the scene other such meshes; set by the caller */
+    int32_t thin;     /* 1: the mesh is much thinner than wide */
+    int32_t flat;     /* 1: the mesh has a flat face, and the scene other such meshes; set by the caller */
+    int32_t plane_count;
+    int32_t (*planes)[3]; /* [plane_count] of a flat mesh: vertices of its flat faces */
+    int32_t fine; /* 1: the device has also what rounding them to floats has lost; set by the caller */
 } skg_mesh_layout;
 
 /* Merges vertices if that saves an eighth of them, and puts triangles and vertices in an order in which neighbours in

@@ -100,6 +100,20 @@ static skg_status report_infinite(const skg_recipe *recipe, const skg_context *c
     return SKG_RANGE;
 }
 
+/* The scale is made for the layers that columns through each mesh show (mesh/layers.c). */
+static skg_status report_wrapped(const skg_context *context, int32_t rays, skg_outcome *outcome) {
+    if (rays == 0) return SKG_OK;
+    (void)skg_fail(
+        SKG_RANGE,
+        "at %" PRId32 " %s a mesh lies over itself more often than its columns show, and sums of "
+        "lengths leave their integers: these pixels are wrong; unite what overlaps in the mesh, or take "
+        "precision double",
+        rays, skg_plural(rays, "ray", "rays"));
+    if (!outcome->warned_wrapped) skg_log(context, SKG_LOG_WARNING, "%s", skg_last_error());
+    outcome->warned_wrapped = 1;
+    return SKG_RANGE;
+}
+
 static skg_status report_outside(const skg_recipe *recipe, int32_t pixels, skg_outcome *outcome) {
     outcome->report.outside_pixels = pixels;
     if (pixels == 0) return SKG_OK;
@@ -143,8 +157,10 @@ skg_status skg_report_work(const skg_recipe *recipe, skg_context *context, const
     }
     const skg_status outside = report_outside(recipe, results->negative[1], outcome);
     const skg_status infinite = report_infinite(recipe, context, results->negative[2], outcome);
+    const skg_status wrapped = report_wrapped(context, results->negative[3], outcome);
     const skg_status left = report_left_bounds(recipe, results);
     return left != SKG_OK       ? left
+           : wrapped != SKG_OK  ? wrapped
            : infinite != SKG_OK ? infinite
                                 : outside; /* the sentence is the last one's */
 }

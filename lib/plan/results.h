@@ -25,6 +25,7 @@ typedef struct {
     skg_stage_time stages[SKG_STAGES_MAX];
     int32_t warned_unseen;   /* 1: that nothing falls on the detector */
     int32_t warned_infinite; /* 1: that pixels were not finite */
+    int32_t warned_wrapped;  /* 1: that sums left their bounds */
     int32_t side; /* passes of a frame that a worker draws side by side; 0: all workers are at each pass */
     int32_t *
         warned_bad; /* [leaky parts] digits of the greatest number of bad pixels that was warned of; 0: none */
@@ -41,7 +42,8 @@ void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome);
 
 /* What the device leaves of work, in staged memory. */
 typedef struct {
-    /* [3] pixels with a negative exponent in the last frame; in any frame, pixels outside the range and infinite values */
+    /* [4] pixels with a negative exponent in the last frame; in any frame, pixels outside the range, infinite values, and rays
+     * with a sum beyond its bound */
     int32_t *negative;
     int32_t *listed; /* [2] of the last frame, as skg_raster_read_listed leaves it */
     int64_t frames;

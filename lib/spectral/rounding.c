@@ -28,6 +28,7 @@ static const double THIN = 0.01;
 
 typedef struct {
     const skg_model *model;
+    const double *seams; /* [parts] or NULL */
     share by;
     int is_half;
     double *exponents; /* [RAYS][nodes] */
@@ -93,8 +94,8 @@ static void note_thin(skg_rounding *found, const skg_trace *trace, double bar) {
 static void add_part(void *user, const skg_trace *trace) {
     rounding *r = user;
     const int32_t nodes = r->model->nodes;
-    const double bar = bar_of(r, trace);
-    note_thin(r->found, trace, bar);
+    const double own = bar_of(r, trace), bar = own + (r->seams ? r->seams[trace->part] * trace->deepest : 0);
+    note_thin(r->found, trace, own);
     if (!r->exponents) return; /* thin parts alone */
     find_mu(r, trace->part);
     for (int64_t ray = 0; ray < RAYS; ray++)
@@ -120,9 +121,10 @@ static rounding begin(const skg_model *model, const skg_plan_options *options, s
 }
 
 skg_status skg_rounding_find(const skg_scene *scene, const skg_view *view, const skg_model *model,
-                             const skg_plan_options *options, skg_rounding *found) {
+                             const skg_plan_options *options, const double *seams, skg_rounding *found) {
     static const char what[] = "bound of the precision";
     rounding r = begin(model, options, found);
+    r.seams = seams;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc((int64_t)RAYS * model->nodes, sizeof *r.exponents, what, &r.exponents));
     SKG_TRY_CLEANUP(skg_alloc((int64_t)RAYS * model->nodes, sizeof *r.errors, what, &r.errors));

@@ -99,11 +99,13 @@ typedef struct {
 /* Bounds the error that the rounding of lengths and exponents makes.
  *
  * options   its precision; with half precision images are rounded as well
+ * seams     [parts] the share of its extent along the rays by which the length of a part that touches others may be wrong besides;
+ *           NULL: 0
  * method    rays to 64 x 64 points of the detector; each part that a ray meets may be wrong by the bar of docs/numerics.md:
  *           a share of the longest path through the part, or of its extent along the rays if that is more; with half
  *           precision half a last place of a distance in metres for each surface that is met */
 skg_status skg_rounding_find(const skg_scene *scene, const skg_view *view, const skg_model *model,
-                             const skg_plan_options *options, skg_rounding *rounding);
+                             const skg_plan_options *options, const double *seams, skg_rounding *rounding);
 
 /* The same for parts alone that may be thin, judged by their volumes: thin_count and what follows, but not the bound. Costs
  * nothing where no part may be. */

@@ -87,7 +87,7 @@ typedef struct {
  * factor    of intensities; with noise, of photons. The draws of all samples add up to one draw of all photons.
  * share     the share of one ray in the photons of its pixel
  * least     exponents below it are counted in negative[0]; pixels outside the attenuation's range in negative[1],
- *           values that are not finite in negative[2]
+ *           values that are not finite in negative[2], rays with a sum beyond its bound in negative[3]
  * noise     the key of the noise, of the first of the rays of a pixel; NULL without noise */
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                          const skg_attenuation *attenuation, double factor, double share, double least,

@@ -47,7 +47,7 @@ static double competing_of(const skg_gather_run *run, const double *most) {
     double competing = 0;
     for (int64_t s = 0; s < run->pass->priority.count; s++) {
         const int64_t p = run->pass->priority.parts[s];
-        const int32_t layers = run->pass->scene->parts[p].mesh->layers;
+        const double layers = (double)run->pass->scene->parts[p].mesh->layers;
         competing += 2 * bound_of(run, p, most) / reference_of(run, p) * (layers > 1 ? layers : 1);
     }
     return competing;
@@ -83,7 +83,7 @@ void skg_gradient_find_scales(const skg_gather_run *run, const double *most, con
         const double bound = hit_bound(run, p, most, competing) * fmax(pixels_of(run, p) * far, 4096);
         if (bound > 0 && !(around && around->same[p]))
             scales[p] = scale_for(bound), units[p] = reference_of(run, p) / scales[p];
-        const int32_t layers = run->pass->scene->parts[p].mesh->layers;
+        const double layers = (double)run->pass->scene->parts[p].mesh->layers;
         const double of_around = around ? around_bound(run, p, most, around) * (layers > 1 ? layers : 1) : 0;
         if (of_around > 0) {
             scales[parts + p] = scale_for(of_around * fmax(2 * pixels_of(run, p), 4096));

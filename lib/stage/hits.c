@@ -83,7 +83,8 @@ static skg_status upload_shifts(const hits_run *run) {
     for (int64_t s = 0; s < priority->count; s++) {
         const skg_geometry_part *part = &run->pass->parts[priority->parts[s]];
         skg_part_double seen;
-        skg_camera_part(&run->pass->camera, part->pose, part->origin, part->reference, part->flipped, &seen);
+        const skg_camera_place place = skg_geometry_place(part, 0);
+        skg_camera_part(&run->pass->camera, &place, &seen);
         if (s == 0) common = seen.reference;
         if (run->is_double)
             ((double *)shifts)[s] = seen.reference - common;

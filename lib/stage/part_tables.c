@@ -27,20 +27,26 @@ void skg_geometry_release_tables(skg_geometry *geometry) {
     }
 }
 
+static float round_to(double from, float *low) {
+    const float high = (float)from;
+    *low = (float)(from - (double)high);
+    return high;
+}
+
 /* Single precision takes what changes from frame to frame from the double values, rounded once. */
 static void round_entry(const skg_part_double *from, skg_part_float *to) {
     for (int k = 0; k < 3; k++) {
-        to->row0[k] = (float)from->row0[k];
-        to->row1[k] = (float)from->row1[k];
-        to->row2[k] = (float)from->row2[k];
+        to->row0[k] = round_to(from->row0[k], &to->low0[k]);
+        to->row1[k] = round_to(from->row1[k], &to->low1[k]);
+        to->row2[k] = round_to(from->row2[k], &to->low2[k]);
         to->start[k] = (float)from->start[k];
     }
-    to->offset_x = (float)from->offset_x;
-    to->offset_y = (float)from->offset_y;
-    to->offset_r = (float)from->offset_r;
-    to->anchor_x = (float)from->anchor_x;
-    to->anchor_y = (float)from->anchor_y;
-    to->reference = (float)from->reference;
+    to->offset_x = round_to(from->offset_x, &to->low_x);
+    to->offset_y = round_to(from->offset_y, &to->low_y);
+    to->offset_r = round_to(from->offset_r, &to->low_r);
+    to->anchor_x = round_to(from->anchor_x, &to->low_anchor_x);
+    to->anchor_y = round_to(from->anchor_y, &to->low_anchor_y);
+    to->reference = round_to(from->reference, &to->low_reference);
     to->highest = (float)from->highest;
     to->steepest = (float)fmin(from->steepest, (double)FLT_MAX);
     to->shift = (float)from->shift;
@@ -80,20 +86,6 @@ static double steepest(const skg_geometry *geometry, const skg_camera *camera, c
     return (fine ? FINE_SHARE : STEEP_SHARE) * fabs(z) / last_bit;
 }
 
-/* The pixels by which kernels for parts that touch move the edges of a part for coverage (triangle.clh): more than what rounding leaves of its coordinates.
- * Of these the greatest is rounded most; those of a part that reaches the plane of the source have no bound, but most edges that cross
- * the detector end near it. Doubles that are small have what the world's coordinates, of which they are made, have lost. */
-static double shift_of(const skg_geometry *geometry, const skg_camera *camera, const skg_geometry_part *part,
-                       const skg_part_double *entry) {
-    const double columns = fmax(entry->pixel_i - part->columns[0], part->columns[1] - entry->pixel_i);
-    const double rows = fmax(entry->pixel_j - part->rows[0], part->rows[1] - entry->pixel_j);
-    const double size = (double)(camera->columns > camera->rows ? camera->columns : camera->rows);
-    const double farthest = isfinite(columns + rows) ? fmax(columns, rows) : 16 * size;
-    if (!(farthest > 0)) return 0;
-    return skg_geometry_is_double(geometry) ? 0x1p-44 * fmax(farthest, 256)
-                                            : 2 * (double)FLT_EPSILON * farthest;
-}
-
 /* pass: of several that are drawn together; their contributions stand one behind the other. */
 static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const skg_camera *camera,
                               const skg_geometry_part *part, double scale, skg_table_slot *slot) {
@@ -107,12 +99,14 @@ static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const 
     for (int64_t p = 0; p < geometry->parts; p++) {
         skg_part_double local,
             *entry = skg_geometry_is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
-        skg_camera_part(camera, part[p].pose, part[p].origin, part[p].reference, part[p].flipped, entry);
         const skg_mesh_layout *layout = &geometry->layouts[geometry->mesh_of_part[p]];
+        const int32_t thin = layout->thin && !skg_geometry_is_double(geometry);
+        const skg_camera_place place = skg_geometry_place(&part[p], skg_geometry_is_double(geometry) || thin);
+        skg_camera_part(camera, &place, entry);
         entry->vertices = (SKG_INT)layout->vertices;
-        entry->fine = layout->fine;
-        entry->steepest = steepest(geometry, camera, &part[p], layout->fine);
-        entry->shift = layout->flat ? shift_of(geometry, camera, &part[p], entry) : 0;
+        entry->fine = layout->fine && (thin || part[p].touches);
+        entry->steepest = steepest(geometry, camera, &part[p], thin);
+        entry->shift = part[p].shift;
         entry->first_contribution = (SKG_INT)(pass * total + slot->contribution_count);
         entry->contributions = (SKG_INT)part[p].contributions;
         if (!skg_geometry_is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);

@@ -13,10 +13,16 @@
 /* Host memory for what a pass knows of its parts, kept from pass to pass: a million parts take as long to allocate as to
  * fill. All NULL: not allocated. */
 typedef struct {
-    skg_geometry_part *parts;       /* [parts] */
-    skg_extent *extents;            /* [parts] */
-    skg_scale_part *scales;         /* [parts] of those that contribute */
-    skg_scale_grid grid;            /* workspace of the scale */
+    skg_geometry_part *parts;     /* [parts] */
+    skg_extent *extents;          /* [parts] */
+    skg_scale_part *scales;       /* [parts] of those that contribute */
+    skg_touching *touching;       /* [parts] workspace: of those that may touch */
+    skg_touching_group *groups;   /* [parts] workspace */
+    int32_t *group_of;            /* [parts] of those that may touch: the group, for these poses and meshes */
+    double (*poses)[16];          /* [parts] */
+    int64_t *versions;            /* [parts] sixteenths of those of their meshes, from 1; 0: not known */
+    skg_scale_grid grid;          /* workspace of the scale */
+    const skg_geometry *geometry; /* borrowed: of the machine */
     const skg_placement *placement; /* borrowed: of the machine */
 } skg_pass_memory;
 

@@ -112,7 +112,10 @@ static skg_status take_over(skg_geometry *geometry, skg_mesh_layout *layouts, co
     SKG_TRY_CLEANUP(skg_alloc(meshes, sizeof *geometry->layouts, "mesh table", &geometry->layouts));
     memcpy(geometry->layouts, layouts, (size_t)meshes * sizeof *layouts);
     memset(layouts, 0, (size_t)meshes * sizeof *layouts);
-    for (int64_t m = 0; m < meshes; m++) geometry->layouts[m].fine &= !skg_geometry_is_double(geometry);
+    for (int64_t m = 0; m < meshes; m++) {
+        skg_mesh_layout *layout = &geometry->layouts[m];
+        layout->fine = !skg_geometry_is_double(geometry) && (layout->thin || layout->flat);
+    }
     SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_triangle));
     SKG_TRY_CLEANUP(skg_alloc(meshes + 1, sizeof(int64_t), "mesh table", &geometry->mesh_vertex));
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof(int64_t), "part table", &geometry->first_vertex));

@@ -34,9 +34,21 @@ typedef struct {
     double reference;
     double depth;               /* the difference between its greatest and least path parameter */
     double columns[2], rows[2]; /* its rectangle on the detector, from and to; may be infinite */
-    int32_t contributions;      /* how many; 0: the part is not drawn, but keeps its place in the tables */
+    double shift;    /* pixels by which edges are moved for coverage (geometry/touching.c); 0: none */
+    int32_t touches; /* 1: it may touch others, and counts pixels from `shared` as they do */
+    int32_t shared[2];
+    int32_t contributions; /* how many; 0: the part is not drawn, but keeps its place in the tables */
     const skg_contribution *contribution;
 } skg_geometry_part;
+
+static inline skg_camera_place skg_geometry_place(const skg_geometry_part *part, int32_t exact) {
+    return (skg_camera_place){.pose = part->pose,
+                              .origin = part->origin,
+                              .reference = part->reference,
+                              .flipped = part->flipped,
+                              .exact = exact || part->touches,
+                              .shared = part->touches ? part->shared : NULL};
+}
 
 /* Host copies of the part and contribution tables. Each stays until the device has read it, so that writing a frame's
  * tables does not wait for the frames before it: as many frames can be enqueued ahead as there are copies. */

@@ -322,6 +322,39 @@ START_TEST(invisible_and_negative) {
 }
 END_TEST
 
+static void keep(int32_t level, const char *sentence, void *user) {
+    char *kept = user;
+    if (level == SKG_LOG_WARNING && strstr(sentence, "over itself")) snprintf(kept, 64, "%s", sentence);
+}
+
+/* A prism over the star {7/3}, whose middle has three layers, with a spike so long that the columns of the mesh miss the middle: sums
+ * wrap, and that is said. Nothing is said of the star alone, and its lengths are right. */
+START_TEST(sums_that_wrap_are_said) {
+    for (int spike = 0; spike < 2; spike++) {
+        char said[64] = "";
+        solid s = solid_star(7, 3, 15, 16);
+        if (spike) s.positions[0] = s.positions[21] = 3000;
+        skg_mesh *star = run_mesh(&s);
+        solid_free(&s);
+        skg_scene *own = NULL;
+        ck_skg(skg_scene_create(run_context, &own));
+        ck_skg(skg_context_log_set(run_context, keep, said));
+        run_part(own, "star", star, 0.2, NULL, -1);
+        skg_plan_release(&plan);
+        plan = run_plan(own, &view, (run_choice){.quantity = SKG_QUANTITY_ATTENUATION});
+        ck_assert_int_eq(skg_plan_image(plan, &output), spike ? SKG_RANGE : SKG_OK);
+        ck_assert_int_eq(said[0] != 0, spike);
+        float most = 0;
+        for (int p = 0; p < PIXELS; p++) most = fmaxf(most, pixels[p]);
+        if (!spike) ck_assert_double_eq_tol((double)most, 3 * 16 * 0.02, 1e-3); /* rays are oblique */
+        ck_skg(skg_context_log_set(run_context, NULL, NULL));
+        skg_plan_release(&plan);
+        skg_scene_release(&own);
+        skg_mesh_release(&star);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_plan, close_plan);
     tcase_add_test(tests, arguments);
@@ -334,6 +367,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_environment_stays);
     tcase_add_test(tests, nested_parts_and_quantities);
     tcase_add_test(tests, invisible_and_negative);
+    tcase_add_test(tests, sums_that_wrap_are_said);
 }
 
 SKG_SUITE_MAIN("frames_bad", add_tests)

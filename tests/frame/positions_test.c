@@ -264,6 +264,29 @@ START_TEST(the_host_takes_over_again) {
 }
 END_TEST
 
+static void add_cubes(caller *c, int count) {
+    static double xyz[24 * 16];
+    static int32_t corners[36 * 16];
+    skg_mesh *cube = NULL, *cubes = NULL;
+    ck_skg(skg_mesh_create_cube(6, &cube));
+    for (int n = 0; n < count; n++) {
+        ck_skg(skg_mesh_positions_get(cube, xyz + 24 * n, 0));
+        ck_skg(skg_mesh_triangles_get(cube, corners + 36 * n, 0));
+        for (int v = 0; v < 8; v++) xyz[24 * n + 3 * v] += 8 * n;
+        for (int k = 0; k < 36; k++) corners[36 * n + k] += 8 * n;
+    }
+    ck_skg(skg_mesh_create(c->context, "cubes",
+                           &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                              .vertices = 8 * count,
+                                              .positions = xyz,
+                                              .triangles = 12 * count,
+                                              .corners = corners,
+                                              .unit_mm = 1},
+                           &cubes));
+    skg_mesh_release(&cube);
+    add_part(c, "cubes", cubes, 0.3, -1);
+}
+
 /* A tetrahedron whose triangles have vertices of their own, as in STL. */
 static void add_soup(caller *c) {
     static const double corner[4][3] = {{8, 0, -4}, {-8, 6, -4}, {-8, -6, -4}, {0, 0, 6}};
@@ -285,6 +308,38 @@ static void add_soup(caller *c) {
                            &mesh));
     add_part(c, "soup", mesh, 0.3, CUBE);
 }
+
+/* Cubes of 6 mm in one mesh, side by side. Moved onto each other they are as many layers, whose integers have to fit. */
+START_TEST(a_mesh_moves_over_itself) {
+    enum { MIDDLE = SIDE / 2 * SIDE + SIDE / 2 };
+    static float lengths[PIXELS];
+    static shape cubes;
+    for (int count = 2; count <= 9; count++)
+        for (int on_device = 0; on_device < 2; on_device++) {
+            caller c;
+            skg_spectrum *beam = NULL;
+            skg_output output = output_of(lengths);
+            open_caller(&c, sizeof cubes.xyz, NULL);
+            skg_plan_release(&c.plan);
+            add_cubes(&c, count);
+            ck_skg(skg_spectrum_create_mono(60, 1000, &beam));
+            ck_skg(skg_plan_create(c.context, c.scene, &c.view, beam, NULL, &c.plan));
+            output.kind = SKG_OUTPUT_LENGTHS;
+            output.part = 2;
+            bend(&c, 2, 0, &cubes);
+            for (int i = 24; i < 24 * count; i++) cubes.xyz[i] = cubes.xyz[i % 24];
+            find_bounds(&cubes);
+            send(&c, &cubes, 0);
+            if (on_device) ck_skg(place(&c, 2, &cubes, 0));
+            if (!on_device) put(&cubes);
+            ck_skg(skg_plan_image(c.plan, &output));
+            /* Rays are oblique by a thousandth. */
+            ck_assert_double_eq_tol((double)lengths[MIDDLE], 6.0 * count, 1e-5 * count);
+            skg_spectrum_release(&beam);
+            close_caller(&c);
+        }
+}
+END_TEST
 
 /* Vertices at one place may come with different roundings. The mesh stays closed all the same. */
 START_TEST(vertices_at_one_place_stay_together) {
@@ -438,6 +493,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_vertex_outside_of_the_bounds_is_put_on_them);
     tcase_add_test(tests, a_vertex_that_is_not_finite_is_named);
     tcase_add_test(tests, the_host_takes_over_again);
+    tcase_add_test(tests, a_mesh_moves_over_itself);
     tcase_add_test(tests, vertices_at_one_place_stay_together);
     tcase_add_test(tests, what_is_wrong_is_named);
     tcase_add_test(tests, leaky_meshes_are_refused_where_rays_are_traced);

@@ -120,8 +120,8 @@ static void from_scene(int which, hard_solid *s) {
     memcpy(s->pose, h.pose, sizeof s->pose);
 }
 
-enum { TABLES = 4 };
-static const hard_function *const tables[TABLES] = {hard_images, hard_meshes, hard_bodies, hard_bounds};
+enum { TABLES = 5 };
+static const hard_function *const tables[TABLES] = {hard_images, hard_meshes, hard_bodies, hard_bounds, hard_cuts};
 
 static hard_function find(int which) {
     for (int t = 0; t < TABLES; t++)

@@ -10,7 +10,7 @@ typedef struct {
     double worst[2], bar[2];   /* error in single and double, in the case's own unit; worst < 0: not judged */
     const char *unit;
     double slower; /* time of a frame over that of an ordinary scene of that size; 0: not measured */
-    char fault[160];
+    char fault[240];
 } hard_outcome;
 
 /* Notes what is wrong; the first fault is kept. */
@@ -33,9 +33,9 @@ typedef struct {
 enum { HARD_SOLIDS = 16 };
 void hard_solid_make(int which, hard_solid *s);
 
-/* Images, open meshes, many parts, breathing, bounds. */
+/* Images, open meshes, many parts, breathing, bounds, cuts. */
 typedef void (*hard_function)(hard_outcome *o);
-extern const hard_function hard_images[], hard_meshes[], hard_bodies[], hard_bounds[]; /* end with NULL */
+extern const hard_function hard_images[], hard_meshes[], hard_bodies[], hard_bounds[], hard_cuts[]; /* end with NULL */
 
 /* The ways whose bits have to be the same; the first one is the plan's choice. */
 enum { HARD_WAYS = 4 };

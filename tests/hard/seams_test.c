@@ -13,7 +13,7 @@ enum { SIZE = 65, PIECES = 48, SCENES = 32 };
 static const int32_t strategies[] = {SKG_STRATEGY_COPIES, SKG_STRATEGY_TILES, SKG_STRATEGY_ATOMICS};
 
 /* 4 units in the last place of the largest coordinate and 3e-5 of the longest path, as docs/numerics.md has it; in double
- * precision twice the shift of edges, and what positions of doubles leave of 1e-11. */
+ * precision 2^-34 pixels, and what positions of doubles leave of 1e-11. */
 static int64_t wrong_pixels(const cut_scene *s, const double *image, int32_t precision) {
     const int is_double = precision == SKG_PRECISION_DOUBLE;
     const double shift = is_double ? 0x1p-34 : 4 * (double)FLT_EPSILON * SIZE;

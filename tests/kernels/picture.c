@@ -257,7 +257,7 @@ static skg_status read_lengths(skg_context *context, skg_raster *raster, const s
     float *narrow = calloc((size_t)size, sizeof *narrow);
     skg_status status = skg_attenuator_create(context, &attenuator);
     SKG_TRY_CLEANUP(skg_buffer_reserve(context, &output, size * 8, CL_MEM_READ_WRITE, "lengths"));
-    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &negative, 12, CL_MEM_READ_WRITE, "lengths"));
+    SKG_TRY_CLEANUP(skg_buffer_reserve(context, &negative, 16, CL_MEM_READ_WRITE, "lengths"));
     for (int64_t plane = 0; plane < result->planes && status == SKG_OK; plane++) {
         double *values = result->values + plane * size, weight = 1, coefficients[16] = {0};
         const skg_image_place place = {

@@ -9,7 +9,7 @@
 #include <math.h>
 
 static int is_flat(skg_mesh *mesh) {
-    const int flat = skg_mesh_has_flat_face(mesh);
+    const int flat = skg_mesh_flat_faces(mesh, NULL);
     skg_mesh_release(&mesh);
     return flat;
 }

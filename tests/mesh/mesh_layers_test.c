@@ -1,5 +1,6 @@
 #include "mesh/mesh.h"
 #include "suite.h"
+#include "support/shapes.h"
 
 #include <string.h>
 
@@ -49,7 +50,63 @@ START_TEST(layers_count_what_lies_over_each_other) {
 }
 END_TEST
 
+/* Cubes that were side by side are moved onto each other, and apart again. */
+START_TEST(layers_are_counted_again_when_vertices_move) {
+    enum { COUNT = 9 };
+    double apart[24 * COUNT], together[24 * COUNT];
+    float *offsets = NULL;
+    skg_mesh *mesh = stacked_cubes(COUNT, 16);
+    ck_assert_int_eq(mesh->layers, 1);
+    ck_assert_int_eq(skg_mesh_layers_unseen(mesh), COUNT);
+    ck_skg(skg_mesh_positions_get(mesh, apart, 0));
+    for (int i = 0; i < 24 * COUNT; i++) together[i] = apart[i % 24];
+    ck_skg(skg_mesh_positions_set(mesh, together, 0));
+    ck_assert_int_eq(mesh->layers, COUNT);
+    ck_skg(skg_mesh_positions_set(mesh, apart, 0));
+    ck_assert_int_eq(mesh->layers, 1);
+    ck_skg(skg_mesh_offsets_get(mesh, &offsets, NULL));
+    for (int i = 24; i < 24 * COUNT; i++) offsets[i] = offsets[i % 24];
+    ck_skg(skg_mesh_offsets_moved(mesh));
+    ck_assert_int_eq(mesh->layers, COUNT);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* One closed component winds up to three times about its middle. */
+START_TEST(layers_of_one_component) {
+    for (int step = 1; step <= 3; step++) {
+        solid s = solid_star(7, step, 15, 16);
+        skg_mesh *mesh = NULL;
+        ck_skg(skg_mesh_create(NULL, "star",
+                               &(skg_mesh_source){.size = sizeof(skg_mesh_source),
+                                                  .vertices = s.vertices,
+                                                  .positions = s.positions,
+                                                  .triangles = s.triangles,
+                                                  .corners = s.corners,
+                                                  .unit_mm = 1},
+                               &mesh));
+        ck_assert_int_eq(mesh->pieces, 1);
+        ck_assert_int_eq(mesh->layers, step);
+        skg_mesh_release(&mesh);
+        solid_free(&s);
+    }
+}
+END_TEST
+
+/* A face of 300,000 corners that is cut into a fan has an edge of as many triangles; with as many boxes the product exceeds 32 bits. */
+START_TEST(many_layers_times_many_copies) {
+    skg_mesh *mesh = stacked_cubes(100, 1e-3);
+    mesh->multiplicity = 300000000;
+    ck_skg(skg_mesh_count_layers(mesh));
+    ck_assert(mesh->layers == 30000000000);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, layers_are_counted_again_when_vertices_move);
+    tcase_add_test(tests, layers_of_one_component);
+    tcase_add_test(tests, many_layers_times_many_copies);
     tcase_add_test(tests, layers_count_what_lies_over_each_other);
 }
 

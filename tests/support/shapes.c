@@ -46,6 +46,26 @@ solid solid_box(double x, double y, double z) {
     return s;
 }
 
+solid solid_star(int points, int step, double radius, double height) {
+    solid s = allocate(2 * (int64_t)points, 4 * (int64_t)points - 4);
+    for (int k = 0; k < 2 * points; k++) {
+        const double angle = 2 * pi * (k % points * step) / points;
+        set(s.positions + 3 * k, radius * cos(angle), radius * sin(angle),
+            k < points ? -height / 2 : height / 2);
+    }
+    int32_t *at = s.corners;
+    for (int k = 0; k < points; k++) {
+        const int next = (k + 1) % points;
+        at = corner(at, k, next, points + next);
+        at = corner(at, k, points + next, points + k);
+    }
+    for (int k = 1; k < points - 1; k++) {
+        at = corner(at, 0, k + 1, k);
+        at = corner(at, points, points + k, points + k + 1);
+    }
+    return s;
+}
+
 /* Radius in a direction, for bumps. */
 typedef struct {
     double height[4], wave[4][3], phase[4];

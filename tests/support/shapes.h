@@ -17,6 +17,8 @@ solid solid_box(double x, double y, double z);
 solid solid_sphere(double radius, int around, int down);
 solid solid_blob(double radius, int around, int down, uint64_t seed); /* a sphere with bumps and dents */
 solid solid_torus(double ring, double tube, int around, int across);  /* axis z */
+solid solid_star(int points, int step, double radius,
+                 double height); /* a prism along z that winds `step` times */
 solid solid_shell(double outer, double inner, int around, int down); /* two spheres, the inner one inverted */
 
 /* `count` tetrahedra of about `size`, anywhere in a box of half sides `box`; they may overlap. */
