@@ -60,6 +60,24 @@ void skg_job_empty(skg_job *done) {
     atomic_store(&done->over, 1);
 }
 
+skg_status skg_job_retain(skg_job *job) {
+    SKG_NEEDS(job);
+    atomic_fetch_add(&job->references, 1);
+    return SKG_OK;
+}
+
+void skg_job_release(skg_job **job) {
+    if (!job || !*job) return;
+    skg_job *left = *job;
+    *job = NULL;
+    if (atomic_fetch_sub(&left->references, 1) > 1) return;
+    if (!atomic_load(&left->over)) { /* nobody waits for it any more */
+        atomic_store(&left->cancelled, 1);
+        skg_job_empty(left);
+    }
+    skg_free(&left);
+}
+
 void skg_job_end(skg_job **job) {
     if (!job || !*job) return;
     skg_job_empty(*job);

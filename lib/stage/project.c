@@ -64,8 +64,9 @@ static skg_status upload_corners(skg_context *context, skg_geometry *geometry) {
 static skg_status number(skg_geometry *geometry, int64_t *first_triangle) {
     for (int64_t m = 0; m < geometry->meshes; m++) {
         const skg_mesh_layout *layout = &geometry->layouts[m];
-        geometry->mesh_vertex[m + 1] = geometry->mesh_vertex[m] + layout->vertices + layout->copies +
-                                       (layout->fine ? layout->vertices : 0);
+        /* Copies become vertices when a leaky mesh parts, and then have rests, too. */
+        geometry->mesh_vertex[m + 1] =
+            geometry->mesh_vertex[m] + (layout->vertices + layout->copies) * (layout->fine ? 2 : 1);
         geometry->mesh_triangle[m + 1] = geometry->mesh_triangle[m] + layout->triangles;
     }
     for (int64_t p = 0; p < geometry->parts; p++) {

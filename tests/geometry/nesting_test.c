@@ -139,6 +139,7 @@ START_TEST(boxes_that_overlap_are_named) {
     ck_assert_int_eq(nesting.inverted + nesting.leaving, 0);
     ck_assert_int_eq(nesting.overlapping, 1);
     ck_assert_int_eq(nesting.first_overlapping, 1);
+    /* sums of doubles of some mm */
     ck_assert_double_eq_tol(nesting.overlapping_length, 2, 1e-9);
     ck_assert_double_eq_tol(nesting.overlapping_place[2], 4, 1e-9);
     ck_skg(skg_mesh_nesting_describe(&nesting, sizeof text, text));

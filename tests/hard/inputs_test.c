@@ -237,6 +237,7 @@ START_TEST(objects_of_3mf_lie_anywhere) {
     ck_skg(skg_mesh_health_get(mesh, &health));
     ck_assert_int_eq(health.closed, 1);
     ck_assert_int_eq(health.turned + health.flipped, 0);
+    /* rounding of doubles of some mm */
     ck_assert_double_eq_tol(health.volume, 2, 1e-12);
     ck_assert_double_eq_tol(health.bounds[3], 2 * 25.4, 1e-12); /* the move is in inches, the object in mm */
     ck_assert_double_eq_tol(health.bounds[5], 3, 1e-12);
@@ -244,6 +245,7 @@ START_TEST(objects_of_3mf_lie_anywhere) {
     const skg_mesh_reading reading = {.size = sizeof reading, .unit_mm = 1, .group = "A & B"};
     ck_skg(skg_mesh_load_as(NULL, path, &reading, &mesh));
     ck_skg(skg_mesh_health_get(mesh, &health));
+    /* likewise */
     ck_assert_double_eq_tol(health.bounds[3], 2, 1e-12);
     skg_mesh_release(&mesh);
     snprintf(text, sizeof text, build, "4");

@@ -121,10 +121,11 @@ START_TEST(units_of_collada) {
             skg_mesh *mesh = load_as(file, named ? 10 : 0, NULL);
             const double mm = named ? 10 : files[f].mm;
             const skg_mesh_health health = health_of(mesh);
-            ck_assert_double_eq_tol(mm_of(mesh, named ? SKG_UNIT_NAMED : SKG_UNIT_FILE), mm, 1e-12 * mm);
+            ck_assert_double_eq_tol(mm_of(mesh, named ? SKG_UNIT_NAMED : SKG_UNIT_FILE), mm,
+                                    64 * DBL_EPSILON * mm);
             for (int k = 0; k < 3; k++) {
                 ck_assert_double_eq(health.bounds[k], 0);
-                ck_assert_double_eq_tol(health.bounds[3 + k], (k + 1) * mm, 1e-12 * mm);
+                ck_assert_double_eq_tol(health.bounds[3 + k], (k + 1) * mm, 64 * DBL_EPSILON * mm);
             }
             skg_mesh_release(&mesh);
         }
@@ -157,7 +158,7 @@ START_TEST(units_of_other_formats) {
                  {"e.x3d", X3D("<unit category='length' name='cm' conversionFactor='0.01'/>"), 10}};
     for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
         skg_mesh *mesh = load_as(file_of(files[f].name, files[f].text), 0, NULL);
-        ck_assert_double_eq_tol(mm_of(mesh, SKG_UNIT_FILE), files[f].mm, 1e-12 * files[f].mm);
+        ck_assert_double_eq_tol(mm_of(mesh, SKG_UNIT_FILE), files[f].mm, 64 * DBL_EPSILON * files[f].mm);
         ck_assert_double_eq_tol(health_of(mesh).volume, files[f].mm * files[f].mm * files[f].mm,
                                 1e-6 * files[f].mm * files[f].mm * files[f].mm); /* floats */
         skg_mesh_release(&mesh);

@@ -250,7 +250,7 @@ START_TEST(a_detector_that_is_too_narrow) {
     reconstruct();
     ck_smooth();
     ck_assert_double_ge(seen().truncated, 0.7);
-    ck_assert_double_eq_tol(seen().covered_mm, 35, 0.5);
+    ck_assert_double_eq_tol(seen().covered_mm, 35, 0.5); /* mm: half a pixel */
     field_mm = 52;
 }
 END_TEST

@@ -76,7 +76,7 @@ static const struct {
     {"Collimation={" JAWS ", \"Distance\": [200, \"mm\"], \"Margin\": [1, \"mm\"]}", SKG_ERR_FORMAT,
      "leave it out", "Margin"},
     {"Collimation={\"Rectangle\": [-2, 3, -1, 4, \"cm\"]}", SKG_ERR_FORMAT, "has 5 entries", "Rectangle"},
-    {"Collimation={\"Rectangle\": [[-2, 3], [-1, 4], \"inch\"]}", SKG_ERR_FORMAT, "inch", "Rectangle[2]"},
+    {"Collimation={\"Rectangle\": [[-2, 3], [-1, 4], \"ell\"]}", SKG_ERR_FORMAT, "ell", "Rectangle[2]"},
     {"Collimation={\"Rectangle\": [[3, -2], [-1, 4], \"cm\"]}", SKG_ERR_SCENE, "right edge", "Rectangle[0]"},
     {"Collimation={\"Rectangle\": [[-2, 3], [4, 4], \"cm\"]}", SKG_ERR_SCENE, "top has to exceed",
      "Rectangle[1]"},

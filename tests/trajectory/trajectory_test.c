@@ -367,6 +367,7 @@ START_TEST(nerf_sees_points_where_we_do) {
             }
             seen[s] = on / square + 0.5 * (double)(s ? v.rows : v.columns);
         }
+        /* sums of doubles of up to 1e3 pixels */
         ck_assert_double_eq_tol(cx + fx * c[0] / -c[2], seen[0], 1e-9);
         ck_assert_double_eq_tol(cy - fy * c[1] / -c[2], seen[1], 1e-9);
     }
