@@ -52,7 +52,8 @@ static skg_status check_wanted(const char *call, const skg_recipe *recipe, const
         return refuse(call, "precision half", "take single or double");
     if (options->scatter) return refuse(call, "scatter", "make the plan without it");
     if (options->unite)
-        return refuse(call, "the union of components", "make the plan without unite, of meshes that do not overlap");
+        return refuse(call, "the union of components",
+                      "make the plan without unite, of meshes that do not overlap");
     if (recipe->leaky_count)
         return skg_fail(
             SKG_ERR_UNSUPPORTED,

@@ -23,7 +23,7 @@ typedef struct {
     double file_unit_mm; /* mm per unit that the file names; 0: none */
     double unit_mm;      /* mm per unit that was used; 0: made in mm */
     int32_t unit_from;   /* enum skg_unit_from */
-    int64_t trailing;     /* bytes behind the last triangle of a binary file */
+    int64_t trailing;    /* bytes behind the last triangle of a binary file */
     int64_t not_printed; /* objects of a 3MF file that support others */
     skg_mesh_piece *pieces;
     int64_t piece_count, piece_capacity;

@@ -121,7 +121,8 @@ static void from_scene(int which, hard_solid *s) {
 }
 
 enum { TABLES = 5 };
-static const hard_function *const tables[TABLES] = {hard_images, hard_meshes, hard_bodies, hard_bounds, hard_cuts};
+static const hard_function *const tables[TABLES] = {hard_images, hard_meshes, hard_bodies, hard_bounds,
+                                                    hard_cuts};
 
 static hard_function find(int which) {
     for (int t = 0; t < TABLES; t++)

@@ -35,7 +35,8 @@ void hard_solid_make(int which, hard_solid *s);
 
 /* Images, open meshes, many parts, breathing, bounds, cuts. */
 typedef void (*hard_function)(hard_outcome *o);
-extern const hard_function hard_images[], hard_meshes[], hard_bodies[], hard_bounds[], hard_cuts[]; /* end with NULL */
+extern const hard_function hard_images[], hard_meshes[], hard_bodies[], hard_bounds[],
+    hard_cuts[]; /* end with NULL */
 
 /* The ways whose bits have to be the same; the first one is the plan's choice. */
 enum { HARD_WAYS = 4 };

@@ -64,15 +64,15 @@ extern const cli_item cli_flag_meshes_from_names[]; /* the sides; a direction is
 extern const char cli_text_meshes[];                /* a paragraph on them */
 
 /* Flags of one verb. */
-extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands, cli_flag_image_only, cli_flag_image_without,
-    cli_flag_image_band_weight, cli_flag_image_scatter, cli_flag_image_scatter_image,
-    cli_flag_image_scatter_sigma, cli_flag_image_mean, cli_flag_image_variance;
+extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
+    cli_flag_image_only, cli_flag_image_without, cli_flag_image_band_weight, cli_flag_image_scatter,
+    cli_flag_image_scatter_image, cli_flag_image_scatter_sigma, cli_flag_image_mean, cli_flag_image_variance;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames,
     cli_flag_cost_sensitivity;
 extern const cli_flag cli_flag_devices_test, cli_flag_devices_warm;
-extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output, cli_flag_mesh_groups, cli_flag_mesh_group,
-    cli_flag_mesh_split, cli_flag_mesh_scene;
+extern const cli_flag cli_flag_mesh_unit, cli_flag_mesh_fix, cli_flag_mesh_output, cli_flag_mesh_groups,
+    cli_flag_mesh_group, cli_flag_mesh_split, cli_flag_mesh_scene;
 extern const cli_flag cli_flag_distance_map, cli_flag_distance_output, cli_flag_distance_high,
     cli_flag_distance_sampling, cli_flag_distance_spacing;
 extern const cli_flag cli_flag_fit_target, cli_flag_fit_phase, cli_flag_fit_output, cli_flag_fit_parameters,

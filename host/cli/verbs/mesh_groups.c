@@ -1,3 +1,4 @@
+/* What the verb mesh does with the named groups of a file: lists them, and splits a file into one file a part with a scene. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "verbs/mesh_groups.h"
 
@@ -86,8 +87,7 @@ static int list_groups(const char *file, const skg_mesh_reading *reading, json_t
     skg_mesh_release(&mesh);
     if (status != SKG_OK) return cli_fail(status);
     if (json_array_size(*groups) > 0) return CLI_DONE;
-    return cli_error(CLI_INPUT, "%s: has no groups or objects with names; the whole file is one part",
-                     file);
+    return cli_error(CLI_INPUT, "%s: has no groups or objects with names; the whole file is one part", file);
 }
 
 int cli_mesh_split(const cli_arguments *arguments, const skg_mesh_reading *reading) {

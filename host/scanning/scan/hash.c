@@ -31,9 +31,9 @@ skg_status skg_scan_hash_get(const skg_setup *setup, const skg_plan_options *opt
     snprintf(text, sizeof text,
              "%s %d %d %d %.17g %d %d %d %d %d %d %" PRId64 " %.17g %.17g %.17g %d %" PRId64 " %d %" PRId64,
              SKG_VERSION, (int)r.type, (int)o.precision, (int)o.quantity, o.tolerance, (int)o.falloff,
-             (int)o.supersampling, (int)o.noise, (int)o.repair, (int)o.clip + 2 * (int)o.unite, (int)o.band_weight, o.noise_seed,
-             o.swank, o.electronic_kev, o.quantum_step_kev, r.motion != NULL, r.subframes, (int)(o.bands > 0),
-             r.noise_seed);
+             (int)o.supersampling, (int)o.noise, (int)o.repair, (int)o.clip + 2 * (int)o.unite,
+             (int)o.band_weight, o.noise_seed, o.swank, o.electronic_kev, o.quantum_step_kev,
+             r.motion != NULL, r.subframes, (int)(o.bands > 0), r.noise_seed);
     skg_digest_start(&sum);
     skg_digest_add_text(&sum, hash);
     skg_digest_add_text(&sum, text);
