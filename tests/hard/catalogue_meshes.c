@@ -9,14 +9,14 @@
 
 enum { SIDE = 96, PIXELS = SIDE * SIDE };
 
-/* Lengths of a mesh that may be open: right where the signed hits cancel, finite elsewhere, and as many
- * pixels told as do not cancel. */
-static void judge_open(hard_outcome *o, const solid *s, int64_t min_bad) {
+/* Lengths of a mesh that may be open: those of what it stands for where its signed hits cancel, finite
+ * elsewhere, and as many pixels told as do not cancel. */
+static void judge_open(hard_outcome *o, const solid *s, const solid *meant, int64_t min_bad) {
     const skg_view view = run_view(SIDE, 1.7);
     static double truth[PIXELS];
     double longest = 0;
     int64_t bad = 0;
-    caster *c = caster_create(s, NULL);
+    caster *c = caster_create(meant, NULL);
     for (int p = 0; p < PIXELS; p++) {
         truth[p] = (double)caster_length(c, &view, (long double)(p % SIDE), (long double)(p / SIDE));
         bad += isnan(truth[p]) != 0;
@@ -64,12 +64,13 @@ static void hole(hard_outcome *o) {
     o->name = "a hole of 20 triangles";
     o->danger = "a ray that enters and never leaves";
     s.triangles -= 20;
-    judge_open(o, &s, 1);
+    judge_open(o, &s, &s, 1);
     solid_free(&s);
 }
 
 static void flipped(hard_outcome *o) {
     solid s = solid_blob(50, 40, 20, 3);
+    solid meant = solid_blob(50, 40, 20, 3);
     o->name = "30 flipped triangles";
     o->danger = "exits taken for entries";
     for (int n = 300; n < 330; n++) {
@@ -77,7 +78,8 @@ static void flipped(hard_outcome *o) {
         s.corners[3 * n] = s.corners[3 * n + 1];
         s.corners[3 * n + 1] = corner;
     }
-    judge_open(o, &s, 1);
+    judge_open(o, &s, &meant, 0);
+    solid_free(&meant);
     solid_free(&s);
 }
 
@@ -96,7 +98,7 @@ static void t_junction(hard_outcome *o) {
         cut.positions[3 * s.vertices + k] = 0.5 * (s.positions[3 * old[0] + k] + s.positions[3 * old[1] + k]);
     new[0] = middle, new[1] = old[1], new[2] = old[2];
     old[1] = middle;
-    judge_open(o, &cut, 0);
+    judge_open(o, &cut, &cut, 0);
     solid_free(&cut);
     solid_free(&s);
 }
@@ -106,7 +108,7 @@ static void zero_volume(hard_outcome *o) {
     o->name = "a mesh without volume";
     o->danger = "lengths of rounding only, of either sign";
     solid_move(&s, (const double[12]){1, 0, 0, 0, 0, 1, 0, 0, 0.3, 0.1, 0, 0}); /* all in one plane */
-    judge_open(o, &s, 0);
+    judge_open(o, &s, &s, 0);
     solid_free(&s);
 }
 
@@ -115,7 +117,7 @@ static void line(hard_outcome *o) {
     o->name = "a mesh without area";
     o->danger = "triangles whose edges lie on each other";
     solid_move(&s, (const double[12]){1, 0, 0, 0, 0.5, 0, 0, 0, 0.3, 0, 0, 0});
-    judge_open(o, &s, 0);
+    judge_open(o, &s, &s, 0);
     solid_free(&s);
 }
 
