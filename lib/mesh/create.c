@@ -73,26 +73,6 @@ static void set_offsets(skg_mesh *mesh) {
             mesh->offsets[3 * i + k] = (float)(mesh->positions[3 * i + k] - mesh->origin[k]);
 }
 
-/* Bounds of the offsets that are finite. A comparison with NaN is false, so NaN is a bad vertex, too. */
-static void set_bounds(skg_mesh *mesh) {
-    float lowest[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, highest[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
-    int64_t bad = -1;
-    for (int64_t i = 0; i < mesh->vertices; i++) {
-        const float *p = mesh->offsets + 3 * i;
-        if (!(fabsf(p[0]) <= FLT_MAX && fabsf(p[1]) <= FLT_MAX && fabsf(p[2]) <= FLT_MAX)) {
-            if (bad < 0) bad = i;
-            continue;
-        }
-        for (int k = 0; k < 3; k++) {
-            lowest[k] = p[k] < lowest[k] ? p[k] : lowest[k];
-            highest[k] = p[k] > highest[k] ? p[k] : highest[k];
-        }
-    }
-    memcpy(mesh->lowest, lowest, sizeof lowest);
-    memcpy(mesh->highest, highest, sizeof highest);
-    mesh->first_bad = bad;
-}
-
 static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays) {
     double reach;
     SKG_TRY(skg_copy_text(name, &mesh->name));
@@ -113,7 +93,7 @@ static skg_status fill(skg_mesh *mesh, const char *name, skg_mesh_arrays *arrays
     *arrays = (skg_mesh_arrays){0};
     SKG_TRY(skg_alloc(3 * mesh->vertices, sizeof *mesh->offsets, name, &mesh->offsets));
     set_offsets(mesh);
-    set_bounds(mesh);
+    skg_mesh_set_bounds(mesh);
     mesh->version = 1;
     return skg_mesh_examine(mesh);
 }
@@ -246,6 +226,8 @@ void skg_mesh_release(skg_mesh **mesh) {
         skg_free(&last->groups[i].group);
     }
     skg_free(&last->groups);
+    skg_free(&last->runs);
+    skg_free(&last->boxes);
     skg_free(&last->piece);
     skg_free(&last);
 }
@@ -325,7 +307,7 @@ skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64
     if (far) memcpy(mesh->origin, centre, sizeof centre);
     mesh->positions_stale = 0;
     set_offsets(mesh);
-    set_bounds(mesh);
+    skg_mesh_set_bounds(mesh);
     mesh->version++;
     return skg_mesh_count_layers(mesh);
 }
@@ -343,9 +325,9 @@ skg_status skg_mesh_offsets_moved(skg_mesh *mesh) {
     SKG_NEEDS(mesh);
     mesh->positions_stale = 1;
     mesh->version++;
-    set_bounds(mesh);
+    skg_mesh_set_bounds(mesh);
     for (int64_t i = 0; mesh->weld && mesh->closed && mesh->first_bad < 0 && i < mesh->vertices; i++)
-        for (int k = 0; k < 3; k++)
+        for (int k = 0; mesh->weld[i] != i && k < 3; k++)
             if (mesh->offsets[3 * i + k] != mesh->offsets[3 * (int64_t)mesh->weld[i] + k])
                 return torn(mesh, i);
     return skg_mesh_count_layers(mesh);

@@ -81,17 +81,22 @@ static void stretch(float *box, const float *at) {
     }
 }
 
+/* The bounds of components that share vertices. */
+static skg_status bound_shared(const skg_mesh *mesh, float **boxes) {
+    SKG_TRY(skg_alloc(mesh->pieces * 6, sizeof **boxes, mesh->name, boxes));
+    for (int64_t i = 0; i < mesh->pieces * 6; i++) (*boxes)[i] = i % 6 < 3 ? FLT_MAX : -FLT_MAX;
+    for (int64_t c = 0; c < 3 * mesh->triangles; c++)
+        stretch(*boxes + 6 * (int64_t)mesh->piece[c / 3], mesh->offsets + 3 * (int64_t)mesh->corners[c]);
+    return SKG_OK;
+}
+
 /* How many boxes of components meet in a cell: at least as many as components that meet at a point. */
 static skg_status count_boxes(const skg_mesh *mesh, int64_t *most) {
     cell_grid grid = {0};
-    float *boxes = NULL;
+    float *shared = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(mesh->pieces * 6, sizeof *boxes, mesh->name, &boxes));
-    for (int64_t i = 0; i < mesh->pieces * 6; i++) boxes[i] = i % 6 < 3 ? FLT_MAX : -FLT_MAX;
-    for (int64_t v = 0; !mesh->pieces_share && v < mesh->vertices; v++)
-        if (mesh->piece[v] >= 0) stretch(boxes + 6 * (int64_t)mesh->piece[v], mesh->offsets + 3 * v);
-    for (int64_t c = 0; mesh->pieces_share && c < 3 * mesh->triangles; c++)
-        stretch(boxes + 6 * (int64_t)mesh->piece[c / 3], mesh->offsets + 3 * (int64_t)mesh->corners[c]);
+    if (mesh->pieces_share) SKG_TRY(bound_shared(mesh, &shared));
+    const float *boxes = shared ? shared : mesh->boxes;
     for (int k = 0; k < 3; k++) {
         grid.low[k] = (double)mesh->lowest[k];
         grid.step[k] = ((double)mesh->highest[k] - (double)mesh->lowest[k]) / CELLS;
@@ -104,7 +109,7 @@ static skg_status count_boxes(const skg_mesh *mesh, int64_t *most) {
     for (int64_t i = 0; i < mesh->pieces; i++) add_box(&grid, boxes + 6 * i);
     *most = largest(&grid);
 cleanup:
-    skg_free(&boxes);
+    skg_free(&shared);
     skg_free(&grid.counts);
     return status;
 }
@@ -258,7 +263,7 @@ static skg_status sample_winding(const skg_mesh *mesh, int64_t *most) {
 /* Columns take much longer than moving the vertices of a mesh of one component. What they would have shown is said by the frames that it
  * concerns (kernels/planes.clh). */
 static int is_due(const skg_mesh *mesh) {
-    enum { FIRST = 4, EVERY = 16 };
+    enum { FIRST = 4, EVERY = 64 };
     return mesh->version <= FIRST || mesh->version % EVERY == 0;
 }
 
@@ -283,6 +288,21 @@ static int number_vertices(const skg_mesh *mesh, const int32_t *of_triangle, int
     return 1;
 }
 
+/* Vertices of one component follow each other in most files. */
+static skg_status find_runs(skg_mesh *mesh, const int32_t *of_vertex) {
+    int64_t count = 1;
+    for (int64_t v = 1; v < mesh->vertices; v++) count += of_vertex[v] != of_vertex[v - 1];
+    SKG_TRY(skg_alloc(mesh->pieces * 6, sizeof *mesh->boxes, mesh->name, &mesh->boxes));
+    SKG_TRY(skg_alloc(count, sizeof *mesh->runs, mesh->name, &mesh->runs));
+    for (int64_t v = 0; v < mesh->vertices; v++) {
+        if (v == 0 || of_vertex[v] != of_vertex[v - 1])
+            mesh->runs[mesh->run_count++] = (skg_vertex_run){v, v, of_vertex[v]};
+        mesh->runs[mesh->run_count - 1].end++;
+    }
+    skg_mesh_set_bounds(mesh);
+    return SKG_OK;
+}
+
 /* Components are numbered in the order of their root triangles. */
 static skg_status number_pieces(skg_mesh *mesh, const int32_t *root) {
     int32_t *of_triangle = NULL, *of_vertex = NULL, count = 0;
@@ -292,9 +312,10 @@ static skg_status number_pieces(skg_mesh *mesh, const int32_t *root) {
     for (int64_t t = 0; t < mesh->triangles; t++)
         of_triangle[t] = root[t] == t ? count++ : of_triangle[root[t]];
     mesh->pieces_share = !number_vertices(mesh, of_triangle, of_vertex);
-    int32_t **kept = mesh->pieces_share ? &of_triangle : &of_vertex;
-    mesh->piece = *kept;
-    *kept = NULL;
+    if (mesh->pieces_share)
+        mesh->piece = of_triangle, of_triangle = NULL;
+    else
+        status = find_runs(mesh, of_vertex);
 cleanup:
     skg_free(&of_triangle);
     skg_free(&of_vertex);

@@ -6,6 +6,12 @@
 
 #include <skiagraph/mesh.h>
 
+/* Vertices first to end - 1, of one component; -1: of none. */
+typedef struct {
+    int64_t first, end;
+    int32_t piece;
+} skg_vertex_run;
+
 struct skg_mesh {
     skg_refs refs;
     char *name;
@@ -28,8 +34,11 @@ struct skg_mesh {
         multiplicity; /* how often an edge runs in one direction: coincident copies weld into one component */
     int32_t pieces;   /* components that are joined by shared edges */
     int32_t pieces_share; /* 1: some of them share vertices */
-    int32_t *
-        piece; /* [vertices], or [triangles] if they share vertices: the number of each one's; NULL: there is one */
+    int32_t *piece;       /* [triangles] the number of each one's if they share vertices; otherwise NULL */
+    skg_vertex_run *
+        runs; /* vertices that follow each other and belong to one; NULL: there is one, or they share vertices */
+    int64_t run_count;
+    float *boxes;                 /* [pieces][6] with runs, their bounds as lowest and highest */
     int64_t winding;              /* the largest winding number along columns, when these were last swept */
     double unit_mm, file_unit_mm; /* as skg_mesh_unit.mm and .file_mm */
     int32_t unit_from;            /* enum skg_unit_from */
@@ -59,6 +68,9 @@ int skg_mesh_is_shareable(const char *path);
 skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded);
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded);
 
+/* Sets bounds, first_bad and the boxes of the components for the present offsets. */
+void skg_mesh_set_bounds(skg_mesh *mesh);
+
 /* Fills health and orientation of a new mesh, and its weld map. */
 skg_status skg_mesh_examine(skg_mesh *mesh);
 
@@ -71,7 +83,7 @@ skg_status skg_mesh_set_pieces(skg_mesh *mesh, const int32_t *root, int32_t mult
 
 /* Sets mesh->layers for the present positions: how many components may lie over each other, judged by their boxes, times
  * the multiplicity; or the largest winding number along columns, if that is more. Columns are swept at the first three moves and every
- * sixteenth version. */
+ * 64th version. */
 skg_status skg_mesh_count_layers(skg_mesh *mesh);
 
 /* The layers of positions that the host does not know: all components may lie over each other. */
