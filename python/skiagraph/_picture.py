@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from . import _arrays
+from . import _arrays, _dicom
 from ._interface import ArgumentError
 from ._library import call, choice, encode, ffi, struct
 from .view import View
@@ -15,12 +15,17 @@ from .view import View
 
 def write_picture(path: str | os.PathLike[str], image: Any, *, names: Sequence[str], unit: str, view: View | None = None,
                   flat_field: float = 0, quantity: str = "energy", display: str = "radiograph",
-                  range: tuple[float, float] | None = None) -> None:
-    """[row, column] or [channel, row, column]; one name, or one a channel. flat_field 0: shown as it is."""
+                  range: tuple[float, float] | None = None, kvp: float = 0) -> None:
+    """[row, column] or [channel, row, column]; one name, or one a channel. flat_field 0: shown as it is. kvp: of a .dcm."""
     array = np.ascontiguousarray(_arrays.numbers(image, "image"))
     if array.dtype not in (np.dtype(np.float32), np.dtype(np.float64)) or array.ndim not in (2, 3):
         raise ArgumentError(f"image has {_arrays.describe(array)}; give [row, column] or [channel, row, column] of "
                             "float32 or float64")
+    if os.fspath(path).lower().endswith(".dcm"):
+        rises = quantity == "attenuation" or unit == "mm"
+        _dicom.write(path, array, name=names[0], unit=unit, falls=not rises,
+                     view=view if view is not None and view.shape == array.shape[-2:] else None, kvp=kvp)
+        return
     keep: list[Any] = [ffi.new("char[]", word.encode()) for word in (*names, unit)]
     picture = struct("skg_picture")
     picture.name, picture.unit, picture.flat_field = keep[0], keep[-1], flat_field

@@ -307,13 +307,13 @@ class Scene(_gradient.Differentiable):
 
     def save(self, path: str | os.PathLike[str], image: Any = None, quantity: str = "energy", *, display: str = "radiograph",
              range: tuple[float, float] | None = None, **options: Any) -> None:
-        """Writes the scene as a scene file, .json, whose images have the same bits; or an image of it, .png, .tif or .mha.
+        """Writes the scene as a scene file, .json, whose images have the same bits; or an image of it, .png, .tif, .mha or .dcm.
 
         (Where vertices were moved, images of floats agree to their rounding, those of doubles bit for bit.) Meshes that were added or changed are written as PLY into a folder beside the file, NAME-parts. Other files that
         the scene names stay where they are. A scene that breathe() posed is written in this pose, without its breath.
 
         quantity: what it holds, or "lengths" for path lengths. display: "radiograph" or "transmission", and range: the
-        values of black and white, of a .png. options: those that the image was computed with.
+        values of black and white, of a .png. A .dcm (pydicom) holds 65536 steps between the least and the largest value. options: those that the image was computed with.
         """
         if image is None:
             with self._state.calls():
@@ -326,7 +326,8 @@ class Scene(_gradient.Differentiable):
                 return
             channels = listed("skg_channel", "skg_plan_channel", self._state.plan({"quantity": quantity, **options}))
             write_picture(path, image, names=[c["name"] for c in channels], unit=channels[0]["unit"],
-                          flat_field=channels[0]["flat_field"], quantity=quantity, view=view, display=display, range=range)
+                          flat_field=channels[0]["flat_field"], quantity=quantity, view=view, display=display, range=range,
+                          kvp=float(max(self.beam.energies)))
 
     def picture(self, pixels: Sequence[int] = (1024, 768), *, direction: Any = None, up: Any = None,
                 orthographic: bool = False, image: Any = None, colours: Mapping[str, Any] | None = None) -> NDArray[np.uint8]:

@@ -144,3 +144,27 @@ def test_a_picture_and_a_page(command, scene, tmp_path):
     page = scene.show(height=300)
     page.save(tmp_path / "scene.html")
     assert "height: 300px" in page._repr_html_() and (tmp_path / "scene.html").stat().st_size == len(page.html.encode())
+
+
+def test_dicom_reads_back(scene, tmp_path):
+    pydicom = pytest.importorskip("pydicom")
+    image = scene.image("attenuation")
+    scene.save(tmp_path / "a.dcm", image, "attenuation")
+    read = pydicom.dcmread(tmp_path / "a.dcm")
+    values = read.pixel_array * float(read.RescaleSlope) + float(read.RescaleIntercept)
+    # Half a step, and nine digits of slope and intercept.
+    assert np.abs(values - image).max() <= 0.5 * float(read.RescaleSlope) + 1e-8 * np.abs(image).max()
+    assert float(read.RescaleSlope) <= (image.max() - image.min()) / 65535 * (1 + 1e-7)
+    assert read.PhotometricInterpretation == "MONOCHROME2" and read.Modality == "CR"
+    view = scene.view
+    assert float(read.DistanceSourceToDetector) == pytest.approx(np.linalg.norm(view.detector - view.source))
+    assert [float(x) for x in read.PixelSpacing] == pytest.approx([np.linalg.norm(view.row_step), np.linalg.norm(view.column_step)])
+    assert float(read.KVP) == pytest.approx(max(scene.beam.energies))
+    scene.save(tmp_path / "b.dcm", image, "attenuation")
+    assert (tmp_path / "a.dcm").read_bytes() == (tmp_path / "b.dcm").read_bytes()
+    image[0, 0] = np.nan
+    with pytest.raises(sk.Error, match="1 of .* pixels are not finite"):
+        scene.save(tmp_path / "c.dcm", image, "attenuation")
+    with pytest.raises(sk.Error, match="one channel"):
+        scene.save(tmp_path / "c.dcm", np.zeros((2, 4, 4), np.float32), "attenuation")
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["a.dcm", "b.dcm"]

@@ -105,6 +105,11 @@ int cli_has_extension(const char *path, const char *extension) {
     return length > its && strcasecmp(path + length - its, extension) == 0;
 }
 
+int cli_names_folder(const char *place) {
+    const char *slash = strrchr(place, '/'), *dot = strrchr(slash ? slash : place, '.');
+    return !dot || !dot[1] || dot[1] == '.';
+}
+
 /* Refuses a new folder that is named like a film or a picture. */
 static int check_folder_name(const char *folder) {
     static const char *const extensions[] = {

@@ -37,6 +37,9 @@ int cli_write_file(const char *path, const void *bytes, size_t count);
 /* Whether a path ends in ".ext" after at least one more character, without regard to case. */
 int cli_has_extension(const char *path, const char *extension);
 
+/* Whether a path names a folder, as skg_scan_file_open takes it: it has no extension. */
+int cli_names_folder(const char *path);
+
 /* Makes a folder if it does not exist, but not those above it. A new name that ends like a film or a picture is
  * refused. */
 int cli_make_folder(const char *folder);

@@ -69,7 +69,7 @@ const cli_flag cli_flag_json = {
 
 const cli_flag cli_flag_output = {
     "-o", "FILE",
-    "The file to write; its extension, .png, .tif or .mha, is its format; - writes a .mha to standard output. May be repeated.",
+    "The file to write; its extension, .png, .tif, .mha or .dcm, is its format; - writes a .mha to standard output. May be repeated.",
     NULL, CLI_NAMES_FILE};
 
 const cli_flag cli_flag_plot = {

@@ -64,7 +64,7 @@ const cli_flag cli_flag_image_without = {"--without", "PART,...", "All parts but
 
 static const char *const text[] = {
     "Computes one image and writes it to the file of every -o. A .png holds 16-bit grey levels through --display "
-    "and --range. A .tif or .mha holds floats, or doubles with --precision double; a .mha also holds the "
+    "and --range. A .tif or .mha holds floats, or doubles with --precision double; a .dcm holds 65536 steps between the least and the largest value, and needs the program dump2dcm of DCMTK; a .mha also holds the "
     "detector's position.",
     "With --bands the image has one channel for each band: a .tif has a page for each, a .mha a component; a .png "
     "shows the first. Energy and fluence of a band are in keV; photons, transmission and attenuation count photons. "

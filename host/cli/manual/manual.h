@@ -101,7 +101,7 @@ extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to
     cli_flag_scan_overwrite, cli_flag_scan_breathing, cli_flag_scan_subframes, cli_flag_scan_geometry,
     cli_flag_scan_flats, cli_flag_scan_darks, cli_flag_scan_shard, cli_flag_scan_join, cli_flag_scan_mixed,
     cli_flag_scan_grey16, cli_flag_scan_packed, cli_flag_scan_packed_grey16, cli_flag_scan_phases,
-    cli_flag_scan_verify, cli_flag_strict;
+    cli_flag_scan_dicom, cli_flag_scan_verify, cli_flag_strict;
 
 /* Every verb, and what is known of the command as a whole. */
 

@@ -22,6 +22,11 @@ const cli_flag cli_flag_scan_phases = {
     "With --breathing: also writes the projections of each of N phases of the breath to a file of their own, when the scan "
     "is finished: scan.phase-K-of-N.h5 for -o scan.h5. Phase 1 is end-inspiration.",
     NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_dicom = {
+    "--dicom", "DIR",
+    "Also writes each projection as DIR/projection-00000.dcm when the scan is finished: Computed Radiography with the pixels' "
+    "spacing, distances and voltage. Needs the program dump2dcm of DCMTK, and an output that is one file.",
+    NULL, CLI_NAMES_FOLDER};
 const cli_flag cli_flag_scan_subframes = {
     "--subframes", "N",
     "Averages each projection from N frames, spread over its exposure (Exposure of Scan), during which the scan turns "
@@ -99,6 +104,7 @@ static const cli_flag *const flags[] = {&cli_flag_scan_output,
                                         &cli_flag_scan_overwrite,
                                         &cli_flag_scan_breathing,
                                         &cli_flag_scan_phases,
+                                        &cli_flag_scan_dicom,
                                         &cli_flag_scan_subframes,
                                         &cli_flag_scan_geometry,
                                         &cli_flag_scan_flats,

@@ -59,6 +59,7 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status == CLI_DONE) exit_status = shards_read_flag(arguments, a);
     if (exit_status == CLI_DONE) exit_status = phases_read_flag(arguments, a);
     if (exit_status == CLI_DONE) exit_status = packed_read_flags(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = pictures_read_flag(arguments, a);
     return exit_status;
 }
 
@@ -223,12 +224,6 @@ static int run_alone(cli_acquisition *a) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
-/* What has no extension is a folder (skg_scan_file_open). */
-static int is_folder(const char *place) {
-    const char *slash = strrchr(place, '/'), *dot = strrchr(slash ? slash : place, '.');
-    return !dot || !dot[1] || dot[1] == '.';
-}
-
 int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
     if (a->ranks.rank == 0 && a->found > 0 && a->found < a->projections && !cli_is_quiet())
         cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
@@ -244,8 +239,10 @@ int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
     if (status != SKG_OK) return cli_fail(status);
     const int packed = packed_write(arguments, a);
     if (packed != CLI_DONE) return packed;
+    const int pictures = a->pictures ? pictures_write(a) : CLI_DONE;
+    if (pictures != CLI_DONE) return pictures;
     if (a->phases > 0) return phases_write(a);
-    return a->stem && is_folder(a->place) ? metadata_write(a) : CLI_DONE;
+    return a->stem && cli_names_folder(a->place) ? metadata_write(a) : CLI_DONE;
 }
 
 void acquisition_close(cli_acquisition *a) {

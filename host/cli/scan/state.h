@@ -14,6 +14,7 @@ typedef struct {
     skg_plan *plan;
     skg_scan_file *file;
     skg_scan_file_options file_options; /* of the output */
+    const char *pictures;               /* folder of --dicom; NULL: none */
     int64_t phases;                     /* files of phases of the breath beside it; 0: none */
     skg_scan_run_options options;
     int64_t *only;

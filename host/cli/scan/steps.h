@@ -53,6 +53,10 @@ skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const voi
 /* Reads flat fields (energies) and dark fields (no energies) out, one after another in `to`. */
 skg_status grey_fields(const cli_acquisition *a, int64_t count, const void *energies, void *to);
 
+/* The projections as DICOM files beside the output: reads --dicom, and writes them when the scan is finished. */
+int pictures_read_flag(const cli_arguments *arguments, cli_acquisition *a);
+int pictures_write(cli_acquisition *a);
+
 /* A scan of a breathing scene, sorted into phases of the breath. */
 
 /* Reads --phases N. */

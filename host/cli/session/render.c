@@ -1,9 +1,11 @@
+/* Plan, frames, files and report of `image` and `lbuffer`. */
 #include "session/render.h"
 
 #include "common/encode.h"
 #include "common/file.h"
 #include "common/interrupt.h"
 #include "common/say.h"
+#include "dicom/dicom.h"
 #include "manual/manual.h"
 #include "session/explain.h"
 
@@ -64,6 +66,14 @@ static int check_twins(const cli_arguments *arguments) {
     return CLI_DONE;
 }
 
+/* Only the picture itself may be DICOM: its scatter and its variance are no radiographs. */
+static int is_dicom(const cli_arguments *arguments, const char *path) {
+    const char *own;
+    for (int i = 0; (own = cli_nth_value(arguments, &cli_flag_output, i)); i++)
+        if (own == path) return cli_dicom_is(path);
+    return 0;
+}
+
 int cli_check_outputs(const cli_arguments *arguments) {
     int64_t repeats;
     double low, high;
@@ -73,16 +83,30 @@ int cli_check_outputs(const cli_arguments *arguments) {
     exit_status = check_twins(arguments);
     if (exit_status != CLI_DONE) return exit_status;
     if (!nth_output(arguments, 0) && !repeats)
-        return cli_error(CLI_USAGE, "%s: no output is named; add -o FILE (.png, .tif or .mha)",
+        return cli_error(CLI_USAGE, "%s: no output is named; add -o FILE (.png, .tif, .mha or .dcm)",
                          arguments->manual->name);
     if (count_streams(arguments) + cli_given(arguments, &cli_flag_json) > 1)
         return cli_error(CLI_USAGE, "standard output takes one thing: -o - once, or --json");
     const char *path;
+    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++)
+        if (cli_dicom_is(path) && (exit_status = cli_dicom_check(path)) != CLI_DONE) return exit_status;
     for (int i = 0; (path = nth_output(arguments, i)); i++) {
-        skg_status status = skg_picture_path_check(path);
+        skg_status status = is_dicom(arguments, path) ? SKG_OK : skg_picture_path_check(path);
         if (status != SKG_OK) return cli_fail(status);
     }
     return CLI_DONE;
+}
+
+static int write_dicom(const cli_rendering *rendering, const char *path) {
+    const cli_session *session = &rendering->session;
+    cli_dicom_facts facts = {.study = session->path, .number = 1};
+    double step = 0;
+    const skg_status status = cli_dicom_facts_of(session->scene, session->spectrum, &session->view, &facts);
+    const int exit_status =
+        status == SKG_OK ? cli_dicom_save(&rendering->picture, &facts, path, &step) : cli_fail(status);
+    if (exit_status == CLI_DONE)
+        cli_tell("%s: values in steps of %.3g %s", path, step, rendering->picture.unit);
+    return exit_status;
 }
 
 /* Writes every file that can be written. Returns the exit status of the first that cannot. */
@@ -90,14 +114,16 @@ static int write_files(const cli_rendering *rendering) {
     int failure = CLI_DONE, written = 0;
     const char *path;
     for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
-        skg_status status = skg_picture_save(&rendering->picture, path);
-        if (status == SKG_OK) {
-            written++;
-            cli_keep("outputs written: %d; the last one is %s", written, path);
-            continue;
+        int its = CLI_DONE;
+        if (cli_dicom_is(path)) {
+            its = write_dicom(rendering, path);
+        } else {
+            const skg_status status = skg_picture_save(&rendering->picture, path);
+            if (status != SKG_OK)
+                its = status == SKG_ERR_UNSUPPORTED ? cli_fail(status), CLI_OUTPUT : cli_fail(status);
         }
-        int its = cli_fail(status);
-        if (failure == CLI_DONE) failure = status == SKG_ERR_UNSUPPORTED ? CLI_OUTPUT : its;
+        if (its == CLI_DONE) cli_keep("outputs written: %d; the last one is %s", ++written, path);
+        if (failure == CLI_DONE) failure = its;
     }
     return failure;
 }

@@ -125,6 +125,13 @@ SKG_API skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats
 SKG_API skg_status skg_scan_file_write(skg_scan_file *file, int64_t count, const int64_t *indices,
                                        const void *images, const double *phases);
 
+/** Reads a projection that is finished, and compares it with its checksum if it has one.
+ *
+ *     index    its number in the scan
+ *     image    result: [row][column] of the file's type
+ *     errors   SKG_ERR_ARGUMENT (index, not finished), SKG_ERR_FILE (damaged); SKG_ERR_UNSUPPORTED for folders */
+SKG_API skg_status skg_scan_file_read(const skg_scan_file *file, int64_t index, void *image);
+
 /** Copies the projections that a part of the scan has and a file does not.
  *
  *     part     finished or not; of the same type and number of source samples

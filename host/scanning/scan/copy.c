@@ -47,6 +47,20 @@ static skg_status copy_fields(const skg_scan_file *to, int64_t to_at, int64_t to
     return SKG_OK;
 }
 
+static skg_status read_projection(const skg_scan_file *from, int64_t index, void *image) {
+    const int64_t k = index - from->first;
+    SKG_TRY(skg_scan_read_at(from, image, from->bytes, from->data_at + k * from->bytes));
+    if (skg_scan_checksum_fits(from, k, image)) return SKG_OK;
+    return skg_fail(SKG_ERR_FILE, "%s: projection %" PRId64 " is damaged; verify the scan first", from->path,
+                    index);
+}
+
+static skg_status check_finished(const skg_scan_file *from, int64_t index) {
+    SKG_TRY(skg_scan_file_check_index(from, index));
+    if (from->done[index - from->first] == 1) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT, "%s: projection %" PRId64 " is not finished", from->path, index);
+}
+
 static skg_status check_copy(const skg_scan_file *file, const skg_scan_file *from, int64_t count,
                              const int64_t *indices) {
     if (from->data < 0 || file->data < 0)
@@ -54,13 +68,18 @@ static skg_status check_copy(const skg_scan_file *file, const skg_scan_file *fro
     if (from->bytes != file->bytes || count != file->projections)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: has another type or number of projections than what is copied",
                         file->path);
-    for (int64_t k = 0; k < count; k++) {
-        SKG_TRY(skg_scan_file_check_index(from, indices[k]));
-        if (from->done[indices[k] - from->first] != 1)
-            return skg_fail(SKG_ERR_ARGUMENT, "%s: projection %" PRId64 " is not finished", from->path,
-                            indices[k]);
-    }
+    for (int64_t k = 0; k < count; k++) SKG_TRY(check_finished(from, indices[k]));
     return SKG_OK;
+}
+
+skg_status skg_scan_file_read(const skg_scan_file *file, int64_t index, void *image) {
+    SKG_PLAIN;
+    SKG_NEEDS(file);
+    SKG_NEEDS(image);
+    if (file->data < 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: of folders nothing is read; write one file", file->path);
+    SKG_TRY(check_finished(file, index));
+    return read_projection(file, index, image);
 }
 
 skg_status skg_scan_file_copy(skg_scan_file *file, const skg_scan_file *from, int64_t count,
@@ -78,13 +97,7 @@ skg_status skg_scan_file_copy(skg_scan_file *file, const skg_scan_file *from, in
     SKG_TRY_CLEANUP(copy_fields(file, file->dark_at, file->options.darks, from, from->dark_at,
                                 from->options.darks, image));
     for (int64_t k = 0; k < count; k++) {
-        const int64_t at = from->data_at + (indices[k] - from->first) * from->bytes;
-        SKG_TRY_CLEANUP(skg_scan_read_at(from, image, from->bytes, at));
-        if (!skg_scan_checksum_fits(from, indices[k] - from->first, image)) {
-            status = skg_fail(SKG_ERR_FILE, "%s: projection %" PRId64 " is damaged; verify the scan first",
-                              from->path, indices[k]);
-            goto cleanup;
-        }
+        SKG_TRY_CLEANUP(read_projection(from, indices[k], image));
         SKG_TRY_CLEANUP(skg_scan_file_write(file, 1, &k, image, phases ? phases + k : NULL));
     }
 cleanup:
