@@ -55,7 +55,10 @@ def settings_text(state: State, placed: bool = False) -> dict[str, Any]:
     if placed or state.view != state.read_view:
         _write_view(state, text)
     if "beam" in state.changed:
-        _put(_object(text, "Source"), "Beam", beam_text(state.require_beam()))
+        beam, (columns, rows) = state.require_beam(), _binning(text)
+        if not beam.absolute and columns * rows > 1:  # a file counts photons per sensor pixel
+            beam = beam.scaled(1 / (columns * rows))
+        _put(_object(text, "Source"), "Beam", beam_text(beam))
     return text
 
 
@@ -111,6 +114,12 @@ def _mm(vector: NDArray[np.float64]) -> list[Any]:
     return [*vector.tolist(), "mm"]
 
 
+def _binning(text: dict[str, Any]) -> tuple[int, int]:
+    """Sensor pixels of a pixel, (columns, rows)."""
+    columns, rows = _get(_get(text, "Detector", {}), "Binning", (1, 1))
+    return int(columns), int(rows)
+
+
 def _write_view(state: State, text: dict[str, Any]) -> None:
     view = state.view
     if view is None:
@@ -123,8 +132,10 @@ def _write_view(state: State, text: dict[str, Any]) -> None:
     if not isinstance(shape, list) or view.projection != "point":
         _put(source, "Shape", "PointSource" if view.projection == "point" else "ParallelBeam")
     _drop(detector, "UpVector", "RightVector", "Size", "Spacing")
-    for name, value in (("Position", _mm(view.detector)), ("ColumnStep", _mm(view.column_step)),
-                        ("RowStep", _mm(view.row_step)), ("NumberOfPixels", list(view.pixels))):
+    columns, rows = _binning(text)  # a file has the sensor's pixels
+    pixels = [view.pixels[0] * columns, view.pixels[1] * rows]
+    for name, value in (("Position", _mm(view.detector)), ("ColumnStep", _mm(view.column_step / columns)),
+                        ("RowStep", _mm(view.row_step / rows)), ("NumberOfPixels", pixels)):
         _put(detector, name, value)
 
 

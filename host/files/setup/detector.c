@@ -14,6 +14,7 @@ static const skg_json_key detector_keys[] = {
     {"PSF", NULL, SKG_KEY_READ},          {"GreyValues", NULL, SKG_KEY_READ},
     {"Grid", NULL, SKG_KEY_READ},         {"MTF", NULL, SKG_KEY_READ},
     {"DQE", NULL, SKG_KEY_READ},          {"ColumnStep", NULL, SKG_KEY_READ},
+    {"Binning", NULL, SKG_KEY_READ},      {"BinningNoise", NULL, SKG_KEY_READ},
     {"RowStep", NULL, SKG_KEY_READ},
 };
 
@@ -187,6 +188,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     SKG_TRY(skg_setup_read_grid(reader, &detector));
     SKG_TRY(skg_setup_read_blur(reader, &detector));
     SKG_TRY(skg_setup_read_grey_values(reader, &detector));
+    SKG_TRY(skg_setup_read_binning(reader, &detector));
     skg_status status = skg_view_check(view);
     SKG_TRY(skg_json_at(node, status));
     return SKG_OK;

@@ -214,6 +214,20 @@ static skg_status list_views(skg_scan_section *section, double last) {
     return SKG_OK;
 }
 
+/* Steps of a table are those of the image's pixels: it may be one that a scan wrote. */
+static skg_status check_steps(const skg_setup *setup, const skg_json_node *node, const skg_scan *scan) {
+    skg_view first;
+    if (setup->bins[0] * setup->bins[1] == 1) return SKG_OK;
+    skg_view_init(&first);
+    SKG_TRY(skg_scan_view_get(scan, 0, &first));
+    const double has = skg_length(first.column_step), wanted = skg_length(setup->view.column_step);
+    if (fabs(has - wanted) <= 0.1 * wanted) return SKG_OK;
+    return skg_json_fail(
+        node, SKG_ERR_FORMAT,
+        "has columns %g mm apart; with Binning a table has the steps of the image's pixels, %g mm", has,
+        wanted);
+}
+
 /* A table of poses: a file, or the rows themselves. */
 static skg_status make_table(skg_setup_reader *reader, const skg_json_node *node,
                              const skg_scan_options *options, skg_scan **scan) {
@@ -224,13 +238,14 @@ static skg_status make_table(skg_setup_reader *reader, const skg_json_node *node
     if (!json_is_array(node->value)) {
         SKG_TRY(skg_json_text(node, &text));
         SKG_TRY(skg_setup_find_file(reader, text, &path));
-        return skg_json_at(node, skg_scan_load_table(view, options, path, scan));
+        SKG_TRY(skg_json_at(node, skg_scan_load_table(view, options, path, scan)));
+        return check_steps(reader->setup, node, *scan);
     }
     skg_status status = skg_setup_read_rows(node, 12, "rows of 12 numbers", &count, &poses);
     if (status == SKG_OK)
         status = skg_json_at(node, skg_scan_create_table(view, options, count, poses, scan));
     skg_free(&poses);
-    return status;
+    return status == SKG_OK ? check_steps(reader->setup, node, *scan) : status;
 }
 
 /* The poses as a reconstruction knows them. */

@@ -91,6 +91,12 @@ skg_status skg_setup_read_blur(skg_setup_reader *reader, const skg_json_object *
 skg_status skg_setup_read_depths(skg_setup_reader *reader, const skg_json_node *node);
 void skg_setup_blur_free(skg_setup *setup);
 
+/* Binning and BinningNoise of the detector: the view, the rays of a pixel and the blur become those of bins. */
+skg_status skg_setup_read_binning(skg_setup_reader *reader, const skg_json_object *detector);
+
+/* The same for photons and noise, when they were read. */
+skg_status skg_setup_bin_counts(skg_setup_reader *reader);
+
 /* The key Noise of the file (value NULL: none). */
 skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *node);
 

@@ -168,6 +168,7 @@ static skg_status read_all(skg_setup_reader *reader) {
     SKG_TRY(read_world(reader, &top));
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
+    SKG_TRY(skg_setup_bin_counts(reader));
     if (reader->setup->absolute && !noise.value && reader->setup->view.projection == SKG_PROJECTION_POINT)
         skg_logger_say(
             &reader->log, SKG_LOG_NOTE,
