@@ -30,6 +30,11 @@ struct skg_material {
 #define SKG_LOWEST_KEV 1.0
 #define SKG_HIGHEST_KEV 20000.0
 
+/* Whether it stops and scatters nothing: a hole in what is around it. */
+static inline int skg_material_is_void(const skg_material *material) {
+    return material->kind == SKG_MATTER_CONSTANT && material->mu_per_cm == 0;
+}
+
 /* Makes a material with a copy of its name and note. The rest is zero. */
 skg_status skg_material_make(const char *name, const char *note, int32_t kind, skg_material **material);
 

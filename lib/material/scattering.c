@@ -51,7 +51,7 @@ void skg_atom_scattering(int32_t z, double x, double factors[SKG_SCATTERINGS]) {
 }
 
 skg_status skg_scattering_check(const skg_material *material) {
-    if (material->kind == SKG_MATTER_COMPOSITION) return SKG_OK;
+    if (material->kind == SKG_MATTER_COMPOSITION || skg_material_is_void(material)) return SKG_OK;
     return skg_fail(
         SKG_ERR_MATERIAL,
         "%s: a material given by its attenuation alone does not say how it scatters; give a formula "

@@ -1,13 +1,11 @@
+/* The object as cells: what every column through the parts meets, put into the cells that it crosses. */
 #include "scatter/voxels.h"
 
 #include "core/threads.h"
 
 #include <math.h>
 
-/* Units of a coefficient: sums of 2^22 hits fit in 63 bits. */
-static const double UNIT = 0x1p40;
-
-typedef int64_t amount[SKG_SCATTER_RANK];
+typedef skg_cell_amount amount;
 
 typedef struct {
     const skg_cell_parts *parts;
@@ -21,7 +19,6 @@ typedef struct {
 typedef struct {
     const skg_cells *cells;
     amount *own, *behind;
-    int64_t *parts; /* [2][parts] workspace */
 } pile;
 
 static void add(int64_t *sum, const int64_t *more, int64_t factor) {
@@ -29,7 +26,8 @@ static void add(int64_t *sum, const int64_t *more, int64_t factor) {
 }
 
 /* From a depth on there is more. */
-static void deposit(const pile *p, double depth, const int64_t *more, int64_t factor) {
+static void deposit(void *user, double depth, const int64_t *more, int64_t factor) {
+    const pile *p = user;
     const int64_t cells = p->cells->count[2];
     const double place = (depth - p->cells->low[2]) * (double)cells / p->cells->size[2];
     const int64_t cell = place < 0 ? 0 : place < (double)cells ? (int64_t)place : cells - 1;
@@ -81,46 +79,56 @@ static int counts(const skg_cell_parts *parts, const inside *in, int64_t part) {
     return 1;
 }
 
-static void sum_up(const filling *f, const inside *in, int64_t *sum) {
+static void sum_up(const skg_cell_parts *parts, const amount *amounts, const inside *in, int64_t *sum) {
     for (int k = 0; k < SKG_SCATTER_RANK; k++) sum[k] = 0;
     for (int64_t i = 0; i < in->count; i++)
-        if (counts(f->parts, in, in->part[i]))
-            add(sum, f->amounts[in->part[i]], f->parts->unite ? in->times[i] > 0 : in->times[i]);
+        if (counts(parts, in, in->part[i]))
+            add(sum, amounts[in->part[i]], parts->unite ? in->times[i] > 0 : in->times[i]);
 }
 
-static void settle_column(const filling *f, skg_columns *grid, int64_t column, const pile *p) {
-    inside in = {0, p->parts, p->parts + f->parts->count};
+static void settle_column(const skg_cell_parts *parts, const amount *amounts, skg_columns *grid,
+                          int64_t column, int64_t *work, skg_cell_change *change, void *user) {
+    inside in = {0, work, work + parts->count};
     amount before = {0};
     skg_columns_sort(grid, column);
     for (int64_t h = grid->first[column]; h < grid->first[column + 1]; h++) {
         const skg_column_hit *hit = &grid->hits[h];
         amount now, more;
-        pass(&in, hit->part, hit->sign * f->parts->sign[hit->part]);
-        sum_up(f, &in, now);
+        pass(&in, hit->part, hit->sign * parts->sign[hit->part]);
+        sum_up(parts, amounts, &in, now);
         for (int k = 0; k < SKG_SCATTER_RANK; k++) more[k] = now[k] - before[k], before[k] = now[k];
-        deposit(p, hit->depth, more, 1);
+        change(user, hit->depth, more, 1);
     }
 }
 
-/* --- all cells */
-
-static void add_column(const filling *f, skg_columns *grid, int64_t column, const pile *p) {
-    if (f->parts->priority) {
-        settle_column(f, grid, column, p);
+void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts, skg_columns *grid,
+                    int64_t column, int64_t *work, skg_cell_change *change, void *user) {
+    if (parts->priority) {
+        settle_column(parts, amounts, grid, column, work, change, user);
         return;
     }
     for (int64_t h = grid->first[column]; h < grid->first[column + 1]; h++) {
         const skg_column_hit *hit = &grid->hits[h];
-        deposit(p, hit->depth, f->amounts[hit->part], hit->sign * f->parts->sign[hit->part]);
+        change(user, hit->depth, amounts[hit->part], hit->sign * parts->sign[hit->part]);
     }
 }
+
+skg_status skg_cells_amounts(const skg_cell_parts *parts, skg_cell_amount **amounts) {
+    SKG_TRY(skg_alloc(parts->count, sizeof **amounts, "cells", amounts));
+    for (int64_t i = 0; i < parts->count; i++)
+        for (int k = 0; k < SKG_SCATTER_RANK; k++)
+            (*amounts)[i][k] = llrint(parts->coefficients[i][k] * SKG_CELL_UNIT);
+    return SKG_OK;
+}
+
+/* --- all cells */
 
 /* The cells of one row along x, all through z. */
 static skg_status fill_row(void *user, int64_t row) {
     const filling *f = user;
     const int64_t side = f->cells->count[0], depth = f->cells->count[2];
     const double *base = f->parts->base;
-    const double each = 1 / (UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
+    const double each = 1 / (SKG_CELL_UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
     skg_columns grid = *f->grid;
     amount *own = NULL, *behind = NULL;
     int64_t *inside_of = NULL;
@@ -133,8 +141,8 @@ static skg_status fill_row(void *user, int64_t row) {
     SKG_TRY_CLEANUP(skg_alloc(side * (depth + 1), sizeof *behind, "cells", &behind));
     for (int64_t c = 0; c < grid.rows * grid.side; c++) {
         const int64_t x = c % grid.side / SKG_CELL_COLUMNS;
-        const pile p = {f->cells, own + x * depth, behind + x * (depth + 1), inside_of};
-        add_column(f, &grid, c, &p);
+        pile p = {f->cells, own + x * depth, behind + x * (depth + 1)};
+        skg_cells_walk(f->parts, (const amount *)f->amounts, &grid, c, inside_of, deposit, &p);
     }
     for (int64_t x = 0; x < side; x++) {
         amount sum = {0};
@@ -168,12 +176,8 @@ static void count_cells(const skg_columns *grid, double voxel_mm, skg_cells *cel
 
 static skg_status fill(filling *f) {
     skg_cells *cells = f->cells;
-    const skg_cell_parts *parts = f->parts;
     const int64_t total = cells->count[0] * cells->count[1] * cells->count[2];
-    SKG_TRY(skg_alloc(parts->count, sizeof *f->amounts, "cells", &f->amounts));
-    for (int64_t i = 0; i < parts->count; i++)
-        for (int k = 0; k < SKG_SCATTER_RANK; k++)
-            f->amounts[i][k] = llrint(parts->coefficients[i][k] * UNIT);
+    SKG_TRY(skg_cells_amounts(f->parts, &f->amounts));
     SKG_TRY(skg_alloc(total, sizeof *cells->mixtures, "cells", &cells->mixtures));
     SKG_TRY(skg_parallel(cells->count[1], fill_row, f));
     for (int64_t c = 0; c < total; c++)

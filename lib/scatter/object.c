@@ -1,8 +1,10 @@
+/* What stands in the beam: the physics of its materials, and its cells. */
 #include "scatter/voxels.h"
 
 #include "beam/spectrum.h"
 #include "core/maths.h"
 #include "geometry/overlaps.h"
+#include "material/material.h"
 
 #include <math.h>
 
@@ -13,16 +15,17 @@ const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part) {
     return work->poses && work->poses[part] ? work->poses[part] : work->recipe->scene->parts[part].pose;
 }
 
-/* The materials of a scene, each once. */
+/* The materials of a scene, each once, but for voids. */
 typedef struct {
     int64_t count;
     skg_material **materials; /* [parts + 1] borrowed */
-    int64_t *of_part;         /* [parts] */
-    int64_t of_world;         /* -1: vacuum */
+    int64_t *of_part;         /* [parts] -1: void */
+    int64_t of_world;         /* likewise */
 } palette;
 
 static int64_t place_in(palette *p, skg_material *material) {
     int64_t m = 0;
+    if (skg_material_is_void(material)) return -1;
     while (m < p->count && p->materials[m] != material) m++;
     if (m == p->count) p->materials[p->count++] = material;
     return m;
@@ -49,6 +52,10 @@ static skg_status make_physics(const skg_scatter_work *work, const palette *p, s
     return skg_scatter_physics_make(p->count, p->materials, low, fmax(high, low * 1.001), physics);
 }
 
+static double coefficient(const skg_scatter_physics *physics, int64_t material, int k) {
+    return material < 0 ? 0 : physics->coefficients[material][k];
+}
+
 /* What a mm of each part adds: its own material less its parent's, as in frame/overrides.c. */
 static void find_differences(const skg_scatter_work *work, const palette *p, const skg_scatter_object *object,
                              double (*differences)[SKG_SCATTER_RANK]) {
@@ -59,9 +66,9 @@ static void find_differences(const skg_scatter_work *work, const palette *p, con
         const double density = work->density ? work->density[i] : 1, fill = work->fill ? work->fill[i] : 1;
         const double around = parent >= 0 && work->density ? work->density[parent] : 1;
         for (int k = 0; k < SKG_SCATTER_RANK; k++) {
-            const double own = density * physics->coefficients[p->of_part[i]][k];
+            const double own = density * coefficient(physics, p->of_part[i], k);
             const double outside =
-                parent < 0 ? object->world[k] : around * physics->coefficients[p->of_part[parent]][k];
+                parent < 0 ? object->world[k] : around * coefficient(physics, p->of_part[parent], k);
             differences[i][k] = fill * (own - outside);
         }
     }
@@ -106,6 +113,7 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
     skg_status status = SKG_OK;
     *object = (skg_scatter_object){0};
     SKG_TRY_CLEANUP(find_palette(work->recipe, &p));
+    if (p.count == 0) goto cleanup; /* nothing scatters */
     SKG_TRY_CLEANUP(make_physics(work, &p, &object->physics));
     SKG_TRY_CLEANUP(place(work, &parts));
     for (int k = 0; k < SKG_SCATTER_RANK && p.of_world >= 0; k++)
@@ -121,7 +129,9 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
         .clip = work->recipe->options.clip,
         .unite = work->recipe->options.unite,
     };
-    status = skg_cells_make(&to_fill, work->recipe->options.scatter->voxel_mm, &object->cells);
+    SKG_TRY_CLEANUP(skg_cells_make(&to_fill, work->recipe->options.scatter->voxel_mm, &object->cells));
+    status = skg_cells_judge(&to_fill, &object->physics, work->recipe->spectrum, work->view, &object->cells,
+                             &object->primary_error);
 cleanup:
     drop(work->recipe->scene->count, &parts);
     skg_free(&p.materials);

@@ -19,7 +19,7 @@ typedef struct {
     int32_t channels;       /* of components */
     int32_t known;          /* 1: they hold for it */
     int32_t warned;         /* 1: of materials that four coefficients mix badly */
-    int32_t reserved;
+    int32_t cells_warned;   /* 1: of cells that are too large */
     skg_scatter_report report;
 } skg_scatterer;
 

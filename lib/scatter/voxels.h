@@ -53,9 +53,29 @@ typedef struct {
     int32_t unite; /* 1: a solid counts once where its winding number is above 0 */
 } skg_cell_parts;
 
+/* Whole multiples of a unit, of which sums of 2^22 hits fit in 63 bits. */
+#define SKG_CELL_UNIT 0x1p40
+typedef int64_t skg_cell_amount[SKG_SCATTER_RANK];
+
+/* The coefficients of each part in these units; the caller frees them. */
+skg_status skg_cells_amounts(const skg_cell_parts *parts, skg_cell_amount **amounts);
+
+/* From a depth on there is `factor` times `more`. */
+typedef void skg_cell_change(void *user, double depth, const int64_t *more, int64_t factor);
+
+/* Gives all changes along a column, which cancel in the end; by depth where priorities decide. work: [2][parts] */
+void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts, skg_columns *grid,
+                    int64_t column, int64_t *work, skg_cell_change *change, void *user);
+
 /* Makes the cells of parts. voxel_mm: about; 0: SKG_CELLS_DEFAULT cells along each side. Without any triangle there are no cells. */
 skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cells *cells);
 void skg_cells_free(skg_cells *cells);
+
+/* How far the primary through the cells, read as photons read them, is from that through the surfaces: the sum of the absolute differences
+ * over blocks of the detector, over what passes or over what is stopped, whichever is less. 0 if a part reaches behind the source. */
+skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physics *physics,
+                           const skg_spectrum *spectrum, const skg_view *view, const skg_cells *cells,
+                           double *error);
 
 /* --- What stands in the beam, as cells. */
 
@@ -77,6 +97,7 @@ typedef struct {
     skg_scatter_physics physics;    /* of the materials of parts and world */
     double world[SKG_SCATTER_RANK]; /* coefficients of the world; 0: vacuum */
     skg_cells cells;
+    double primary_error; /* skg_cells_judge */
 } skg_scatter_object;
 
 /* Makes both. Free the object also after a failure. */

@@ -83,4 +83,4 @@ def _summary(report: Mapping[str, Any], total: Any, quantity: str | None) -> dic
             "ratio": mean / primary if primary > 0 else float("inf") if mean > 0 else 0.0,
             "orders": report["orders"],
             "kinds": {"rayleigh": report["rayleigh"], "compton": 1 - report["rayleigh"] if mean > 0 else 0.0},
-            **{name: report[name] for name in ("histories", "seconds", "cosines", "cells", "mixture_error")}}
+            **{name: report[name] for name in ("histories", "seconds", "cosines", "cells", "mixture_error", "cells_error")}}

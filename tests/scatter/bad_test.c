@@ -1,4 +1,4 @@
-/* What scatter refuses, and what it says. */
+/* What scatter refuses or warns of, and what it says. */
 #include "subject.h"
 #include "suite.h"
 
@@ -169,8 +169,71 @@ START_TEST(components) {
 }
 END_TEST
 
+/* Boxes along the axes that fill their cells have the same primary through cells and surfaces, but for rounding; a sheet of lead that is
+ * thinner than a cell, and before half of the detector, has not. */
+START_TEST(cells_that_are_too_large_are_told) {
+    subject s;
+    for (int lead = 0; lead < 2; lead++) {
+        subject_open(&s);
+        subject_add_box(&s, 200, 160, 100, "Water, Liquid");
+        if (lead) {
+            skg_mesh *sheet = NULL;
+            ck_skg(skg_mesh_create_cuboid(100, 160, 0.5, &sheet));
+            subject_add(&s, sheet, "Pb", -50, 0, 60, -1);
+        }
+        subject_plan(&s);
+        pictures p = subject_pictures(&s, NULL);
+        const double error = subject_report(&s).cells_error;
+        if (lead)
+            ck_assert_double_gt(error, 0.1);
+        else
+            ck_assert_double_le(error, 1e-6); /* cells are floats */
+        pictures_free(&p);
+        subject_close(&s);
+    }
+}
+END_TEST
+
+static double scatter_of_hole(const char *material) {
+    subject s;
+    skg_mesh *hole = NULL;
+    subject_open(&s);
+    const int64_t block = subject_add_box(&s, 60, 60, 60, "Al");
+    ck_skg(skg_mesh_create_cube(30, &hole));
+    subject_add(&s, hole, material, 0, 0, 0, block);
+    subject_plan(&s);
+    pictures p = subject_pictures(&s, NULL);
+    const double sum = subject_sum(&s, p.scatter);
+    pictures_free(&p);
+    subject_close(&s);
+    return sum;
+}
+
+/* Air is a 2000th of aluminium. Photons are the same but for what meets it. */
+START_TEST(a_void_scatters_as_thin_air_does) {
+    const double of_air = scatter_of_hole("Air, Dry (near sea level)");
+    ck_assert_double_gt(of_air, 0);
+    ck_assert_double_eq_tol(scatter_of_hole("Vacuum"), of_air, 0.01 * of_air);
+}
+END_TEST
+
+START_TEST(voids_alone_scatter_nothing) {
+    subject s;
+    subject_open(&s);
+    subject_add_box(&s, 60, 60, 60, "Vacuum");
+    subject_plan(&s);
+    pictures p = subject_pictures(&s, NULL);
+    ck_assert_double_eq(subject_sum(&s, p.scatter), 0);
+    pictures_free(&p);
+    subject_close(&s);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
+    tcase_add_test(tests, cells_that_are_too_large_are_told);
+    tcase_add_test(tests, a_void_scatters_as_thin_air_does);
+    tcase_add_test(tests, voids_alone_scatter_nothing);
     tcase_add_test(tests, numbers);
     tcase_add_test(tests, materials);
     tcase_add_test(tests, leaky_meshes);

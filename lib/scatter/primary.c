@@ -1,0 +1,280 @@
+/* The primary through the cells against that through the surfaces, on a coarse grid of the detector: what cells that are too large for thin or
+ * small dense parts do to photons. Batches share the cells, so their spread does not show it. */
+#include "scatter/voxels.h"
+
+#include "beam/spectrum.h"
+#include "core/maths.h"
+#include "core/threads.h"
+
+#include <math.h>
+
+/* RAYS x RAYS rays in blocks of BLOCK x BLOCK, large enough that edges which cells blur without a bias do not count; MARCHES ways through the cells for each, whose steps begin at different shares. */
+enum { RAYS = 48, BLOCK = 12, BLOCKS = RAYS / BLOCK, MARCHES = 4 };
+
+typedef struct {
+    const skg_cell_parts *parts;
+    const skg_cell_amount *amounts;
+    const skg_view *view;
+    const skg_cells *cells;
+    skg_column_rows *rows;
+    skg_columns grid;    /* in columns, rows and depths */
+    double direction[3]; /* of parallel rays */
+    int is_point;
+    double sign;                    /* -1: columns, rows and depths are a mirrored frame */
+    int64_t energies;               /* of the beam */
+    double (*mu)[SKG_SCATTER_RANK]; /* [energies] 1/mm per coefficient */
+    double *weight;                 /* [energies] share of the beam's energy */
+    double (*passed)[2];            /* [RAYS * RAYS] shares of the energy: through surfaces, through cells */
+} judge;
+
+/* --- rays */
+
+/* A place of a ray is on + t * way. */
+typedef struct {
+    double on[3], way[3];
+} ray;
+
+static ray ray_at(const judge *j, double column, double row) {
+    const skg_view *view = j->view;
+    ray r;
+    for (int k = 0; k < 3; k++) {
+        const double pixel = view->centre[k] +
+                             (column - 0.5 * (double)(view->columns - 1)) * view->column_step[k] +
+                             (row - 0.5 * (double)(view->rows - 1)) * view->row_step[k];
+        r.on[k] = j->is_point ? view->source[k] : pixel;
+        r.way[k] = j->is_point ? pixel - view->source[k] : j->direction[k];
+    }
+    return r;
+}
+
+/* Depths keep planes flat: -1 / t of a point source, t of parallel rays. */
+static double way_to(const judge *j, double depth) {
+    return j->is_point ? -1 / depth : depth;
+}
+
+/* Puts places of the world into columns, rows and depths. Returns 0 if one is not in front of the source. */
+static int project(const judge *j, int64_t count, const double *from, double *to) {
+    const skg_view *view = j->view;
+    double normal[3], across[2][3];
+    skg_cross(view->column_step, view->row_step, normal);
+    const double *const way = j->direction; /* of a point source: to the detector's centre */
+    const double reach = skg_dot(way, normal);
+    skg_cross(view->row_step, normal, across[0]);
+    skg_cross(normal, view->column_step, across[1]);
+    for (int k = 0; k < 2; k++)
+        skg_scale_vector(1 / skg_dot(across[k], k ? view->row_step : view->column_step), across[k],
+                         across[k]);
+    for (int64_t i = 0; i < count; i++) {
+        double off[3], on_detector[3];
+        skg_add_scaled(from + 3 * i, -1, j->is_point ? view->source : view->centre, off);
+        const double t = skg_dot(off, normal) / reach;
+        if (j->is_point && !(t > 1e-6)) return 0;
+        for (int k = 0; k < 3; k++) on_detector[k] = j->is_point ? off[k] / t - way[k] : off[k] - t * way[k];
+        to[3 * i] = 0.5 * (double)(view->columns - 1) + skg_dot(on_detector, across[0]);
+        to[3 * i + 1] = 0.5 * (double)(view->rows - 1) + skg_dot(on_detector, across[1]);
+        to[3 * i + 2] = j->is_point ? -1 / t : t;
+    }
+    return 1;
+}
+
+/* --- both ways */
+
+/* mm of each coefficient along a ray. */
+typedef struct {
+    const judge *j;
+    double length; /* of ray.way */
+    double mm[SKG_SCATTER_RANK];
+} sum;
+
+static void add_change(void *user, double depth, const int64_t *more, int64_t factor) {
+    sum *s = user;
+    const double mm = s->j->sign * (double)factor * s->length * way_to(s->j, depth) / SKG_CELL_UNIT;
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= (double)more[k] * mm;
+}
+
+static double share_of(const judge *j, const double mm[SKG_SCATTER_RANK]) {
+    double passed = 0;
+    for (int64_t e = 0; e < j->energies; e++) {
+        double depth = 0;
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) depth += j->mu[e][k] * mm[k];
+        passed += j->weight[e] * exp(-fmax(depth, 0));
+    }
+    return passed;
+}
+
+/* The stretch of a ray within the box of the cells. Returns 0 if there is none. */
+static int enter(const skg_cells *cells, const ray *r, double *from, double *to) {
+    *from = -HUGE_VAL, *to = HUGE_VAL;
+    for (int k = 0; k < 3; k++) {
+        const double a = (cells->low[k] - r->on[k]) / r->way[k],
+                     b = (cells->low[k] + cells->size[k] - r->on[k]) / r->way[k];
+        if (r->way[k] == 0 && !(r->on[k] > cells->low[k] && r->on[k] < cells->low[k] + cells->size[k]))
+            return 0;
+        if (r->way[k] == 0) continue;
+        *from = fmax(*from, fmin(a, b)), *to = fmin(*to, fmax(a, b));
+    }
+    return *to > *from;
+}
+
+/* As skg_march of scatter.clh. */
+static void march(const skg_cells *cells, const ray *r, double from, double to, double share,
+                  double mm[SKG_SCATTER_RANK]) {
+    const double step = (to - from) / SKG_SCATTER_STEPS, step_mm = step * skg_length(r->way);
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) mm[k] = 0;
+    for (int s = 0; s < SKG_SCATTER_STEPS; s++) {
+        const double t = from + (s + share) * step;
+        int64_t cell[3];
+        for (int k = 0; k < 3; k++) {
+            const double at =
+                (r->on[k] + t * r->way[k] - cells->low[k]) / cells->size[k] * (double)cells->count[k];
+            cell[k] = (int64_t)fmin(fmax(at, 0), (double)(cells->count[k] - 1));
+        }
+        const float *mixture =
+            cells->mixtures[(cell[2] * cells->count[1] + cell[1]) * cells->count[0] + cell[0]];
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) mm[k] += (double)mixture[k] * step_mm;
+    }
+}
+
+/* A row of rays. */
+static skg_status judge_row(void *user, int64_t row) {
+    judge *j = user;
+    skg_columns grid = j->grid;
+    int64_t *work = NULL;
+    skg_status status = SKG_OK;
+    grid.first_row = row;
+    grid.rows = 1;
+    SKG_TRY_CLEANUP(skg_alloc(2 * j->parts->count, sizeof *work, "cells", &work));
+    SKG_TRY_CLEANUP(skg_columns_gather(&grid, j->parts->count, j->parts->solids, j->rows));
+    for (int64_t c = 0; c < RAYS; c++) {
+        const ray r = ray_at(j, skg_column_place(&grid, 0, c), skg_column_place(&grid, 1, row));
+        double from, to, *passed = j->passed[row * RAYS + c];
+        sum s = {.j = j, .length = skg_length(r.way)};
+        passed[0] = passed[1] = 1;
+        if (!enter(j->cells, &r, &from, &to)) continue;
+        skg_cells_walk(j->parts, j->amounts, &grid, c, work, add_change, &s);
+        for (int k = 0; k < SKG_SCATTER_RANK && j->parts->base; k++)
+            s.mm[k] += j->parts->base[k] * (to - from) * s.length;
+        passed[0] = share_of(j, s.mm);
+        passed[1] = 0;
+        for (int m = 0; m < MARCHES; m++) {
+            double mm[SKG_SCATTER_RANK];
+            march(j->cells, &r, from, to, (m + 0.5) / MARCHES, mm);
+            passed[1] += share_of(j, mm) / MARCHES;
+        }
+    }
+cleanup:
+    skg_columns_free(&grid);
+    skg_free(&work);
+    return status;
+}
+
+/* --- the beam, and the verdict */
+
+static skg_status find_beam(const skg_scatter_physics *physics, const skg_spectrum *spectrum, judge *j) {
+    const double points = (double)(physics->energies - 1);
+    double all = 0;
+    j->energies = spectrum->count;
+    SKG_TRY(skg_alloc(j->energies, sizeof *j->mu, "cells", &j->mu));
+    SKG_TRY(skg_alloc(j->energies, sizeof *j->weight, "cells", &j->weight));
+    for (int64_t e = 0; e < j->energies; e++) {
+        const double kev = spectrum->energy_kev[e];
+        const double at =
+            fmin(fmax(points * log(kev / physics->low_kev) / log(physics->high_kev / physics->low_kev), 0),
+                 points);
+        const int64_t i = (int64_t)fmin(at, points - 1);
+        for (int k = 0; k < SKG_SCATTER_RANK; k++)
+            j->mu[e][k] = (1 - (at - (double)i)) * (double)physics->total[i][k] +
+                          (at - (double)i) * (double)physics->total[i + 1][k];
+        j->weight[e] = spectrum->photons[e] * kev;
+        all += j->weight[e];
+    }
+    for (int64_t e = 0; e < j->energies; e++) j->weight[e] /= all;
+    return SKG_OK;
+}
+
+static double verdict(const judge *j) {
+    double off = 0, passed = 0, stopped = 0;
+    for (int b = 0; b < BLOCKS * BLOCKS; b++) {
+        double means[2] = {0, 0};
+        for (int i = 0; i < BLOCK * BLOCK; i++) {
+            const double *of =
+                j->passed[(b / BLOCKS * BLOCK + i / BLOCK) * RAYS + b % BLOCKS * BLOCK + i % BLOCK];
+            means[0] += of[0] / (BLOCK * BLOCK), means[1] += of[1] / (BLOCK * BLOCK);
+        }
+        off += fabs(means[1] - means[0]);
+        if (means[0] < 1) passed += means[0], stopped += 1 - means[0];
+    }
+    const double least = fmin(passed, stopped);
+    return least > 0 ? off / least : 0;
+}
+
+/* The solids in columns, rows and depths. *in_front: 0 if one reaches behind the source. */
+static skg_status project_solids(const judge *j, skg_solid *solids, double **positions, int *in_front) {
+    int64_t vertices = 0;
+    for (int64_t p = 0; p < j->parts->count; p++) vertices += j->parts->solids[p].vertices;
+    SKG_TRY(skg_alloc(3 * vertices, sizeof **positions, "cells", positions));
+    *in_front = 1;
+    double *to = *positions;
+    for (int64_t p = 0; p < j->parts->count && *in_front; p++) {
+        solids[p] = j->parts->solids[p];
+        *in_front = project(j, solids[p].vertices, solids[p].positions, to);
+        solids[p].positions = to;
+        to += 3 * solids[p].vertices;
+    }
+    return SKG_OK;
+}
+
+static void find_frame(judge *j) {
+    const skg_view *view = j->view;
+    double normal[3];
+    j->is_point = view->projection == SKG_PROJECTION_POINT;
+    if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
+        skg_scale_vector(1, view->source, j->direction);
+    else
+        skg_add_scaled(view->centre, -1, view->source, j->direction);
+    skg_cross(view->column_step, view->row_step, normal);
+    j->sign = skg_dot(normal, j->direction) < 0 ? -1 : 1;
+    j->grid.side = RAYS;
+    for (int k = 0; k < 2; k++) {
+        j->grid.low[k] = -0.5;
+        j->grid.step[k] = (double)(k ? view->rows : view->columns) / RAYS;
+    }
+}
+
+skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physics *physics,
+                           const skg_spectrum *spectrum, const skg_view *view, const skg_cells *cells,
+                           double *error) {
+    judge j = {.view = view, .cells = cells};
+    skg_cell_parts projected = *parts;
+    skg_cell_amount *amounts = NULL;
+    skg_solid *solids = NULL;
+    double *positions = NULL;
+    int in_front = 0;
+    skg_status status = SKG_OK;
+    *error = 0;
+    if (!cells->mixtures) return SKG_OK;
+    find_frame(&j);
+    j.parts = parts;
+    SKG_TRY_CLEANUP(skg_alloc(parts->count, sizeof *solids, "cells", &solids));
+    SKG_TRY_CLEANUP(project_solids(&j, solids, &positions, &in_front));
+    if (!in_front) goto cleanup;
+    projected.solids = solids;
+    j.parts = &projected;
+    SKG_TRY_CLEANUP(skg_cells_amounts(parts, &amounts));
+    j.amounts = (const skg_cell_amount *)amounts;
+    SKG_TRY_CLEANUP(find_beam(physics, spectrum, &j));
+    SKG_TRY_CLEANUP(skg_alloc(RAYS * RAYS, sizeof *j.passed, "cells", &j.passed));
+    j.grid.rows = RAYS;
+    SKG_TRY_CLEANUP(skg_columns_span(&j.grid, parts->count, solids, &j.rows));
+    SKG_TRY_CLEANUP(skg_parallel(RAYS, judge_row, &j));
+    *error = verdict(&j);
+cleanup:
+    skg_free(&solids);
+    skg_free(&positions);
+    skg_free(&amounts);
+    skg_free(&j.rows);
+    skg_free(&j.mu);
+    skg_free(&j.weight);
+    skg_free(&j.passed);
+    return status;
+}
