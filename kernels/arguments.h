@@ -146,7 +146,7 @@
 #define SKG_ARGUMENTS_WEIGHTS(X) \
     X(WEIGHTS, args) X(WEIGHTS, copies) X(WEIGHTS, used) X(WEIGHTS, coefficients) X(WEIGHTS, weights_of_nodes) \
     X(WEIGHTS, lists) X(WEIGHTS, polynomials) X(WEIGHTS, tables) X(WEIGHTS, adjoint) X(WEIGHTS, channel) X(WEIGHTS, wanted) \
-    X(WEIGHTS, rays) X(WEIGHTS, of_planes) X(WEIGHTS, weights) X(WEIGHTS, most) X(WEIGHTS, of_rays)
+    X(WEIGHTS, rays) X(WEIGHTS, of_planes) X(WEIGHTS, relative) X(WEIGHTS, weights) X(WEIGHTS, most) X(WEIGHTS, of_rays)
 
 #define SKG_ARGUMENTS_LOGARITHM(X) X(LOGARITHM, image) X(LOGARITHM, output)
 

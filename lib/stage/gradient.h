@@ -64,6 +64,8 @@ typedef struct {
         channel;  /* of the intensities whose derivatives they are; -1: those of a loss, by memory->adjoint */
     int32_t of;   /* SKG_WEIGHTS_OF_... */
     int32_t rays; /* SKG_RAYS_... */
+    int32_t relative; /* 1: see skg_transposition */
+    int32_t reserved;
     const uint8_t
         *parts; /* [parts] 0: what hits of this part are worth is not wanted; NULL: that of all is */
 } skg_weights_wanted;
