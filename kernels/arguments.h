@@ -88,7 +88,7 @@
     X(HITS_SETTLE, sums)
 
 #define SKG_ARGUMENTS_HITS_SLOPES(X) \
-    X(HITS_SLOPES, args) X(HITS_SLOPES, parts) X(HITS_SLOPES, contributions) X(HITS_SLOPES, counts) \
+    X(HITS_SLOPES, args) X(HITS_SLOPES, touch) X(HITS_SLOPES, parts) X(HITS_SLOPES, contributions) X(HITS_SLOPES, counts) \
     X(HITS_SLOPES, starts) X(HITS_SLOPES, hits) X(HITS_SLOPES, table) X(HITS_SLOPES, weights) X(HITS_SLOPES, slopes)
 
 #define SKG_ARGUMENTS_GRADIENT_FACES(X) \

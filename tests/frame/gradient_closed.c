@@ -95,7 +95,141 @@ START_TEST(deep_pixels_have_their_derivatives) {
 }
 END_TEST
 
+/* --- parts that touch */
+
+enum { BLOCKS = 3 };
+
+/* A box: its size, where its middle is along the normal of the face at which blocks touch, mm; 1/cm. */
+typedef struct {
+    double size[3], at, mu;
+    int32_t priority;
+} block;
+
+typedef struct {
+    const char *name;
+    block blocks[BLOCKS];
+    double face; /* where the face crosses the z axis; the detector stands at 200 */
+    int64_t moving;
+    double right; /* 1/cm: the change of the attenuation for a mm of the ray */
+} touch_case;
+
+#define BEHIND {90, 97, 150}, 75 /* begins at the face, and ends behind the detector */
+static const touch_case touch_cases[] = {
+    {.name = "hidden, the first",
+     .blocks = {{{90, 91, 15}, -7.5, 0.3, 0}, {{92, 90, 15}, 7.5, 0.5, 0}, {{33, 31, 10}, 0, 0.1, 1}},
+     .moving = 0,
+     .right = -0.3},
+    {.name = "hidden, the second",
+     .blocks = {{{90, 91, 15}, -7.5, 0.3, 0}, {{92, 90, 15}, 7.5, 0.5, 0}, {{33, 31, 10}, 0, 0.1, 1}},
+     .moving = 1,
+     .right = 0.5},
+    {.name = "one that wins, before the other",
+     .blocks = {{{90, 91, 15}, -7.5, 0.3, 1}, {BEHIND, 0.5, 0}},
+     .face = 150,
+     .moving = 0,
+     .right = 0},
+    {.name = "the other",
+     .blocks = {{{90, 91, 15}, -7.5, 0.3, 1}, {BEHIND, 0.5, 0}},
+     .face = 150,
+     .moving = 1,
+     .right = -0.5},
+    {.name = "one that wins, behind the other",
+     .blocks = {{{90, 91, 15}, -7.5, 0.3, 0}, {BEHIND, 0.5, 1}},
+     .face = 150,
+     .moving = 1,
+     .right = -0.5},
+    {.name = "one that wins begins where the other does",
+     .blocks = {{{60, 61, 150}, 75, 0.3, 1}, {BEHIND, 0.5, 0}},
+     .face = 150,
+     .moving = 0,
+     .right = -0.3 + 0.5},
+    {.name = "the other begins there",
+     .blocks = {{{60, 61, 150}, 75, 0.3, 1}, {BEHIND, 0.5, 0}},
+     .face = 150,
+     .moving = 1,
+     .right = -0.5},
+};
+enum { TOUCH_CASES = sizeof touch_cases / sizeof *touch_cases };
+
+/* Where blocks are turned to, so that the depths of both faces are rounded: about y, then about x. */
+static const double turns[][2] = {{0, 0}, {0.31, -0.22}, {0.93, 0.4}};
+enum { TURNS = sizeof turns / sizeof *turns };
+
+static void turn_blocks(const double turn[2], double pose[16]) {
+    const double cy = cos(turn[0]), sy = sin(turn[0]), cx = cos(turn[1]), sx = sin(turn[1]);
+    const double rows[16] = {cy, 0, sy, 0, sx * sy, cx, -sx * cy, 0, -cx * sy, sx, cx * cy, 0, 0, 0, 0, 1};
+    memcpy(pose, rows, sizeof rows);
+}
+
+static void make_blocks(const touch_case *c, const double turned[16]) {
+    static const char *const names[BLOCKS] = {"first", "second", "cover"};
+    ck_skg(skg_scene_create(run_context, &scene));
+    for (int b = 0; b < BLOCKS && c->blocks[b].mu > 0; b++) {
+        const block *own = &c->blocks[b];
+        solid s = solid_box(own->size[0], own->size[1], own->size[2]);
+        skg_part part;
+        skg_part_init(&part);
+        part.mesh = run_mesh(&s);
+        part.label = names[b], part.inside = -1, part.priority = own->priority;
+        memcpy(part.pose, turned, sizeof part.pose);
+        for (int k = 0; k < 3; k++) part.pose[4 * k + 3] = own->at * turned[4 * k + 2];
+        part.pose[11] += c->face;
+        ck_skg(skg_material_create_mu(names[b], own->mu, &part.material));
+        ck_skg(skg_scene_part_add(scene, &part, NULL));
+        skg_material_release(&part.material);
+        skg_mesh_release(&part.mesh);
+        solid_free(&s);
+    }
+}
+
+/* The cosine of the ray to a pixel and the normal of the face. */
+static double cosine_of(const skg_view *view, const double turned[16], int pixel) {
+    const double across = pixel % SIDE - (SIDE - 1) / 2.0, down = pixel / SIDE - (SIDE - 1) / 2.0;
+    const int parallel = view->projection == SKG_PROJECTION_PARALLEL;
+    double along = 0, length = 0;
+    for (int k = 0; k < 3; k++) {
+        const double at = across * view->column_step[k] + down * view->row_step[k];
+        const double way = view->centre[k] - view->source[k] + (parallel ? 0 : at);
+        along += way * turned[4 * k + 2], length += way * way;
+    }
+    return along / sqrt(length);
+}
+
+/* A block moves by a mm along the normal. Where one displaces the other the image has a kink; the derivative is that of the side to which a
+ * gap opens, or the one that displaces recedes. */
+START_TEST(touching_parts_have_one_side) {
+    static double chosen[PIXELS], found[PIXELS];
+    const touch_case *c = &touch_cases[_i / 4 % TOUCH_CASES];
+    const double *turn = turns[_i / 4 / TOUCH_CASES];
+    double turned[16], twist[6] = {0}, sum = 0, all = 0;
+    skg_view view = run_view(SIDE, 0.9);
+    view.source[0] = 3, view.source[1] = -2;
+    if (_i % 2) view.projection = SKG_PROJECTION_PARALLEL;
+    turn_blocks(turn, turned);
+    make_blocks(c, turned);
+    skg_plan *plan = plan_of(&view, _i / 2 % 2, 1, NULL);
+    for (int k = 0; k < 3; k++) twist[k] = turned[4 * k + 2];
+    for (int p = 0; p < PIXELS; p++)
+        chosen[p] = abs(2 * (p % SIDE) - SIDE + 1) < 12 && abs(2 * (p / SIDE) - SIDE + 1) < 12;
+    const double got = find_both(plan, c->moving, twist, chosen, found);
+    for (int p = 0; p < PIXELS; p++) {
+        const double right = c->right / 10 / cosine_of(&view, turned, p);
+        if (chosen[p] == 0) continue;
+        sum += right, all += fabs(right);
+        /* single: the normals of faces by corners that are rounded */
+        ck_assert_msg(fabs(found[p] - right) <= 2e-5, "%s, turn %d, pixel %d: %.9g, not %.9g", c->name,
+                      _i / 4 / TOUCH_CASES, p, found[p], right);
+    }
+    /* the same */
+    ck_assert_msg(fabs(got - sum) <= 2e-5 * fmax(all, 1), "%s, turn %d: gradient %.9g, not %.9g", c->name,
+                  _i / 4 / TOUCH_CASES, got, sum);
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+}
+END_TEST
+
 void add_closed_tests(TCase *tests) {
     tcase_add_loop_test(tests, deep_pixels_have_their_derivatives, 0,
                         2 * sizeof deep_cases / sizeof *deep_cases);
+    tcase_add_loop_test(tests, touching_parts_have_one_side, 0, 4 * TURNS * TOUCH_CASES);
 }
