@@ -25,13 +25,14 @@ typedef struct {
 void skg_gradient_memory_release(skg_gradient_memory *memory);
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
 
-/* What stands around each part: the contributions of all parts that it is inside. */
+/* What stands around each part: the contributions of all parts that it is inside; or what the part is made of, with its own. */
 typedef struct {
     const int32_t *first; /* [parts + 1] those of part p are list[first[p]] to list[first[p + 1] - 1] */
     const skg_contribution *list;
     /* [parts] 1: the part is of the material around it. It has one of those contributions so that it is drawn, and only its
      * fourth moments count. */
     const uint8_t *same;
+    const uint8_t *of_own; /* [parts] 1: what the part itself is made of is listed */
 } skg_surroundings;
 
 /* What the gather of a pass leaves. */

@@ -102,7 +102,7 @@ enum { BLOCKS = 3 };
 /* A box: its size, where its middle is along the normal of the face at which blocks touch, mm; 1/cm. */
 typedef struct {
     double size[3], at, mu;
-    int32_t priority;
+    int32_t priority, within; /* within: the number of the box that it lies inside, from 1; 0: none */
 } block;
 
 typedef struct {
@@ -170,7 +170,7 @@ static void make_blocks(const touch_case *c, const double turned[16]) {
         skg_part part;
         skg_part_init(&part);
         part.mesh = run_mesh(&s);
-        part.label = names[b], part.inside = -1, part.priority = own->priority;
+        part.label = names[b], part.inside = own->within - 1, part.priority = own->priority;
         memcpy(part.pose, turned, sizeof part.pose);
         for (int k = 0; k < 3; k++) part.pose[4 * k + 3] = own->at * turned[4 * k + 2];
         part.pose[11] += c->face;
@@ -228,8 +228,41 @@ START_TEST(touching_parts_have_one_side) {
 }
 END_TEST
 
+/* --- little matter within much */
+
+/* A slab of air, a thousand times thinner than the tissue around it: what it contributes is the difference of both, but the derivative by its
+ * density is its own attenuation. */
+START_TEST(thin_matter_has_its_density) {
+    static double chosen[PIXELS];
+    const touch_case slab = {.blocks = {{{190, 191, 60}, 0, 0.2, 0}, {{90, 91, 10}, 3, 2e-4, 0, 1}}};
+    double turned[16], densities[PARTS], air = 0, tissue = 0;
+    skg_gradient gradient;
+    skg_view view = run_view(SIDE, 0.9);
+    view.source[0] = 3, view.source[1] = -2;
+    turn_blocks(turns[1], turned);
+    make_blocks(&slab, turned);
+    skg_plan *plan = plan_of(&view, _i % 2, 1, NULL);
+    for (int p = 0; p < PIXELS; p++) {
+        chosen[p] = p % 7 == 0 && p / SIDE > 7 && p / SIDE < 16;
+        air += chosen[p] * 2e-5 * 10 / cosine_of(&view, turned, p);
+        tissue += chosen[p] * 0.02 * (60 - 10) / cosine_of(&view, turned, p);
+    }
+    const skg_adjoint given = adjoint_of(chosen);
+    skg_gradient_init(&gradient);
+    gradient.densities = densities;
+    ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
+    /* docs/numerics.md, Accuracy */
+    ck_assert_msg(fabs(densities[1] - air) <= 2e-5 * air, "air %.9g, not %.9g", densities[1], air);
+    ck_assert_msg(fabs(densities[0] - tissue) <= 2e-5 * tissue, "tissue %.9g, not %.9g", densities[0],
+                  tissue);
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+}
+END_TEST
+
 void add_closed_tests(TCase *tests) {
     tcase_add_loop_test(tests, deep_pixels_have_their_derivatives, 0,
                         2 * sizeof deep_cases / sizeof *deep_cases);
     tcase_add_loop_test(tests, touching_parts_have_one_side, 0, 4 * TURNS * TOUCH_CASES);
+    tcase_add_loop_test(tests, thin_matter_has_its_density, 0, 2);
 }
