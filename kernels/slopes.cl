@@ -12,18 +12,21 @@ static skg_real skg_taken_off(__global const skg_part_entry *part, __global cons
 }
 
 /* Faces of parts that touch differ by their rounding alone. There the sums have a kink if one part displaces another, and rounding would
- * choose its side pixel by pixel. So hits within `touch` of each other are taken in one order: that in which parts which touch are apart,
- * and a part that displaces another one, or is inside it, is the smaller. Hits of one part keep their order. */
+ * choose its side pixel by pixel. So hits within `touch` of each other are taken in one order. Two parts that touch are taken to be apart, as
+ * they are where their bounds do not meet, and none competes. Of more, all are the least bit larger, so that parts which meet over
+ * another one leave no gap. Of faces that look one way, that of the part which displaces the other, or which the other is inside, is the
+ * farther out: several that displace another one from the same place have the derivatives that each has alone. Hits of one part keep
+ * their order. */
 #define SKG_TOUCHING 16
 
 static int skg_is_listed_in(__global const int *set, int slot) {
     return (int)((uint)set[slot / 32] >> (slot % 32) & 1);
 }
 
-/* Whether a slot is inside another one, or displaces it or what that is inside. */
-static int skg_is_smaller(__global const int *table, int slot, int than) {
+/* Whether a slot displaces another one or what that is inside, or that is inside it. */
+static int skg_is_larger(__global const int *table, int slot, int than) {
     __global const int *over = table + than * SKG_ENTRY + 2, *around = over + SKG_WORDS;
-    if (skg_is_listed_in(over, slot) || skg_is_listed_in(table + slot * SKG_ENTRY + 2 + SKG_WORDS, than)) return 1;
+    if (skg_is_listed_in(over, slot) || skg_is_listed_in(around, slot)) return 1;
     for (int w = 0; w < SKG_WORDS; w++)
         for (uint rest = (uint)around[w]; rest; rest &= rest - 1) {
             const int up = 32 * w + 31 - (int)clz(rest & (~rest + 1));
@@ -32,31 +35,37 @@ static int skg_is_smaller(__global const int *table, int slot, int than) {
     return 0;
 }
 
-/* How far a hit is put: what leaves stands before what enters, and what does both between them. */
-static int skg_phase(__global const skg_listed *hits, int count, int k) {
-    const int enters = hits[k].code & 1;
-    for (int m = enters ? k + 1 : 0; m < (enters ? count : k); m++)
+/* What enters stands before what leaves, or if they are apart behind it, and parts that do both between them. */
+static int skg_phase(__global const skg_listed *hits, int count, int apart, int k) {
+    for (int m = 0; m < count; m++)
         if (hits[m].code == (hits[k].code ^ 1)) return 1;
-    return 2 * enters;
+    return (hits[k].code & 1) == apart ? 2 : 0;
 }
 
-static int skg_precedes(__global const skg_listed *hits, int count, __global const int *table, int k, int other) {
+static int skg_precedes(__global const skg_listed *hits, int count, int apart, __global const int *table, int k, int other) {
     const int a = hits[k].code / 2, b = hits[other].code / 2;
-    const int phase = skg_phase(hits, count, k), behind = skg_phase(hits, count, other);
-    if (a == b) return k < other;
-    if (phase != behind || phase == 1) return phase < behind;
-    return phase == 0 ? skg_is_smaller(table, a, b) : skg_is_smaller(table, b, a);
+    const int phase = skg_phase(hits, count, apart, k), behind = skg_phase(hits, count, apart, other);
+    if (phase != behind) return phase < behind;
+    if (a == b || phase == 1) return k < other;
+    return hits[k].code & 1 ? skg_is_larger(table, a, b) : skg_is_larger(table, b, a);
 }
 
 /* The order of a few hits that are all at one place. */
 static void skg_order_hits(__global const skg_listed *hits, int count, __global const int *table, uchar *order) {
     uint left = (1u << count) - 1;
+    int apart = 1, second = -1;
+    for (int k = 0; k < count; k++) {
+        const int slot = hits[k].code / 2;
+        if (slot == hits[0].code / 2 || slot == second) continue;
+        apart &= second < 0;
+        second = slot;
+    }
     for (int place = 0; place < count; place++) {
         int next = -1;
         for (int k = 0; k < count && next < 0; k++) {
             int is_first = (int)(left >> k & 1);
             for (int other = 0; other < count && is_first; other++)
-                if (other != k && (left >> other & 1)) is_first = !skg_precedes(hits, count, table, other, k);
+                if (other != k && (left >> other & 1)) is_first = !skg_precedes(hits, count, apart, table, other, k);
             if (is_first) next = k;
         }
         if (next < 0) next = 31 - (int)clz(left & (~left + 1));

@@ -97,7 +97,7 @@ END_TEST
 
 /* --- parts that touch */
 
-enum { BLOCKS = 3 };
+enum { BLOCKS = 4 };
 
 /* A box: its size, where its middle is along the normal of the face at which blocks touch, mm; 1/cm. */
 typedef struct {
@@ -142,12 +142,36 @@ static const touch_case touch_cases[] = {
      .blocks = {{{60, 61, 150}, 75, 0.3, 1}, {BEHIND, 0.5, 0}},
      .face = 150,
      .moving = 0,
-     .right = -0.3 + 0.5},
+     .right = -0.3},
     {.name = "the other begins there",
      .blocks = {{{60, 61, 150}, 75, 0.3, 1}, {BEHIND, 0.5, 0}},
      .face = 150,
      .moving = 1,
-     .right = -0.5},
+     .right = 0},
+    {.name = "one of two that end where the third begins, over the fourth",
+     .blocks = {{{90, 91, 15}, -7.5, 0.3, 1},
+                {{92, 90, 15}, 7.5, 0.5, 1},
+                {{91, 93, 15}, -7.5, 0.7, 1},
+                {{70, 71, 25}, 0, 0.2, 0}},
+     .moving = 0,
+     .right = 0},
+    {.name = "the other one",
+     .blocks = {{{90, 91, 15}, -7.5, 0.3, 1},
+                {{92, 90, 15}, 7.5, 0.5, 1},
+                {{91, 93, 15}, -7.5, 0.7, 1},
+                {{70, 71, 25}, 0, 0.2, 0}},
+     .moving = 2,
+     .right = 0},
+    {.name = "one of two that begin there and win",
+     .blocks = {{{60, 61, 150}, 75, 0.3, 1}, {BEHIND, 0.5, 0}, {{62, 60, 150}, 75, 0.1, 1}},
+     .face = 150,
+     .moving = 0,
+     .right = -0.3},
+    {.name = "the other one of the two",
+     .blocks = {{{60, 61, 150}, 75, 0.3, 1}, {BEHIND, 0.5, 0}, {{62, 60, 150}, 75, 0.1, 1}},
+     .face = 150,
+     .moving = 2,
+     .right = -0.1},
 };
 enum { TOUCH_CASES = sizeof touch_cases / sizeof *touch_cases };
 
@@ -162,7 +186,7 @@ static void turn_blocks(const double turn[2], double pose[16]) {
 }
 
 static void make_blocks(const touch_case *c, const double turned[16]) {
-    static const char *const names[BLOCKS] = {"first", "second", "cover"};
+    static const char *const names[BLOCKS] = {"first", "second", "third", "fourth"};
     ck_skg(skg_scene_create(run_context, &scene));
     for (int b = 0; b < BLOCKS && c->blocks[b].mu > 0; b++) {
         const block *own = &c->blocks[b];
@@ -195,8 +219,8 @@ static double cosine_of(const skg_view *view, const double turned[16], int pixel
     return along / sqrt(length);
 }
 
-/* A block moves by a mm along the normal. Where one displaces the other the image has a kink; the derivative is that of the side to which a
- * gap opens, or the one that displaces recedes. */
+/* A block moves by a mm along the normal. Where one displaces the other the image has a kink; the derivative is that of the side to which a gap
+ * opens, or the one that displaces is the larger; of three that meet, that on which they overlap. */
 START_TEST(touching_parts_have_one_side) {
     static double chosen[PIXELS], found[PIXELS];
     const touch_case *c = &touch_cases[_i / 4 % TOUCH_CASES];
