@@ -42,7 +42,7 @@ static int skg_phase(__global const skg_listed *hits, int count, int apart, int 
     return (hits[k].code & 1) == apart ? 2 : 0;
 }
 
-static int skg_precedes(__global const skg_listed *hits, int count, int apart, __global const int *table, int k, int other) {
+SKG_APART int skg_precedes(__global const skg_listed *hits, int count, int apart, __global const int *table, int k, int other) {
     const int a = hits[k].code / 2, b = hits[other].code / 2;
     const int phase = skg_phase(hits, count, apart, k), behind = skg_phase(hits, count, apart, other);
     if (phase != behind) return phase < behind;
@@ -51,7 +51,7 @@ static int skg_precedes(__global const skg_listed *hits, int count, int apart, _
 }
 
 /* The order of a few hits that are all at one place. */
-static void skg_order_hits(__global const skg_listed *hits, int count, __global const int *table, uchar *order) {
+SKG_APART void skg_order_hits(__global const skg_listed *hits, int count, __global const int *table, uchar *order) {
     uint left = (1u << count) - 1;
     int apart = 1, second = -1;
     for (int k = 0; k < count; k++) {
@@ -84,7 +84,7 @@ typedef struct {
 } skg_losing;
 
 /* What all that lose there would add for a unit of length. */
-static skg_real skg_all_off(const skg_losing *l, const int *winding, const uint *active) {
+SKG_APART skg_real skg_all_off(const skg_losing *l, const int *winding, const uint *active) {
     uint dropped[SKG_WORDS];
     skg_real off = 0;
     skg_drop(l->table, active, dropped);

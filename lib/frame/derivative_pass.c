@@ -70,20 +70,21 @@ typedef struct {
     skg_pass_direction *directions; /* of moving */
     skg_geometry_part *drawn;       /* [parts] as the kernels gather them */
     uint8_t *weighed;               /* [parts] whose weights are needed */
-    double *rays;      /* [rows][columns] if pixels have several rays, or scales of their own; else NULL */
-    double *exponents; /* [rows][stride] of the powers of two that rays are over; NULL: none are */
-    double *values;    /* the same along one direction, which is added to: rays, or a channel of the image */
+    double *rays;         /* [rows][columns] if pixels have several rays, or scales of their own; else NULL */
+    skg_seen_lines lines; /* faces that are seen as lines along a direction */
+    double *exponents;    /* [rows][stride] of the powers of two that rays are over; NULL: none are */
+    double *values; /* the same along one direction, which is added to: rays, or a channel of the image */
 } pass_run;
 
 /* Adds the faces that are seen as lines, with the weights that stand on the device. */
 static skg_status add_edges(pass_run *r, int64_t direction) {
     skg_moving_parts *moving = &r->moving;
-    for (int64_t p = 0; p < r->pass->scene->count; p++) {
+    for (int64_t p = 0; r->lines.any && p < r->pass->scene->count; p++) {
         const skg_face_moments *faces = &moving->faces[p];
         if (!moving->moves_now[p] || r->drawn[p].contributions == 0) continue;
         const skg_velocities v = skg_moving_velocities(moving, direction, p);
         for (int64_t f = 0; f < faces->mesh->triangles; f++) {
-            if (!moving->seen[p].edge_on[f]) continue;
+            if (!r->lines.faces[moving->first[p] + f]) continue;
             SKG_TRY(skg_edge_weights_read(r->job, p, &moving->of_edges));
             SKG_TRY(skg_slopes_spread(faces, &v, f, r->values));
         }
@@ -143,7 +144,7 @@ static skg_status scatter(pass_run *r, double largest) {
     if (r->drawn != pass->parts)
         SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, r->drawn, scale));
     SKG_TRY(skg_gradient_scatter(&other, geometry, &machine->hits, &machine->gradient, &r->job->staging,
-                                 r->moving.moves_now, largest, r->values));
+                                 r->moving.moves_now, largest, &r->lines, r->values));
     if (r->drawn != pass->parts)
         SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, scale));
     geometry->state = state; /* the sums of the pass stand as before */
@@ -248,6 +249,7 @@ skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int
         SKG_TRY_CLEANUP(
             skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *r.rays, "derivative", &r.rays));
     SKG_TRY_CLEANUP(skg_alloc(pass->scene->count, 1, "derivative", &r.weighed));
+    SKG_TRY_CLEANUP(skg_alloc(job->machine->geometry.triangles, 1, "derivative", &r.lines.faces));
     SKG_TRY_CLEANUP(find_directions(&r, number));
     SKG_TRY_CLEANUP(skg_gradient_draw_competitors(job, pass, &r.drawn));
     find_weighed(pass, r.moving.moves, r.weighed);
@@ -259,5 +261,6 @@ cleanup:
     skg_free(&r.weighed);
     skg_free(&r.rays);
     skg_free(&r.exponents);
+    skg_free(&r.lines.faces);
     return status;
 }

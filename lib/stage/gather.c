@@ -14,7 +14,7 @@ void skg_gradient_memory_release(skg_gradient_memory *memory) {
     skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,   &memory->scales,
                                    &memory->moments, &memory->slopes,  &memory->around, &memory->first_around,
                                    &memory->lengths, &memory->faces,   &memory->node,   &memory->of_rays,
-                                   &memory->wanted};
+                                   &memory->wanted,  &memory->lines};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     skg_free(&memory->reals);
     skg_free(&memory->corners);
@@ -27,7 +27,7 @@ int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
     return memory->adjoint.bytes + memory->weights.bytes + memory->most.bytes + memory->scales.bytes +
            memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes + memory->faces.bytes +
            memory->node.bytes + memory->around.bytes + memory->first_around.bytes + memory->of_rays.bytes +
-           memory->wanted.bytes;
+           memory->wanted.bytes + memory->lines.bytes;
 }
 
 static skg_weight_layout layout_of(const skg_pass *pass) {
@@ -212,6 +212,7 @@ skg_status skg_gather_faces(const skg_gather_run *run) {
         SKG_ARGUMENT(GRADIENT_FACES, hits, h->hits.memory),
         SKG_ARGUMENT(GRADIENT_FACES, slopes, m->slopes.memory),
         SKG_ARGUMENT(GRADIENT_FACES, face_slopes, m->faces.memory),
+        SKG_ARGUMENT(GRADIENT_FACES, lines, m->lines.memory),
     };
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_gradient_faces", "gradient", &work, arguments,
                            &run->staging->log);

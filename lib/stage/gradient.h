@@ -12,7 +12,7 @@
 /* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
     skg_buffer adjoint, weights, most, of_rays, wanted, scales, moments, slopes, lengths, faces, node, around,
-        first_around;
+        first_around, lines;
     int32_t *wanted_now; /* [wanted_count] what the device has in `wanted` */
     int64_t wanted_count;
     skg_host_view sums; /* of `moments` */
@@ -102,14 +102,22 @@ skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradien
 /* Ends the use of moments. */
 void skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory);
 
+/* Faces of parts that move which the device sees as lines. */
+typedef struct {
+    uint8_t *faces; /* [triangles] in the device's order: 1: it is one; left alone if none is */
+    int32_t any, reserved;
+} skg_seen_lines;
+
 /* Adds up the derivatives of the rays of a pass by these slopes, and waits for them.
  *
  * moves     [parts] 0: the part does not, and its slopes are not looked at
  * largest   the largest magnitude of the slopes of parts that move
+ * lines     result: faces that are seen as lines, which add nothing
  * values    [rows][columns] to which they are added */
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, const uint8_t *moves, double largest, double *values);
+                                skg_staging *staging, const uint8_t *moves, double largest,
+                                skg_seen_lines *lines, double *values);
 
 /* Reads reals in the precision of the pass as doubles, from number `first` on, and waits. */
 skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,
