@@ -88,7 +88,7 @@
     X(HITS_SETTLE, sums)
 
 #define SKG_ARGUMENTS_HITS_SLOPES(X) \
-    X(HITS_SLOPES, args) X(HITS_SLOPES, parts) X(HITS_SLOPES, contributions) X(HITS_SLOPES, counts) \
+    X(HITS_SLOPES, args) X(HITS_SLOPES, touch) X(HITS_SLOPES, parts) X(HITS_SLOPES, contributions) X(HITS_SLOPES, counts) \
     X(HITS_SLOPES, starts) X(HITS_SLOPES, hits) X(HITS_SLOPES, table) X(HITS_SLOPES, weights) X(HITS_SLOPES, slopes)
 
 #define SKG_ARGUMENTS_GRADIENT_FACES(X) \
@@ -97,7 +97,7 @@
     X(GRADIENT_FACES, first_around) X(GRADIENT_FACES, around) \
     X(GRADIENT_FACES, moments) X(GRADIENT_FACES, slots) X(GRADIENT_FACES, shifts) X(GRADIENT_FACES, counts) \
     X(GRADIENT_FACES, starts) X(GRADIENT_FACES, hits) X(GRADIENT_FACES, slopes) \
-    X(GRADIENT_FACES, face_slopes)
+    X(GRADIENT_FACES, face_slopes) X(GRADIENT_FACES, lines)
 
 #define SKG_ARGUMENTS_GRADIENT_BATCHES(X) \
     X(GRADIENT_BATCHES, args) X(GRADIENT_BATCHES, corners) X(GRADIENT_BATCHES, projected) X(GRADIENT_BATCHES, parts) \
@@ -108,7 +108,7 @@
 #define SKG_ARGUMENTS_DERIVATIVE_BATCHES(X) \
     X(DERIVATIVE_BATCHES, args) X(DERIVATIVE_BATCHES, corners) X(DERIVATIVE_BATCHES, projected) \
     X(DERIVATIVE_BATCHES, parts) X(DERIVATIVE_BATCHES, blocks) X(DERIVATIVE_BATCHES, contributions) \
-    X(DERIVATIVE_BATCHES, weights) X(DERIVATIVE_BATCHES, scales) X(DERIVATIVE_BATCHES, face_slopes) \
+    X(DERIVATIVE_BATCHES, weights) X(DERIVATIVE_BATCHES, scales) X(DERIVATIVE_BATCHES, face_slopes) X(DERIVATIVE_BATCHES, lines) \
     X(DERIVATIVE_BATCHES, sums)
 
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
@@ -146,7 +146,7 @@
 #define SKG_ARGUMENTS_WEIGHTS(X) \
     X(WEIGHTS, args) X(WEIGHTS, copies) X(WEIGHTS, used) X(WEIGHTS, coefficients) X(WEIGHTS, weights_of_nodes) \
     X(WEIGHTS, lists) X(WEIGHTS, polynomials) X(WEIGHTS, tables) X(WEIGHTS, adjoint) X(WEIGHTS, channel) X(WEIGHTS, wanted) \
-    X(WEIGHTS, rays) X(WEIGHTS, of_planes) X(WEIGHTS, weights) X(WEIGHTS, most) X(WEIGHTS, of_rays)
+    X(WEIGHTS, rays) X(WEIGHTS, of_planes) X(WEIGHTS, relative) X(WEIGHTS, weights) X(WEIGHTS, most) X(WEIGHTS, of_rays)
 
 #define SKG_ARGUMENTS_LOGARITHM(X) X(LOGARITHM, image) X(LOGARITHM, output)
 

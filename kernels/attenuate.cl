@@ -245,14 +245,16 @@ static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
 #endif
         }
     }
-    /* Only what the parts subtract is counted as negative. */
+    /* Only what the parts subtract is counted as negative, by the first node; the highest one may be another. */
+    int of_first = strip->args.world_plane >= 0 && strip->args.shown == SKG_SHOW_LOGARITHM;
 #if SKG_GENERAL
-    if (strip->args.shades.count > 0) {
+    of_first |= strip->args.shades.count > 0;
+#endif
+    if (of_first) {
         pixels->highest[r] = (skg_realv)(0);
         SKG_EACH_SUMMED
         pixels->highest[r] = fma((skg_realv)(strip->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
     }
-#endif
     if (strip->args.world_plane >= 0)
         pixels->highest[r] -= strip->coefficients[strip->args.world_plane] * skg_world_v(strip, r);
 }

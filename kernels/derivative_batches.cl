@@ -26,7 +26,8 @@ SKG_APART void skg_spread_triangles(const skg_gradient_args *args, __global cons
                                     __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                     __global const int *blocks, __global const skg_contribution *contributions,
                                     __global const skg_real *weights, __global const skg_real *scales,
-                                    __global const skg_real *face_slopes, __global long *sums, int run, int step) {
+                                    __global const skg_real *face_slopes, __global uchar *lines, __global long *sums, int run,
+                                    int step) {
     skg_target target;
     target.stride = args->stride;
     target.plane = args->plane;
@@ -40,6 +41,7 @@ SKG_APART void skg_spread_triangles(const skg_gradient_args *args, __global cons
     target.weights = weights;
     target.scales = scales;
     target.face_slopes = face_slopes;
+    target.lines = lines;
     target.parts_count = args->layout.parts;
     target.triangles = args->layout.triangles;
     target.moments = sums;
@@ -59,15 +61,17 @@ SKG_APART void skg_spread_triangles(const skg_gradient_args *args, __global cons
 
 /* As skg_gradient_faces with SKG_FORWARD, without priorities. Each work-item has its own sums, which it zeroes.
  *
+ * lines  as of skg_gradient_faces
  * sums   [work-items][plane and what stands behind it] in the layout of weights */
 __kernel __attribute__((reqd_work_group_size(1, 1, 1))) void
 skg_derivative_batches(skg_gradient_args args, __global const int *corners, __global const skg_real4 *projected,
                        __global const skg_part_entry *parts, __global const int *blocks,
                        __global const skg_contribution *contributions, __global const skg_real *weights,
-                       __global const skg_real *scales, __global const skg_real *face_slopes, __global long *sums) {
+                       __global const skg_real *scales, __global const skg_real *face_slopes, __global uchar *lines,
+                       __global long *sums) {
     const long size = args.plane + SKG_SPARE_ROWS * args.stride + SKG_SPARE_COLUMNS;
     __global long *own = sums + (long)get_global_id(0) * size;
     for (long k = 0; k < size; k++) own[k] = 0;
-    skg_spread_triangles(&args, corners, projected, parts, blocks, contributions, weights, scales, face_slopes, own,
+    skg_spread_triangles(&args, corners, projected, parts, blocks, contributions, weights, scales, face_slopes, lines, own,
                          (int)get_global_id(0), (int)get_global_size(0));
 }

@@ -146,12 +146,14 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
     }
 }
 
-/* Whether a face is seen as a line: narrower than 1e-4 pixels. A ray that hits it is an accident, and its slope has no bound. The host
- * integrates such faces over the pixels (lib/geometry/steep.h). */
+/* Whether a face is seen as a line: narrower than SKG_LINE pixels, or than what rounding makes of the places of its corners. A ray that hits it
+ * is an accident, and its slope has no bound. The host integrates such faces over the pixels (lib/geometry/steep.h). */
 static int skg_is_edge_on(skg_real4 a, skg_real4 b, skg_real4 c) {
     const skg_real4 ab = fabs(b - a), ac = fabs(c - a), bc = fabs(c - b);
     const skg_real longest = fmax(fmax(fmax(ab.x, ab.y), fmax(ac.x, ac.y)), fmax(bc.x, bc.y));
-    return fabs(skg_less(b.x - a.x, c.y - a.y, c.x - a.x, b.y - a.y)) * 10000 <= longest;
+    const skg_real4 most = fmax(fmax(fabs(a), fabs(b)), fabs(c));
+    const skg_real width = fmax((skg_real)SKG_LINE, SKG_LINE_ROUNDING * fmax(most.x, most.y));
+    return fabs(skg_less(b.x - a.x, c.y - a.y, c.x - a.x, b.y - a.y)) <= width * longest;
 }
 
 /* The moments of a face from its rows `first`, first + step, ... */
@@ -178,7 +180,8 @@ SKG_APART void skg_gather_face(skg_gathering *g, const skg_range *range, skg_rea
  *           With SKG_SLOPES_ALONE they are added to
  *           With SKG_FORWARD: [rows][stride] the sums over the hits of a pixel of weight times the slope of the hit
  * slots, shifts, counts, starts, hits, slopes: of skg_hits_slopes; SKG_PRIORITY
- * face_slopes   [triangles][3] slopes at the corners; SKG_FORWARD */
+ * face_slopes   [triangles][3] slopes at the corners; SKG_FORWARD
+ * lines         [triangles + 1] SKG_FORWARD, without SKG_SLOPES_ALONE: set to 1 of faces that are seen as lines, and behind all if there are any */
 __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *corners,
                                  __global const skg_real4 *projected, __global const skg_part_entry *parts,
                                  __global const int *blocks, __global const skg_contribution *contributions,
@@ -187,7 +190,8 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
                                  __global ulong *moments, __global const int *slots,
                                  __global const skg_real *shifts, __global const int *counts,
                                  __global const uint *starts, __global const skg_listed *hits,
-                                 __global const skg_real *slopes, __global const skg_real *face_slopes) {
+                                 __global const skg_real *slopes, __global const skg_real *face_slopes,
+                                 __global uchar *lines) {
     const int triangle = (int)get_global_id(0);
     if (triangle >= args.layout.triangles) return;
     skg_range range;
@@ -200,6 +204,7 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
     if (skg_is_edge_on(a, b, c)) {
         if (!SKG_FORWARD && !SKG_SLOPES_ALONE && get_global_id(1) == 0)
             moments[4 * (long)triangle] = SKG_EDGE_ON, moments[4 * (long)args.layout.triangles] = 1;
+        if (SKG_FORWARD && !SKG_SLOPES_ALONE && get_global_id(1) == 0) lines[triangle] = lines[args.layout.triangles] = 1;
         return;
     }
 #if SKG_SLOPES_ALONE

@@ -147,6 +147,11 @@ typedef struct {
 /* The first moment of a face that is seen as a line (kernels/gradient.cl). */
 #define SKG_EDGE_ON ((SKG_LONG)1 << 62)
 
+/* Faces that are narrower in the picture are seen as lines, in pixels. */
+#define SKG_LINE 1e-4f
+/* The same in last places of the farthest coordinate of their corners. */
+#define SKG_LINE_PLACES 16
+
 /* What skg_weights makes of the rays: nothing, two planes, or sums, of which there are SKG_RAY_SUMS. */
 #define SKG_RAYS_NONE 0
 #define SKG_RAYS_PLANES 1

@@ -8,7 +8,7 @@ typedef struct {
     __global const skg_real *adjoint;
     __global const int *wanted;
     __global skg_real *weights;
-    int channel, rays, of_planes;
+    int channel, rays, of_planes, relative;
 } skg_weighing;
 
 /* Planes of accumulators that weights are made for. */
@@ -92,13 +92,14 @@ static void skg_unfinish(const skg_strip *strip, const skg_pixels *pixels, skg_r
 /* Nodes that are added to the planes together, so that sums of many planes are loaded and stored more seldom. */
 #define SKG_TOGETHER 8
 
-/* The derivatives by the logarithm of the intensity of nodes first to first + count - 1, times ln 2; they are added to `shown`. */
+/* The derivatives by the logarithm of the intensity of nodes first to first + count - 1, times ln 2; they are added to `shown`.
+ * lifted: the intensities are divided by 2^highest. */
 static void skg_slopes_of_nodes(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS],
-                                int first, int count, skg_realv node[SKG_TOGETHER][SKG_RUNS], skg_realv *shown) {
+                                int lifted, int first, int count, skg_realv node[SKG_TOGETHER][SKG_RUNS], skg_realv *shown) {
     for (int n = 0; n < count; n++) {
         skg_realv power[SKG_RUNS];
         skg_exponents(strip->coefficients + (first + n) * SKG_PLANE_COUNT, pixels, power);
-        if (strip->args.shown == SKG_SHOW_LOGARITHM) SKG_EACH_RUN power[r] -= pixels->highest[r];
+        if (lifted) SKG_EACH_RUN power[r] -= pixels->highest[r];
         SKG_EACH_RUN {
             skg_realv weight = (skg_realv)(0);
             SKG_EACH_CHANNEL
@@ -112,11 +113,11 @@ static void skg_slopes_of_nodes(const skg_strip *strip, const skg_pixels *pixels
 
 /* Adds up the derivatives by the mm of the planes that are needed, and by the logarithm of the intensity. */
 static void skg_add_slopes(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS],
-                           const uchar *needed, skg_realv total[SKG_PLANES][SKG_RUNS], skg_realv *shown) {
+                           int lifted, const uchar *needed, skg_realv total[SKG_PLANES][SKG_RUNS], skg_realv *shown) {
     for (int first = 0; first < strip->args.nodes; first += SKG_TOGETHER) {
         const int count = min(SKG_TOGETHER, strip->args.nodes - first);
         skg_realv node[SKG_TOGETHER][SKG_RUNS];
-        skg_slopes_of_nodes(strip, pixels, slope, first, count, node, shown);
+        skg_slopes_of_nodes(strip, pixels, slope, lifted, first, count, node, shown);
         SKG_EACH_SUMMED {
             if (!needed[p]) continue;
             __constant const skg_real *coefficient = strip->coefficients + first * SKG_PLANE_COUNT + p;
@@ -193,12 +194,29 @@ static void skg_put_rays(const skg_strip *strip, const skg_weighing *weighing, c
     }
 }
 
+/* The whole power of two that is next to the intensity of a channel: that of each ray by itself, so that what is behind much has its
+ * digits still where weights are integers of one scale for the image. It stands in `highest`, and is written. */
+static void skg_lift(const skg_strip *strip, const skg_weighing *weighing, skg_pixels *pixels) {
+    skg_strip other = *strip;
+    other.args.shown = SKG_SHOW_LOGARITHM;
+    skg_exponents(strip->coefficients, pixels, pixels->highest);
+    skg_add_nodes(&other, pixels);
+    SKG_EACH_RUN {
+        const skg_realv shown = pixels->shown[weighing->channel][r];
+        const skg_realv power = shown > (skg_realv)(0) ? skg_log_v(shown) * (skg_real)(1 / SKG_LN2) : (skg_realv)(0);
+        pixels->highest[r] = floor(pixels->highest[r] + power);
+    }
+    skg_put_weights(strip, skg_weighed(strip) + 2, pixels->highest, weighing->weights);
+}
+
 static void skg_weigh_runs(const skg_strip *strip, const skg_weighing *weighing, skg_found *found) {
     skg_pixels pixels;
     skg_realv slope[SKG_CHANNELS][SKG_RUNS], total[SKG_PLANES][SKG_RUNS], unit[SKG_RUNS], length[SKG_RUNS];
     skg_realv path[SKG_RUNS], shown[SKG_RUNS];
     uchar needed[SKG_PLANES];
-    if (!skg_find_needed(strip, weighing, needed) && !weighing->of_planes && weighing->rays == SKG_RAYS_NONE) return;
+    if (!skg_find_needed(strip, weighing, needed) && !weighing->of_planes && weighing->rays == SKG_RAYS_NONE &&
+        !weighing->relative)
+        return;
     skg_read_planes(strip, &pixels);
     if (weighing->channel < 0)
         skg_read_adjoint(strip, weighing->adjoint, slope);
@@ -216,9 +234,12 @@ static void skg_weigh_runs(const skg_strip *strip, const skg_weighing *weighing,
         if (strip->args.shown == SKG_SHOW_LOGARITHM) {
             skg_exponents(strip->coefficients, &pixels, pixels.highest);
             skg_add_nodes(strip, &pixels);
+        } else if (weighing->relative) {
+            skg_lift(strip, weighing, &pixels);
         }
         SKG_EACH_RUN skg_unfinish(strip, &pixels, slope, r);
-        skg_add_slopes(strip, &pixels, slope, needed, total, shown);
+        const int lifted = strip->args.shown == SKG_SHOW_LOGARITHM || weighing->relative;
+        skg_add_slopes(strip, &pixels, slope, lifted, needed, total, shown);
     }
     SKG_EACH_SUMMED SKG_EACH_RUN path[r] = fma(total[p][r], pixels.x[p][r], path[r]);
     if (weighing->of_planes) {
@@ -290,9 +311,11 @@ SKG_APART void skg_weigh_strip(const skg_strip *whole, const skg_weighing *weigh
  * channel   else: the loss is this channel of each pixel by itself
  * wanted    [planes] 0: the weights of this plane of accumulators are not written
  * rays      SKG_RAYS_...: what is made of the rays. NONE: nothing
- * weights   [planes + 2][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators that is wanted, within its extent;
+ * weights   [planes + 3][rows of rays][row_stride]: d loss / d a unit of each plane of accumulators that is wanted, within its extent;
  *           with SKG_RAYS_PLANES then the sum over planes of mm times d loss / d mm; then d loss / d logarithm of the
  *           intensity. With of_planes instead: d loss / d mm of each plane that is mixed from accumulators, and nothing else
+ * relative  1: all that is written of a ray is divided by a power of two near its intensity, whose exponent is written as the third plane
+ *           behind those of accumulators; with channel >= 0, where intensities are shown
  * most      [planes][work-items] the largest magnitudes of the weights of accumulators
  * of_rays   [SKG_RAY_SUMS][work-items] SKG_RAYS_SUMS: sums over rays of what changes with their length, over its square: of what those two
  *           planes would have, the first less three times the second if intensities fall with the distance; of that times
@@ -301,8 +324,8 @@ __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copie
                           __constant const skg_real *coefficients, __constant const skg_real *weights_of_nodes,
                           __constant const skg_real *lists, __constant const skg_real *polynomials,
                           __global const skg_real *tables, __global const skg_real *adjoint, int channel,
-                          __global const int *wanted, int rays, int of_planes, __global skg_real *weights, __global skg_real *most,
-                          __global skg_real *of_rays) {
+                          __global const int *wanted, int rays, int of_planes, int relative, __global skg_real *weights,
+                          __global skg_real *most, __global skg_real *of_rays) {
     const int strips = (args.layout.columns + SKG_WIDE * SKG_RUNS * SKG_STRIP - 1) / (SKG_WIDE * SKG_RUNS * SKG_STRIP);
     skg_strip strip;
     strip.column = SKG_WIDE * SKG_RUNS * SKG_STRIP * (int)get_global_id(0);
@@ -317,6 +340,6 @@ __kernel void skg_weights(skg_attenuate_args args, __global const skg_sum *copie
     strip.polynomials = polynomials;
     strip.tables = tables;
     const long item = (long)get_global_id(1) * strips + get_global_id(0);
-    const skg_weighing weighing = {adjoint, wanted, weights, channel, rays, of_planes};
+    const skg_weighing weighing = {adjoint, wanted, weights, channel, rays, of_planes, relative};
     skg_weigh_strip(&strip, &weighing, most + item, of_rays + item, strips * (args.layout.rows / SKG_FINE));
 }

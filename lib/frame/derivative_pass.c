@@ -5,8 +5,10 @@
 #include "frame/derivative_slopes.h"
 #include "frame/gradient_faces.h"
 #include "frame/gradient_pass.h"
+#include "plan/decisions.h"
 #include "spectral/model.h"
 
+#include <math.h>
 #include <string.h>
 
 /* The velocity of a sample of the source: by differences, as in gradient_pass.c. */
@@ -68,19 +70,21 @@ typedef struct {
     skg_pass_direction *directions; /* of moving */
     skg_geometry_part *drawn;       /* [parts] as the kernels gather them */
     uint8_t *weighed;               /* [parts] whose weights are needed */
-    double *rays;                   /* [rows][columns] if pixels have several rays; else NULL */
+    double *rays;         /* [rows][columns] if pixels have several rays, or scales of their own; else NULL */
+    skg_seen_lines lines; /* faces that are seen as lines along a direction */
+    double *exponents;    /* [rows][stride] of the powers of two that rays are over; NULL: none are */
     double *values; /* the same along one direction, which is added to: rays, or a channel of the image */
 } pass_run;
 
 /* Adds the faces that are seen as lines, with the weights that stand on the device. */
 static skg_status add_edges(pass_run *r, int64_t direction) {
     skg_moving_parts *moving = &r->moving;
-    for (int64_t p = 0; p < r->pass->scene->count; p++) {
+    for (int64_t p = 0; r->lines.any && p < r->pass->scene->count; p++) {
         const skg_face_moments *faces = &moving->faces[p];
         if (!moving->moves_now[p] || r->drawn[p].contributions == 0) continue;
         const skg_velocities v = skg_moving_velocities(moving, direction, p);
         for (int64_t f = 0; f < faces->mesh->triangles; f++) {
-            if (!moving->seen[p].edge_on[f]) continue;
+            if (!r->lines.faces[moving->first[p] + f]) continue;
             SKG_TRY(skg_edge_weights_read(r->job, p, &moving->of_edges));
             SKG_TRY(skg_slopes_spread(faces, &v, f, r->values));
         }
@@ -140,11 +144,30 @@ static skg_status scatter(pass_run *r, double largest) {
     if (r->drawn != pass->parts)
         SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, r->drawn, scale));
     SKG_TRY(skg_gradient_scatter(&other, geometry, &machine->hits, &machine->gradient, &r->job->staging,
-                                 r->moving.moves_now, largest, r->values));
+                                 r->moving.moves_now, largest, &r->lines, r->values));
     if (r->drawn != pass->parts)
         SKG_TRY(skg_geometry_weigh(machine->context, geometry, &pass->camera, pass->parts, scale));
     geometry->state = state; /* the sums of the pass stand as before */
     return SKG_OK;
+}
+
+/* Reads by which power of two the weights of each ray are divided. */
+static skg_status read_exponents(pass_run *r) {
+    const skg_weight_layout layout = skg_attenuate_weight_layout(r->pass->main.raster, r->pass->fine);
+    if (!r->exponents) SKG_TRY(skg_alloc(layout.plane, sizeof *r->exponents, "derivative", &r->exponents));
+    return skg_gradient_read(r->pass, r->job->machine->gradient.weights.memory,
+                             (layout.planes + 2) * layout.plane, layout.plane, r->exponents);
+}
+
+/* Gives the rays their own scales back. */
+static void scale_rays(pass_run *r) {
+    const int64_t columns = r->pass->camera.columns, rows = r->pass->camera.rows;
+    const skg_weight_layout layout = skg_attenuate_weight_layout(r->pass->main.raster, r->pass->fine);
+    for (int64_t row = 0; row < rows; row++)
+        for (int64_t c = 0; c < columns; c++) {
+            double *ray = r->rays + row * columns + c;
+            if (*ray != 0) *ray = ldexp(*ray, (int)r->exponents[row * layout.stride + c]);
+        }
 }
 
 /* Adds the rays to the pixels of an image. */
@@ -172,6 +195,7 @@ static skg_status add_direction(pass_run *r, int64_t direction, int64_t channel)
     SKG_TRY(scatter(r, largest));
     SKG_TRY(add_edges(r, direction));
     if (changes_rays(r, direction)) SKG_TRY(add_rays(r, direction));
+    if (r->exponents) scale_rays(r);
     if (r->rays) add_pixels(r, image);
     return SKG_OK;
 }
@@ -204,10 +228,14 @@ static skg_status find_directions(pass_run *r, int64_t number) {
 /* The weights of a channel, then all directions. */
 static skg_status add_channel(pass_run *r, const skg_sums *sums, double factor, int64_t channel) {
     const int64_t count = r->job->gradient->direction_count;
-    skg_weights_wanted wanted = {.factor = factor, .channel = (int32_t)channel, .parts = r->weighed};
+    skg_weights_wanted wanted = {.factor = factor,
+                                 .channel = (int32_t)channel,
+                                 .relative = skg_decide_late_logarithm(r->job->recipe),
+                                 .parts = r->weighed};
     for (int64_t d = 0; d < count; d++)
         if (changes_rays(r, d)) wanted.rays = SKG_RAYS_PLANES;
     SKG_TRY(skg_gradient_weigh(r->job, r->pass, sums, &wanted));
+    if (wanted.relative) SKG_TRY(read_exponents(r));
     for (int64_t d = 0; d < count; d++) SKG_TRY(add_direction(r, d, channel));
     skg_edge_weights_clear(&r->moving.of_edges);
     return skg_derivative_add_changes(r->job, r->pass, sums, factor, channel);
@@ -217,10 +245,11 @@ skg_status skg_derivative_add_pass(skg_job *job, const skg_frame_work *work, int
                                    const skg_pass *pass, const skg_sums *sums, double factor) {
     pass_run r = {.job = job, .work = work, .pass = pass, .drawn = pass->parts};
     skg_status status = SKG_OK;
-    if (pass->fine > 1)
+    if (pass->fine > 1 || skg_decide_late_logarithm(job->recipe))
         SKG_TRY_CLEANUP(
             skg_alloc(pass->camera.rows * pass->camera.columns, sizeof *r.rays, "derivative", &r.rays));
     SKG_TRY_CLEANUP(skg_alloc(pass->scene->count, 1, "derivative", &r.weighed));
+    SKG_TRY_CLEANUP(skg_alloc(job->machine->geometry.triangles, 1, "derivative", &r.lines.faces));
     SKG_TRY_CLEANUP(find_directions(&r, number));
     SKG_TRY_CLEANUP(skg_gradient_draw_competitors(job, pass, &r.drawn));
     find_weighed(pass, r.moving.moves, r.weighed);
@@ -231,5 +260,7 @@ cleanup:
     skg_free(&r.directions);
     skg_free(&r.weighed);
     skg_free(&r.rays);
+    skg_free(&r.exponents);
+    skg_free(&r.lines.faces);
     return status;
 }

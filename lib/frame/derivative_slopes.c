@@ -31,6 +31,10 @@ static skg_status place_parts(skg_job *job, skg_moving_parts *moving) {
         skg_face_moments *faces = &moving->faces[p];
         SKG_TRY(skg_gradient_place_faces(job, moving->pass, p, faces));
         moving->edges[p] = (skg_part_edges){.all = &moving->of_edges, .part = p};
+        const skg_camera_place place = skg_geometry_place(&moving->pass->parts[p], 0);
+        skg_part_double entry;
+        skg_camera_part(&moving->pass->camera, &place, &entry);
+        faces->pixel[0] = entry.pixel_i, faces->pixel[1] = entry.pixel_j;
         faces->weigh = skg_edge_weigh;
         faces->weigh_user = &moving->edges[p];
         moving->first[p] = first;
@@ -55,13 +59,11 @@ static int64_t divide(const skg_geometry *geometry, const skg_moving_parts *movi
         const int64_t vertices = vertices_of(geometry, p), faces = moving->faces[p].mesh->triangles;
         if (!moving->moves[p]) continue;
         if (from)
-            moving->seen[p] =
-                (skg_seen_faces){.at = (double(*)[3])(from + used),
-                                 .pixel = (double(*)[2])(from + used + 3 * vertices),
-                                 .inverse = from + used + 5 * vertices,
-                                 .pull = (double(*)[3])(from + used + 6 * vertices),
-                                 .edge_on = (uint8_t *)(from + used + 6 * vertices + 3 * faces)};
-        used += 6 * vertices + 3 * faces + faces / (int64_t)sizeof *from + 1;
+            moving->seen[p] = (skg_seen_faces){.at = (double(*)[3])(from + used),
+                                               .pixel = (double(*)[2])(from + used + 3 * vertices),
+                                               .inverse = from + used + 5 * vertices,
+                                               .pull = (double(*)[3])(from + used + 6 * vertices)};
+        used += 6 * vertices + 3 * faces;
     }
     return used;
 }

@@ -8,7 +8,9 @@
 #include "frame/scatter.h"
 #include "plan/decisions.h"
 #include "spectral/model.h"
+#include "spectral/verification.h"
 
+#include <math.h>
 #include <string.h>
 
 /* The tile that is asked for, in pixels of a pass. Of a finer detector, bands may have to be higher. */
@@ -187,6 +189,17 @@ static double factor_of(const skg_recipe *recipe, const skg_frame_work *work, co
            (area * (double)skg_samples_count(&recipe->samples));
 }
 
+/* The exponent above which, as a negative number, more is subtracted than there is. A length may be wrong by some of the scale's bound if a
+ * face lies nearly along the ray (docs/numerics.md): below a ten-thousandth of the bound it shows nothing. What is thinner than the
+ * world takes from it, and there is no more than the world on the longest way. */
+static double least_of(const skg_recipe *recipe, const skg_pass *pass, int lengths) {
+    const skg_model *model = &recipe->model;
+    const double noise = 1e-4 * pass->scale.bound + 1e-6;
+    if (lengths || model->world_plane < 0) return -noise;
+    const double per_mm = model->world_weight * model->coefficients[model->world_plane];
+    return -noise - fabs(per_mm) * skg_way_longest(&pass->camera);
+}
+
 /* Enqueues the image of one pass from the sums. */
 static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_t number,
                                 const skg_pass *pass, int32_t place_of_pass) {
@@ -195,9 +208,7 @@ static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_
     const int lengths = work->lengths_of >= 0;
     const double share = 1 / (double)skg_samples_count(&recipe->samples);
     const double factor = lengths ? 1 : factor_of(recipe, work, pass);
-    /* A length may be wrong by some of the scale's bound if a face lies nearly along the ray (docs/numerics.md). Below a
-     * ten-thousandth of the bound it does not show that more was subtracted than there is. */
-    const double least = -1e-4 * pass->scale.bound - 1e-6;
+    const double least = least_of(recipe, pass, lengths);
     const cl_int none = 0;
     skg_attenuation attenuation = lengths ? machine->lengths : machine->images;
     skg_image_place place = work->place;

@@ -4,7 +4,7 @@
  * Lengths are signed sums over hits, so that a gather of all faces gives them. With A(c, p) for the sum over the faces of part c of
  * depth times what a mm of part p's material is worth, part p has A(p, p) less the sum of A(c, p) over the parts c inside it. A part
  * contributes what its material differs from that around it, so that the gather of the gradient gives A(c, c) - A(c, p); and its
- * fourth moments give A(c, p). A part of the material around it contributes nothing; it is drawn for its fourth moments. Where
+ * fourth moments give the smaller one of the two, so that air in tissue is not the difference of sums a thousand times as large. A part of the material around it contributes nothing; it is drawn for its fourth moments. Where
  * priorities, a world or a frame's own densities change what a hit is worth, an image of path lengths is rendered instead. */
 #include "frame/gradient_density.h"
 
@@ -12,6 +12,7 @@
 #include "frame/gradient_faces.h"
 #include "frame/gradient_nodes.h"
 
+#include <math.h>
 #include <string.h>
 
 int skg_gradient_needs_lengths(const struct skg_gradient_work *gradient, int64_t parts) {
@@ -33,15 +34,29 @@ static void find_needs(const skg_job *job, const skg_frame_work *work, const skg
     }
 }
 
-/* Adds up what all parts around a part contribute. Returns the number of planes. */
-static int32_t list_around(const skg_pass *pass, int64_t part, double *own, skg_contribution *list) {
-    int32_t count = 0;
-    memset(own, 0, (size_t)pass->planes * sizeof *own);
-    for (int64_t p = pass->scene->parts[part].inside; p >= 0; p = pass->scene->parts[p].inside)
+/* Adds what parts contribute, from this one outwards. */
+static void add_outwards(const skg_pass *pass, int64_t part, double *sums) {
+    for (int64_t p = part; p >= 0; p = pass->scene->parts[p].inside)
         for (int64_t c = pass->first[p]; c < pass->first[p + 1]; c++)
-            own[pass->contributions[c].plane] += pass->contributions[c].weight;
-    for (int64_t k = 0; k < pass->planes; k++)
-        if (own[k] != 0) list[count++] = (skg_contribution){.plane = (int32_t)k, .weight = own[k]};
+            sums[pass->contributions[c].plane] += pass->contributions[c].weight;
+}
+
+/* Lists what a mm of matter adds to the planes: that around a part, or that of the part itself if this is less. sums: [2][planes] memory.
+ * Returns the number of planes. */
+static int32_t list_less(const skg_pass *pass, int64_t part, double *sums, skg_contribution *list,
+                         uint8_t *is_own) {
+    const int64_t planes = pass->planes;
+    int32_t count = 0;
+    double around = 0, own = 0;
+    memset(sums, 0, 2 * (size_t)planes * sizeof *sums);
+    add_outwards(pass, pass->scene->parts[part].inside, sums);
+    add_outwards(pass, part, sums + planes);
+    for (int64_t k = 0; k < planes; k++) around += fabs(sums[k]), own += fabs(sums[planes + k]);
+    *is_own = own < around;
+    for (int64_t k = 0; k < planes; k++) {
+        const double weight = sums[*is_own ? planes + k : k];
+        if (weight != 0) list[count++] = (skg_contribution){.plane = (int32_t)k, .weight = weight};
+    }
     return count;
 }
 
@@ -52,33 +67,35 @@ skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, sk
     int32_t *first = NULL;
     skg_contribution *list = NULL;
     skg_geometry_part *all = NULL;
-    uint8_t *same = NULL;
-    double *own = NULL;
+    uint8_t *same = NULL, *of_own = NULL;
+    double *sums = NULL;
     *drawn = pass->parts;
     for (int64_t p = 0; p < parts; p++) nested += pass->scene->parts[p].inside >= 0;
     SKG_TRY(skg_staging_take(&job->staging, parts + 1, sizeof *first, "gradient", &first));
     SKG_TRY(skg_staging_take(&job->staging, nested * pass->planes + 1, sizeof *list, "gradient", &list));
     SKG_TRY(skg_staging_take(&job->staging, parts, sizeof *all, "gradient", &all));
     SKG_TRY(skg_staging_take(&job->staging, parts, sizeof *same, "gradient", &same));
-    SKG_TRY(skg_staging_take(&job->staging, pass->planes + 1, sizeof *own, "gradient", &own));
+    SKG_TRY(skg_staging_take(&job->staging, parts, sizeof *of_own, "gradient", &of_own));
+    SKG_TRY(skg_staging_take(&job->staging, 2 * pass->planes + 1, sizeof *sums, "gradient", &sums));
     for (int64_t s = 0; s < pass->priority.count; s++) same[pass->priority.parts[s]] = 1;
     for (int64_t p = 0; p < parts; p++) {
         all[p] = pass->parts[p];
         const int competes = same[p],
                   nests = pass->scene->parts[p].inside >= 0 && pass->scene->parts[p].mesh->closed;
-        first[p + 1] = first[p] + (nests && !competes ? list_around(pass, p, own, list + first[p]) : 0);
+        first[p + 1] = first[p];
+        if (nests && !competes) first[p + 1] += list_less(pass, p, sums, list + first[p], &of_own[p]);
         same[p] = (uint8_t)(all[p].contributions == 0 && first[p + 1] > first[p]);
         if (!same[p]) continue;
         all[p].contributions = 1;
         all[p].contribution = list + first[p];
         *drawn = all;
     }
-    *around = (skg_surroundings){.first = first, .list = list, .same = same};
+    *around = (skg_surroundings){.first = first, .list = list, .same = same, .of_own = of_own};
     return SKG_OK;
 }
 
-/* The sum over the hits of a part of length times the weight by what stands around it. */
-static double sum_around(const skg_job *job, const skg_gathered *gathered, int64_t part, int64_t first) {
+/* The sum over the hits of a part of length times the weight by what is listed of it. */
+static double sum_listed(const skg_job *job, const skg_gathered *gathered, int64_t part, int64_t first) {
     const skg_geometry *geometry = &job->machine->geometry;
     const int64_t end = first + geometry->layouts[geometry->mesh_of_part[part]].triangles;
     uint64_t sum = 0; /* wraps around */
@@ -87,15 +104,18 @@ static double sum_around(const skg_job *job, const skg_gathered *gathered, int64
 }
 
 void skg_gradient_add_densities(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
-                                const skg_gathered *gathered, const skg_force_sums *sums) {
+                                const skg_surroundings *surroundings, const skg_gathered *gathered,
+                                const skg_force_sums *sums) {
     struct skg_gradient_work *gradient = job->gradient;
     const skg_geometry *geometry = &job->machine->geometry;
     find_needs(job, work, pass, gradient->needs_lengths);
     for (int64_t p = 0, first = 0; p < pass->scene->count; p++) {
         const int64_t around = pass->scene->parts[p].inside;
-        const double of_around = around < 0 ? 0 : sum_around(job, gathered, p, first);
+        const double listed = around < 0 ? 0 : sum_listed(job, gathered, p, first);
+        const double of_around = listed - (surroundings->of_own[p] ? sums[p].length : 0);
+        const double of_own = listed + (surroundings->of_own[p] ? 0 : sums[p].length);
         first += geometry->layouts[geometry->mesh_of_part[p]].triangles;
-        if (!gradient->needs_lengths[p]) gradient->densities[p] += sums[p].length + of_around;
+        if (!gradient->needs_lengths[p]) gradient->densities[p] += of_own;
         if (around >= 0 && !gradient->needs_lengths[around]) gradient->densities[around] -= of_around;
     }
 }

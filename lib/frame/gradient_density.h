@@ -6,7 +6,7 @@
 #include "frame/job.h"
 #include "geometry/forces.h"
 
-/* Lists what stands around the parts of a pass. Arrays are staged. drawn: the pass's parts, or a copy in which parts of the
+/* Lists what stands around the parts of a pass, or less. Arrays are staged. drawn: the pass's parts, or a copy in which parts of the
  * material around them are drawn, too. */
 skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, skg_surroundings *around,
                                           skg_geometry_part **drawn);
@@ -14,7 +14,8 @@ skg_status skg_gradient_find_surroundings(skg_job *job, const skg_pass *pass, sk
 /* Adds the densities of a pass that take no path lengths, and marks the others in gradient->needs_lengths. sums: [parts] of the
  * gather of the pass with what stands around its parts */
 void skg_gradient_add_densities(skg_job *job, const skg_frame_work *work, const skg_pass *pass,
-                                const skg_gathered *gathered, const skg_force_sums *sums);
+                                const skg_surroundings *surroundings, const skg_gathered *gathered,
+                                const skg_force_sums *sums);
 
 /* Whether any density takes path lengths. */
 int skg_gradient_needs_lengths(const struct skg_gradient_work *gradient, int64_t parts);

@@ -206,7 +206,7 @@ static skg_status add_gathered(skg_job *job, const skg_frame_work *work, int64_t
     skg_force_sums all = {0};
     SKG_TRY(gather(job, pass, around, drawn, &gathered));
     skg_status status = skg_gradient_add_faces(job, pass, &gathered, gradient->wanted.vertices, of_parts);
-    if (status == SKG_OK && around) skg_gradient_add_densities(job, work, pass, &gathered, of_parts);
+    if (status == SKG_OK && around) skg_gradient_add_densities(job, work, pass, around, &gathered, of_parts);
     skg_gradient_close(pass, &job->machine->gradient);
     SKG_TRY(status);
     add_sums(pass->scene->count, of_parts, gradient->poses, &all);

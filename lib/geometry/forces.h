@@ -20,7 +20,7 @@ typedef struct {
     /* [triangles][4] sums over hits of weight t^2, of that times the column, and times the row; NULL: none are added */
     const int64_t *moments;
     double unit;           /* of a moment */
-    int32_t pixel[2];      /* from which columns and rows count */
+    int32_t pixel[2];      /* from which columns and rows of the device count */
     skg_steep_weigh weigh; /* of faces whose first moment is SKG_EDGE_ON; may be NULL if there are none */
     const void *weigh_user;
 } skg_face_moments;

@@ -64,16 +64,15 @@ static double larger(double a, double b) {
     return a >= b ? a : b;
 }
 
-/* Whether the device sees a face as a line, narrower than 1e-4 pixels, or may do so after rounding. A face that is somewhat wider is
- * integrated as exactly, so that more of them do no harm. */
-static int is_edge_on(const double *a, const double *b, const double *c, double rounding) {
+/* Whether the device surely sees a face as a line (kernels/gradient.cl): what is half as wide as that is so after any rounding. */
+static int is_line(const double *a, const double *b, const double *c, const int32_t *from, double rounding) {
     double longest = 0, far = 0;
     for (int k = 0; k < 2; k++) {
-        far = larger(far, larger(fabs(a[k]), larger(fabs(b[k]), fabs(c[k]))));
+        far = larger(far, larger(fabs(a[k] - from[k]), larger(fabs(b[k] - from[k]), fabs(c[k] - from[k]))));
         longest = larger(longest, larger(fabs(a[k] - b[k]), larger(fabs(b[k] - c[k]), fabs(c[k] - a[k]))));
     }
     const double twice_area = (b[0] - a[0]) * (c[1] - a[1]) - (c[0] - a[0]) * (b[1] - a[1]);
-    return fabs(twice_area) <= (1e-4 + 32 * rounding * far) * longest;
+    return fabs(twice_area) <= 0.5 * larger((double)SKG_LINE, SKG_LINE_PLACES * rounding * far) * longest;
 }
 
 static int any(const double *numbers, int count) {
@@ -109,10 +108,9 @@ void skg_slopes_see_faces(const skg_face_moments *faces, double rounding, int64_
         skg_add_scaled(a, -1, camera->origin, from);
         skg_cross(side[0], side[1], normal);
         const double height = skg_dot(normal, camera->parallel ? camera->first : from);
-        const int edge_on =
-            is_edge_on(seen->pixel[corner[0]], seen->pixel[corner[1]], seen->pixel[corner[2]], rounding);
-        const double scale = edge_on || height == 0 ? 0 : 1 / height;
-        seen->edge_on[face] = (uint8_t)edge_on;
+        const int line = is_line(seen->pixel[corner[0]], seen->pixel[corner[1]], seen->pixel[corner[2]],
+                                 faces->pixel, rounding);
+        const double scale = line || height == 0 ? 0 : 1 / height;
         skg_scale_vector(scale, normal, seen->pull[face]);
     }
 }

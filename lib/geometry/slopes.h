@@ -23,8 +23,6 @@ typedef struct {
     double *inverse;    /* [vertices] 1 / t; with a parallel beam t */
     double (*pull)
         [3]; /* [faces] the normal over h, or over n . d; 0 for faces that are seen as lines or contain the source */
-    uint8_t *edge_on; /* [faces] 1: it is seen as a line, and skg_slopes_spread adds it. They are those of
-                            * kernels/gradient.cl, and a few that are slightly wider */
 } skg_seen_faces;
 
 /* Fills vertices `first` to end - 1. */

@@ -1,5 +1,6 @@
 #include "plan/recipe.h"
 #include "geometry/optics.h"
+#include "plan/decisions.h"
 
 #include <float.h>
 #include <inttypes.h>
@@ -40,7 +41,22 @@ static skg_status check_distance(const skg_recipe *recipe, const skg_view *view)
         had_distance ? "point source" : "parallel beam", has_distance ? "point source" : "parallel beam");
 }
 
+skg_status skg_recipe_check_world(const skg_recipe *recipe, const skg_view *view) {
+    const char *name = "";
+    skg_attenuation shape;
+    if (view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY || !recipe->options.world) return SKG_OK;
+    skg_decide_attenuation(recipe, &shape);
+    if (shape.world_plane < 0) return SKG_OK;
+    SKG_TRY(skg_material_name_get(recipe->options.world, &name));
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "a parallel beam from infinity never comes through a World of %s; give the place where it "
+        "begins, or leave out the World, or take a ratio of one energy, in which it cancels",
+        name);
+}
+
 skg_status skg_recipe_check_view(const skg_recipe *recipe, const skg_view *view) {
+    SKG_TRY(skg_recipe_check_world(recipe, view));
     if (view->columns == recipe->view.columns && view->rows == recipe->view.rows)
         return check_distance(recipe, view);
     return skg_fail(SKG_STALE,

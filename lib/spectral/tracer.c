@@ -169,6 +169,16 @@ double skg_ray_longest(const skg_camera *camera) {
     return longest;
 }
 
+double skg_way_longest(const skg_camera *camera) {
+    double longest = 0;
+    for (int corner = 0; corner < 4; corner++) {
+        const double i = corner & 1 ? (double)camera->columns - 0.5 : -0.5,
+                     j = corner & 2 ? (double)camera->rows - 0.5 : -0.5;
+        longest = fmax(longest, unit_of(camera, i, j) * (1 - start_of(camera, i, j)));
+    }
+    return longest;
+}
+
 void skg_ways_find(const skg_camera *camera, int64_t side, double *ways) {
     skg_tracer grid = {.camera = camera};
     lay_over_detector(&grid, side);

@@ -42,6 +42,9 @@ void skg_tracer_trace_detector(skg_tracer *tracer, int64_t side);
 /* The longest ray to a pixel for a path parameter of 1, mm. */
 double skg_ray_longest(const skg_camera *camera);
 
+/* The longest way of a ray from where it starts to its pixel, mm. */
+double skg_way_longest(const skg_camera *camera);
+
 /* The way of the rays of such a grid over the detector in mm: [side][side]. */
 void skg_ways_find(const skg_camera *camera, int64_t side, double *ways);
 

@@ -335,7 +335,8 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
     skg_attenuate_double args = scalars_of(sums, camera, &mean, &place);
     skg_attenuate_float rounded;
-    const cl_int channel = asked->channel, rays = asked->rays, of_planes = asked->of_planes;
+    const cl_int channel = asked->channel, rays = asked->rays, of_planes = asked->of_planes,
+                 relative = asked->relative;
     cl_program program = NULL;
     args.factor = asked->factor;
     SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
@@ -354,6 +355,7 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
         SKG_ARGUMENT(WEIGHTS, wanted, asked->wanted),
         SKG_ARGUMENT(WEIGHTS, rays, rays),
         SKG_ARGUMENT(WEIGHTS, of_planes, of_planes),
+        SKG_ARGUMENT(WEIGHTS, relative, relative),
         SKG_ARGUMENT(WEIGHTS, weights, asked->weights),
         SKG_ARGUMENT(WEIGHTS, most, asked->most),
         SKG_ARGUMENT(WEIGHTS, of_rays, asked->of_rays),

@@ -111,11 +111,13 @@ typedef struct {
     int32_t
         of_planes; /* 1: weights are derivatives by the mm of the planes that exponents are made of, and nothing else */
     int32_t rays; /* SKG_RAYS_... */
-    int32_t reserved;
+    /* 1: all of a ray is divided by a power of two near its intensity, whose exponent is the third plane behind those of accumulators. For a
+     * channel of intensities */
+    int32_t relative;
     cl_mem adjoint;
     cl_mem wanted; /* [planes] int: 0: the weights of this plane of accumulators are not made */
     cl_mem
-        weights; /* of the layout; with SKG_RAYS_PLANES the last two planes are, for each ray, the sum over planes of mm times
+        weights; /* of the layout; with SKG_RAYS_PLANES the next two planes are, for each ray, the sum over planes of mm times
                      * derivative by mm, and the derivative by the logarithm of the intensity */
     cl_mem most;    /* [planes][items] the largest magnitudes of the weights of accumulators */
     cl_mem of_rays; /* [SKG_RAY_SUMS][items] with SKG_RAYS_SUMS; else it may be any buffer */

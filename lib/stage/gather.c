@@ -14,7 +14,7 @@ void skg_gradient_memory_release(skg_gradient_memory *memory) {
     skg_buffer *const buffers[] = {&memory->adjoint, &memory->weights, &memory->most,   &memory->scales,
                                    &memory->moments, &memory->slopes,  &memory->around, &memory->first_around,
                                    &memory->lengths, &memory->faces,   &memory->node,   &memory->of_rays,
-                                   &memory->wanted};
+                                   &memory->wanted,  &memory->lines};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
     skg_free(&memory->reals);
     skg_free(&memory->corners);
@@ -27,7 +27,7 @@ int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory) {
     return memory->adjoint.bytes + memory->weights.bytes + memory->most.bytes + memory->scales.bytes +
            memory->moments.bytes + memory->slopes.bytes + memory->lengths.bytes + memory->faces.bytes +
            memory->node.bytes + memory->around.bytes + memory->first_around.bytes + memory->of_rays.bytes +
-           memory->wanted.bytes;
+           memory->wanted.bytes + memory->lines.bytes;
 }
 
 static skg_weight_layout layout_of(const skg_pass *pass) {
@@ -118,6 +118,17 @@ skg_status skg_gather_upload_scales(const skg_gather_run *run, int64_t count, co
     return skg_staging_write(run->staging, &run->memory->scales, count * (int64_t)size, reals, "gradient");
 }
 
+/* Below what differences of depths hits are at one place: what rounding makes of the faces of parts that touch, even where they lean, as a
+ * share of the greatest depth of a part. */
+static double touch_of(const skg_gather_run *run) {
+    double depth = 0;
+    for (int64_t s = 0; s < run->pass->priority.count; s++) {
+        const double own = run->pass->parts[run->pass->priority.parts[s]].depth;
+        depth = own > depth ? own : depth;
+    }
+    return depth * (run->is_double ? 1e-8 : 2e-5);
+}
+
 /* The hits of competing parts are listed still, by skg_hits_settle of this pass. */
 skg_status skg_gather_slopes(const skg_gather_run *run) {
     const skg_hits_memory *h = run->hits;
@@ -126,8 +137,11 @@ skg_status skg_gather_slopes(const skg_gather_run *run) {
         2, {args->window[2] - args->window[0], args->window[3] - args->window[1]}, {16, 16}};
     if (run->pass->priority.count == 0 || work.items[0] < 1 || work.items[1] < 1) return SKG_OK;
     SKG_TRY(skg_gather_reserve(run, &run->memory->slopes, h->hits.bytes));
+    const cl_double touch = touch_of(run);
+    const cl_float rounded = (cl_float)touch;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(HITS_SLOPES, args, *args),
+        SKG_ARGUMENT_WITH(HITS_SLOPES, touch, run->is_double, touch, rounded),
         SKG_ARGUMENT(HITS_SLOPES, parts, run->geometry->part_table.memory),
         SKG_ARGUMENT(HITS_SLOPES, contributions, run->geometry->contribution_table.memory),
         SKG_ARGUMENT(HITS_SLOPES, counts, h->counts.memory),
@@ -198,6 +212,7 @@ skg_status skg_gather_faces(const skg_gather_run *run) {
         SKG_ARGUMENT(GRADIENT_FACES, hits, h->hits.memory),
         SKG_ARGUMENT(GRADIENT_FACES, slopes, m->slopes.memory),
         SKG_ARGUMENT(GRADIENT_FACES, face_slopes, m->faces.memory),
+        SKG_ARGUMENT(GRADIENT_FACES, lines, m->lines.memory),
     };
     return SKG_LAUNCH_ONCE(run->context, run->program, "skg_gradient_faces", "gradient", &work, arguments,
                            &run->staging->log);

@@ -12,7 +12,7 @@
 /* Memory, kept from call to call. All zero: nothing is allocated. */
 typedef struct {
     skg_buffer adjoint, weights, most, of_rays, wanted, scales, moments, slopes, lengths, faces, node, around,
-        first_around;
+        first_around, lines;
     int32_t *wanted_now; /* [wanted_count] what the device has in `wanted` */
     int64_t wanted_count;
     skg_host_view sums; /* of `moments` */
@@ -25,13 +25,14 @@ typedef struct {
 void skg_gradient_memory_release(skg_gradient_memory *memory);
 int64_t skg_gradient_memory_bytes(const skg_gradient_memory *memory);
 
-/* What stands around each part: the contributions of all parts that it is inside. */
+/* What stands around each part: the contributions of all parts that it is inside; or what the part is made of, with its own. */
 typedef struct {
     const int32_t *first; /* [parts + 1] those of part p are list[first[p]] to list[first[p + 1] - 1] */
     const skg_contribution *list;
     /* [parts] 1: the part is of the material around it. It has one of those contributions so that it is drawn, and only its
      * fourth moments count. */
     const uint8_t *same;
+    const uint8_t *of_own; /* [parts] 1: what the part itself is made of is listed */
 } skg_surroundings;
 
 /* What the gather of a pass leaves. */
@@ -64,6 +65,8 @@ typedef struct {
         channel;  /* of the intensities whose derivatives they are; -1: those of a loss, by memory->adjoint */
     int32_t of;   /* SKG_WEIGHTS_OF_... */
     int32_t rays; /* SKG_RAYS_... */
+    int32_t relative; /* 1: see skg_transposition */
+    int32_t reserved;
     const uint8_t
         *parts; /* [parts] 0: what hits of this part are worth is not wanted; NULL: that of all is */
 } skg_weights_wanted;
@@ -99,14 +102,22 @@ skg_status skg_gradient_reserve_slopes(const skg_geometry *geometry, skg_gradien
 /* Ends the use of moments. */
 void skg_gradient_close(const skg_pass *pass, skg_gradient_memory *memory);
 
+/* Faces of parts that move which the device sees as lines. */
+typedef struct {
+    uint8_t *faces; /* [triangles] in the device's order: 1: it is one; left alone if none is */
+    int32_t any, reserved;
+} skg_seen_lines;
+
 /* Adds up the derivatives of the rays of a pass by these slopes, and waits for them.
  *
  * moves     [parts] 0: the part does not, and its slopes are not looked at
  * largest   the largest magnitude of the slopes of parts that move
+ * lines     result: faces that are seen as lines, which add nothing
  * values    [rows][columns] to which they are added */
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, const uint8_t *moves, double largest, double *values);
+                                skg_staging *staging, const uint8_t *moves, double largest,
+                                skg_seen_lines *lines, double *values);
 
 /* Reads reals in the precision of the pass as doubles, from number `first` on, and waits. */
 skg_status skg_gradient_read(const skg_pass *pass, cl_mem memory, int64_t first, int64_t count,

@@ -5,6 +5,8 @@
 
 #include <skiagraph/plan.h>
 
+#include <string.h>
+
 enum { CLAIM = 1024 };                        /* triangles that a work-item of a processor takes in a row */
 static const int64_t COPIES_BYTES = 64 << 20; /* that sums of pixels may take */
 
@@ -72,16 +74,40 @@ static skg_status run_batches(const skg_gather_run *run) {
         SKG_ARGUMENT(DERIVATIVE_BATCHES, weights, m->weights.memory),
         SKG_ARGUMENT(DERIVATIVE_BATCHES, scales, m->scales.memory),
         SKG_ARGUMENT(DERIVATIVE_BATCHES, face_slopes, m->faces.memory),
+        SKG_ARGUMENT(DERIVATIVE_BATCHES, lines, m->lines.memory),
         SKG_ARGUMENT(DERIVATIVE_BATCHES, sums, m->moments.memory),
     };
     return SKG_LAUNCH_ONCE(run->context, program, "skg_derivative_batches", "gradient", &work, arguments,
                            &run->staging->log);
 }
 
+/* No face is seen as a line so far. */
+static skg_status clear_lines(const skg_gather_run *run) {
+    const cl_uchar none = 0;
+    const int64_t bytes = run->geometry->triangles + 1;
+    SKG_TRY(skg_gather_reserve(run, &run->memory->lines, bytes));
+    SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->lines.memory, &none, sizeof none,
+                                   0, (size_t)bytes, 0, NULL, NULL));
+    return SKG_OK;
+}
+
+/* Reads which faces are, and waits. */
+static skg_status read_lines(const skg_gather_run *run, skg_seen_lines *lines) {
+    const int64_t triangles = run->geometry->triangles;
+    skg_host_view *view = &run->memory->sums;
+    SKG_TRY(skg_host_view_open(run->context, run->memory->lines.memory, 0, triangles + 1, view));
+    const uint8_t *flags = view->bytes;
+    lines->any = flags[triangles];
+    if (lines->any) memcpy(lines->faces, flags, (size_t)triangles);
+    skg_host_view_close(run->context, view);
+    return SKG_OK;
+}
+
 /* Adds up the hits of every pixel: in batches, which zero their own sums, or by atomic operations. */
 static skg_status run_hits(const skg_gather_run *run, int64_t copies) {
     const int64_t sums = copies * sums_of(run);
     SKG_TRY(skg_gather_clear(run, run->workers > 0 ? sums : 0, sums));
+    SKG_TRY(clear_lines(run));
     SKG_TRY(skg_gather_slopes(run));
     if (run->workers > 0) SKG_TRY(run_batches(run));
     return skg_gather_faces(run);
@@ -123,21 +149,25 @@ static skg_status read_pixels(const skg_gather_run *run, int64_t copies, double 
 
 skg_status skg_gradient_scatter(const skg_pass *pass, const skg_geometry *geometry,
                                 const skg_hits_memory *hits, skg_gradient_memory *memory,
-                                skg_staging *staging, const uint8_t *moves, double largest, double *values) {
+                                skg_staging *staging, const uint8_t *moves, double largest,
+                                skg_seen_lines *lines, double *values) {
     skg_gather_run run = skg_gather_of(pass, geometry, hits, memory, staging);
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
     double *most = NULL, *scales = NULL;
     run.forward = 1;
+    lines->any = 0;
     run.workers = count_workers(&run, &layout);
     SKG_TRY(skg_gather_begin(&run));
     SKG_TRY(skg_staging_take(staging, run.args.planes, sizeof *most, "derivative", &most));
     SKG_TRY(skg_staging_take(staging, pass->scene->count, sizeof *scales, "derivative", &scales));
     SKG_TRY(skg_gather_find_max(&run, most));
-    const double scale = skg_gradient_find_scale(&run, most, moves, largest, scales);
+    /* Faces that are seen as lines have to be found where no other one moves, too. */
+    const double scale = skg_gradient_find_scale(&run, most, moves, largest > 0 ? largest : 1, scales);
     if (scale == 0) return SKG_OK;
     const int64_t copies = run.workers > 0 ? run.workers : 1;
     SKG_TRY(skg_gather_upload_scales(&run, pass->scene->count, scales));
     SKG_TRY(upload_slopes(&run, moves));
     SKG_TRY(run_hits(&run, copies));
-    return read_pixels(&run, copies, scale, values);
+    SKG_TRY(read_pixels(&run, copies, scale, values));
+    return read_lines(&run, lines);
 }

@@ -23,7 +23,7 @@ skg_status skg_gradient_reserve(const skg_pass *pass, int64_t planes, skg_gradie
     skg_context *context = pass->main.raster->context;
     const int64_t size = skg_gradient_real_size(pass->kernels.precision);
     const skg_weight_layout layout = skg_attenuate_weight_layout(pass->main.raster, pass->fine);
-    const int64_t most = planes > layout.planes + 2 ? planes : layout.planes + 2;
+    const int64_t most = planes > layout.planes + 3 ? planes : layout.planes + 3;
     /* Lanes without a hit read behind their rows. */
     const int64_t behind = SKG_SPARE_ROWS * layout.stride + SKG_SPARE_COLUMNS;
     SKG_TRY(skg_buffer_reserve(context, &memory->most, layout.planes * layout.items * size, CL_MEM_READ_WRITE,
@@ -67,6 +67,7 @@ skg_status skg_gradient_transpose(skg_attenuator *attenuator, const skg_pass *pa
                                      .channel = wanted->channel,
                                      .of_planes = wanted->of == SKG_WEIGHTS_OF_PLANES,
                                      .rays = wanted->rays,
+                                     .relative = wanted->relative,
                                      .adjoint = memory->adjoint.memory,
                                      .wanted = memory->wanted.memory,
                                      .weights = memory->weights.memory,

@@ -203,12 +203,61 @@ START_TEST(a_vertex_that_cannot_be_projected) {
 }
 END_TEST
 
+/* A world of several energies from infinity has no image; with one energy the ratio has no world. From a place, no pixel has a negative exponent:
+ * the parts subtract nothing, whichever energy comes through best. */
+START_TEST(a_world_and_a_parallel_beam) {
+    static double found[PIXELS];
+    setting set = {.parallel = 1, .infinity = 1, .world = 1, .quantity = SKG_QUANTITY_ATTENUATION};
+    const double energies[2] = {40, 90}, photons[2] = {1, 1}, twists[PARTS][6] = {{1}};
+    const int32_t quantities[2] = {SKG_QUANTITY_ATTENUATION, SKG_QUANTITY_ENERGY};
+    result r;
+    skg_plan_options options;
+    skg_plan_report report;
+    skg_direction moving;
+    skg_spectrum *beam = NULL;
+    skg_plan *plan = NULL;
+    make_scene(&set);
+    allocate(&r);
+    skg_view view = make_view(&set);
+    skg_plan_options_init(&options);
+    ck_skg(skg_material_create_named("Water", &options.world));
+    ck_skg(skg_spectrum_create_bins(2, energies, photons, &beam));
+    for (int k = 0; k < 2; k++) {
+        options.quantity = quantities[k];
+        ck_skg_fails(skg_plan_create(run_context, scene, &view, beam, &options, &plan), SKG_ERR_UNSUPPORTED,
+                     "a parallel beam from infinity never comes through a World of Water");
+    }
+    skg_direction_init(&moving);
+    moving.poses = twists[0];
+    plan = make_plan(&set, &view, SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
+    ck_skg(skg_plan_derivative(plan, NULL, &moving, found, NULL));
+    skg_plan_release(&plan);
+    set = (setting){.parallel = 1, .world = 1, .colours = 1, .quantity = SKG_QUANTITY_ATTENUATION};
+    view = make_view(&set);
+    for (int32_t precision = 0; precision <= run_has_double(); precision++) {
+        const skg_view from_infinity = make_view(&(setting){.parallel = 1, .infinity = 1});
+        plan = make_plan(&set, &view, precision, SKG_STRATEGY_AUTO);
+        free(run_image(plan, &view));
+        skg_plan_report_init(&report);
+        ck_skg(skg_plan_report_get(plan, &report));
+        ck_assert_int_eq(report.negative_pixels, 0);
+        ck_skg_fails(skg_plan_view_set(plan, &from_infinity), SKG_ERR_UNSUPPORTED,
+                     "a parallel beam from infinity never comes through a World of Water");
+        skg_plan_release(&plan);
+    }
+    skg_spectrum_release(&beam);
+    skg_material_release(&options.world);
+    release(&r);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_test(tests, a_part_without_a_mesh);
     tcase_add_test(tests, parts_that_show_nothing);
     tcase_add_test(tests, a_job_that_is_not_done);
     tcase_add_test(tests, a_vertex_that_cannot_be_projected);
+    tcase_add_test(tests, a_world_and_a_parallel_beam);
 }
 
 SKG_SUITE_MAIN("bad gradients", add_tests)

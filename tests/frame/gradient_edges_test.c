@@ -1,5 +1,6 @@
 /* Faces that contain rays, of parts that compete by priority: moving such a face changes the mean of a pixel by what the part wins along it,
  * less what it takes from others. Boxes give both exactly. */
+#include "gradient_closed.h"
 #include "gradients.h"
 
 #include <math.h>
@@ -206,6 +207,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_loop_test(tests, sides_count_where_their_part_wins, 0, 2 * sizeof cases / sizeof *cases);
     tcase_add_loop_test(tests, sides_in_a_cone_beam, 0, sizeof cases / sizeof *cases);
+    add_closed_tests(tests);
 }
 
 SKG_SUITE_MAIN("faces that contain rays", add_tests)

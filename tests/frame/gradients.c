@@ -201,13 +201,21 @@ void allocate(result *r) {
     }
 }
 
-void release(result *r) {
+void forget(result *r) {
     for (int64_t p = 0; p < parts; p++) {
         free(r->vertices[p]);
         free(saved[p]);
-        skg_mesh_release(&meshes[p]);
     }
+}
+
+void release_scene(void) {
+    for (int64_t p = 0; p < parts; p++) skg_mesh_release(&meshes[p]);
     skg_scene_release(&scene);
+}
+
+void release(result *r) {
+    forget(r);
+    release_scene();
 }
 
 void fill_adjoint(int64_t count, double *adjoint) {

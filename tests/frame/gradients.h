@@ -6,7 +6,7 @@
 #include "support/random.h"
 #include "support/run.h"
 
-enum { SIDE = 24, PIXELS = SIDE * SIDE, CHANNELS_MAX = 2, PARTS = 4, WAYS = 6 * PARTS + 9 + 2 * PARTS };
+enum { SIDE = 24, PIXELS = SIDE * SIDE, CHANNELS_MAX = 2, PARTS = 9, WAYS = 6 * PARTS + 9 + 2 * PARTS };
 
 /* What a case sets; 0: not used. */
 typedef struct {
@@ -35,8 +35,10 @@ void make_scene(const setting *set);
 skg_view make_view(const setting *set);
 skg_plan *make_plan(const setting *set, const skg_view *view, int32_t precision, int32_t strategy);
 
-/* Memory for a gradient of the scene; release also releases the scene. */
+/* Memory for a gradient of the scene, and without it the scene; release does both. */
 void allocate(result *r);
+void forget(result *r);
+void release_scene(void);
 void release(result *r);
 
 /* The image with everything moved by a step along a direction. */

@@ -120,9 +120,9 @@ static void from_scene(int which, hard_solid *s) {
     memcpy(s->pose, h.pose, sizeof s->pose);
 }
 
-enum { TABLES = 5 };
-static const hard_function *const tables[TABLES] = {hard_images, hard_meshes, hard_bodies, hard_bounds,
-                                                    hard_cuts};
+enum { TABLES = 6 };
+static const hard_function *const tables[TABLES] = {hard_images, hard_meshes, hard_bodies,
+                                                    hard_bounds, hard_cuts,   hard_gradients};
 
 static hard_function find(int which) {
     for (int t = 0; t < TABLES; t++)

@@ -33,10 +33,10 @@ typedef struct {
 enum { HARD_SOLIDS = 16 };
 void hard_solid_make(int which, hard_solid *s);
 
-/* Images, open meshes, many parts, breathing, bounds, cuts. */
+/* Images, open meshes, many parts, breathing, bounds, cuts, derivatives. */
 typedef void (*hard_function)(hard_outcome *o);
-extern const hard_function hard_images[], hard_meshes[], hard_bodies[], hard_bounds[],
-    hard_cuts[]; /* end with NULL */
+extern const hard_function hard_images[], hard_meshes[], hard_bodies[], hard_bounds[], hard_cuts[],
+    hard_gradients[]; /* end with NULL */
 
 /* The ways whose bits have to be the same; the first one is the plan's choice. */
 enum { HARD_WAYS = 4 };
