@@ -14,6 +14,7 @@ enum {
     END_64 = 56,
     LOCATOR_64 = 20,
     ENTRY = 46,
+    NAME = 28, /* in an entry: the length of its name */
     LONGEST_COMMENT = 65535,
     LONGEST_RELATIONS = 65535
 };
@@ -86,7 +87,7 @@ static void read_large(const archive *a, const unsigned char *entry, skg_packed_
     unsigned char fields[65535 + 1];
     uint64_t header = UINT32_MAX, *const numbers[] = {&part->length, &part->packed, &header};
     const size_t count = (size_t)number(entry + 30, 2);
-    if (!read_at(a->stream, a->at + ENTRY + (int64_t)number(entry + 28, 2), fields, count)) return;
+    if (!read_at(a->stream, a->at + ENTRY + (int64_t)number(entry + NAME, 2), fields, count)) return;
     for (size_t i = 0; i + 4 <= count; i += 4 + (size_t)number(fields + i + 2, 2)) {
         size_t at = i + 4;
         for (int n = 0; number(fields + i, 2) == 1 && n < 3; n++)
@@ -103,7 +104,7 @@ static skg_packed_part read_part(const archive *a, const unsigned char *entry) {
                             .crc = (uint32_t)number(entry + 16, 4),
                             .method = (uint32_t)number(entry + 10, 2),
                             .flags = (uint32_t)number(entry + 8, 2),
-                            .name = (uint32_t)number(entry + 28, 2)};
+                            .name = (uint32_t)number(entry + NAME, 2)};
     read_large(a, entry, &part);
     return part;
 }
@@ -115,14 +116,28 @@ static skg_status read_entry(const archive *a, unsigned char *entry) {
 }
 
 static void go_on(archive *a, const unsigned char *entry) {
-    a->at += ENTRY + (int64_t)(number(entry + 28, 2) + number(entry + 30, 2) + number(entry + 32, 2));
+    a->at += ENTRY + (int64_t)(number(entry + NAME, 2) + number(entry + 30, 2) + number(entry + 32, 2));
 }
 
 static int has_name(const archive *a, const unsigned char *entry, const char *name) {
     char its[SKG_RELATION_MAX];
     const size_t length = strlen(name);
-    return number(entry + 28, 2) == length && length < sizeof its &&
+    return number(entry + NAME, 2) == length && length < sizeof its &&
            read_at(a->stream, a->at + ENTRY, its, length) && memcmp(its, name, length) == 0;
+}
+
+/* Deflated bytes hold at most SKG_ARCHIVE_TIMES times as many. */
+static skg_status check_length(const archive *a, const unsigned char *entry, const skg_packed_part *part) {
+    char name[SKG_RELATION_MAX] = "";
+    const size_t length = (size_t)number(entry + NAME, 2);
+    if (part->packed > (uint64_t)SKG_ARCHIVE_MAX || part->length <= SKG_ARCHIVE_TIMES * (part->packed + 1))
+        return SKG_OK;
+    if (length >= sizeof name || !read_at(a->stream, a->at + ENTRY, name, length)) *name = '\0';
+    return skg_fail(SKG_ERR_FORMAT,
+                    "%s: the archive is damaged: its \"%s\" is %" PRIu64
+                    " bytes long by its directory, more than %d "
+                    "times the %" PRIu64 " that it has",
+                    a->path, name, part->length, SKG_ARCHIVE_TIMES, part->packed);
 }
 
 static skg_status check_lengths(archive a) {
@@ -146,6 +161,7 @@ static skg_status check_parts(archive a, char *relations) {
     for (; a.at < a.end; go_on(&a, entry)) {
         SKG_TRY(read_entry(&a, entry));
         const skg_packed_part part = read_part(&a, entry);
+        SKG_TRY(check_length(&a, entry, &part));
         const int is_kept = has_name(&a, entry, SKG_RELATIONS_PART);
         if (is_kept && part.length > LONGEST_RELATIONS)
             return skg_fail(SKG_ERR_FORMAT, "%s: its %s is longer than %d bytes", a.path, SKG_RELATIONS_PART,
@@ -206,7 +222,7 @@ int skg_archive_is(FILE *stream) {
 /* Whether the name of an entry ends in `end`, or is it. */
 static int name_fits(const archive *a, const unsigned char *entry, const char *end, int whole) {
     char its[SKG_RELATION_MAX];
-    const size_t length = (size_t)number(entry + 28, 2), wanted = strlen(end);
+    const size_t length = (size_t)number(entry + NAME, 2), wanted = strlen(end);
     if (length >= sizeof its || length < wanted || (whole && length != wanted)) return 0;
     if (!read_at(a->stream, a->at + ENTRY, its, length)) return 0;
     its[length] = '\0';

@@ -8,6 +8,7 @@
 #include "core/text.h"
 #include "mesh/archive.h"
 #include "mesh/assimp_files.h"
+#include "mesh/counts.h"
 #include "mesh/file_unit.h"
 #include "mesh/mesh.h"
 #include "mesh/read.h"
@@ -96,18 +97,43 @@ static skg_status add_node(const struct aiScene *scene, const struct aiNode *nod
     return SKG_OK;
 }
 
+/* Adds what the objects of a node and below it take in memory, and how often they are placed. */
+static void count_node(const struct aiScene *scene, const struct aiNode *node, double *times, double *bytes) {
+    *times += 1;
+    for (unsigned i = 0; i < node->mNumMeshes; i++) {
+        const struct aiMesh *object = scene->mMeshes[node->mMeshes[i]];
+        *bytes += 3 * sizeof(double) * (double)object->mNumVertices +
+                  3 * sizeof(int32_t) * (double)object->mNumFaces;
+    }
+    for (unsigned i = 0; i < node->mNumChildren; i++) count_node(scene, node->mChildren[i], times, bytes);
+}
+
+/* The last net, of formats that are not counted before they are opened. */
+static skg_status check_scene(const char *path, int64_t size, const struct aiScene *scene) {
+    double times = 0, bytes = 0;
+    if (scene->mRootNode) count_node(scene, scene->mRootNode, &times, &bytes);
+    SKG_TRY(skg_mesh_check_times(path, times, "node", scene->mRootNode ? scene->mRootNode->mName.data : "",
+                                 times));
+    return skg_mesh_check_bytes(path, size, bytes);
+}
+
 /* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. Of COLLADA it puts unit and axes into the
  * root node, which has no place of its own: there the numbers of the file are kept, and the unit is used once, here. */
 static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays) {
     struct aiFileIO files;
     SKG_TRY(skg_archive_check(path, stream, size));
+    SKG_TRY(skg_mesh_check_counts(path, stream, size));
     SKG_TRY(skg_mesh_file_unit(path, stream, size, &arrays->file_unit_mm));
     skg_assimp_files(&files);
     const struct aiScene *scene = aiImportFileEx(path, 0, &files);
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
     struct aiMatrix4x4 at;
     aiIdentityMatrix4(&at);
-    skg_status status = SKG_OK;
+    skg_status status = check_scene(path, size, scene);
+    if (status != SKG_OK) {
+        aiReleaseImport(scene);
+        return status;
+    }
     if (scene->mRootNode && !skg_mesh_is_collada(path)) at = scene->mRootNode->mTransformation;
     if (scene->mRootNode) status = add_node(scene, scene->mRootNode, &at, arrays);
     if (arrays->file_unit_mm == 0) arrays->file_unit_mm = skg_mesh_scene_unit(scene);

@@ -6,6 +6,7 @@
 #include "core/maths.h"
 #include "core/text.h"
 #include "mesh/archive.h"
+#include "mesh/instances.h"
 #include "mesh/relations.h"
 #include "mesh/xml.h"
 
@@ -14,11 +15,12 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { DEEPEST = 32, LONGEST = SKG_RELATION_MAX, MOST = 1000000 };
+enum { DEEPEST = 32, LONGEST = SKG_RELATION_MAX };
 
 typedef struct {
     char id[32];
     int32_t other;  /* 1: it supports others, and is not printed */
+    int32_t empty;  /* 1: nothing stands within its tag */
     const char *at; /* behind the tag of the object */
     char name[LONGEST];
 } object;
@@ -39,7 +41,7 @@ typedef struct {
     model *models;
     int64_t count;
     double root_mm;
-    int64_t added; /* objects, of which one may be made of many */
+    skg_instances parts; /* what is built, and objects of each model */
     skg_mesh_arrays *arrays;
 } reader;
 
@@ -66,54 +68,87 @@ static skg_status read_unit(const reader *r, const skg_xml *xml, double *mm) {
     return damaged(r, "its unit is none of micron, millimeter, centimeter, inch, foot and meter");
 }
 
-/* Lists the objects of a part. */
-static skg_status list_objects(const reader *r, model *m) {
-    skg_xml xml = {.at = m->text};
+/* The model of this name, which is read later if it is new. */
+static skg_status find_model(reader *r, const char *name, int64_t *index) {
+    for (*index = 0; *index < r->count; ++*index)
+        if (strcmp(r->models[*index].name, name) == 0) return SKG_OK;
+    SKG_TRY(skg_realloc(r->count + 1, sizeof *r->models, r->path, &r->models));
+    model *m = &r->models[r->count++];
+    *m = (model){0};
+    snprintf(m->name, sizeof m->name, "%s", name);
+    return SKG_OK;
+}
+
+/* The object that a component or an item names: the index of its model, and its id. */
+static skg_status read_reference(reader *r, const skg_xml *xml, int64_t *index, char id[32]) {
+    char path[LONGEST];
+    const int found = skg_xml_attribute(xml, "path", path, sizeof path);
+    if (found < 0 || skg_xml_attribute(xml, "objectid", id, 32) <= 0)
+        return damaged(r, "a component or an item names no object");
+    return found > 0 ? find_model(r, path, index) : SKG_OK;
+}
+
+static skg_status list_object(reader *r, int64_t index, const skg_xml *xml, int64_t *part) {
     char type[32];
+    model *m = &r->models[index];
+    if (m->count == m->capacity) {
+        m->capacity = 2 * m->capacity + 16;
+        SKG_TRY(skg_realloc(m->capacity, sizeof *m->objects, r->path, &m->objects));
+    }
+    object *o = &m->objects[m->count++];
+    *o = (object){.at = xml->at, .empty = xml->closes};
+    if (skg_xml_attribute(xml, "id", o->id, sizeof o->id) <= 0) return damaged(r, "an object has no id");
+    if (skg_xml_attribute(xml, "name", o->name, sizeof o->name) <= 0 || !*o->name)
+        snprintf(o->name, sizeof o->name, "object %s", o->id);
+    o->other = skg_xml_attribute(xml, "type", type, sizeof type) > 0 &&
+               (strcmp(type, "support") == 0 || strcmp(type, "other") == 0);
+    SKG_TRY(skg_instances_add(&r->parts, o->id, !o->other, part));
+    return skg_instances_name(&r->parts, *part, skg_instances_key((uint64_t)index, o->id));
+}
+
+/* What an object of the part holds, for the count: numbers of a vertex and of a triangle, and other objects. */
+static skg_status count_tag(reader *r, int64_t index, const skg_xml *xml, int64_t part) {
+    const int is_item = index == 0 && skg_xml_is(xml, "item");
+    char id[32];
+    if (part > 0 && skg_xml_is(xml, "vertex")) r->parts.nodes[part].bytes += 3 * sizeof(double);
+    if (part > 0 && skg_xml_is(xml, "triangle")) r->parts.nodes[part].bytes += 3 * sizeof(int32_t);
+    if (!is_item && (part == 0 || !skg_xml_is(xml, "component"))) return SKG_OK;
+    SKG_TRY(read_reference(r, xml, &index, id));
+    return skg_instances_place_named(&r->parts, is_item ? 0 : part, skg_instances_key((uint64_t)index, id),
+                                     0);
+}
+
+/* Lists the objects of a part. part: 0 outside of objects that are printed */
+static skg_status list_objects(reader *r, int64_t index) {
+    skg_xml xml = {.at = r->models[index].text};
     int found, is_model = 0;
+    int64_t part = 0;
     while ((found = skg_xml_next(&xml)) > 0) {
-        if (!xml.opens) continue;
-        if (skg_xml_is(&xml, "model")) {
-            SKG_TRY(read_unit(r, &xml, &m->mm));
+        if (xml.opens && skg_xml_is(&xml, "model")) {
+            SKG_TRY(read_unit(r, &xml, &r->models[index].mm));
             is_model = 1;
         }
-        if (!skg_xml_is(&xml, "object")) continue;
-        if (m->count == m->capacity) {
-            m->capacity = 2 * m->capacity + 16;
-            SKG_TRY(skg_realloc(m->capacity, sizeof *m->objects, r->path, &m->objects));
+        if (xml.opens && skg_xml_is(&xml, "object")) {
+            SKG_TRY(list_object(r, index, &xml, &part));
+            if (r->parts.nodes[part].own == 0) part = 0;
         }
-        object *o = &m->objects[m->count++];
-        *o = (object){.at = xml.at};
-        if (skg_xml_attribute(&xml, "id", o->id, sizeof o->id) <= 0) return damaged(r, "an object has no id");
-        if (skg_xml_attribute(&xml, "name", o->name, sizeof o->name) <= 0 || !*o->name)
-            snprintf(o->name, sizeof o->name, "object %s", o->id);
-        o->other = skg_xml_attribute(&xml, "type", type, sizeof type) > 0 &&
-                   (strcmp(type, "support") == 0 || strcmp(type, "other") == 0);
+        if (xml.opens) SKG_TRY(count_tag(r, index, &xml, part));
+        if (xml.closes && skg_xml_is(&xml, "object")) part = 0;
     }
     if (found < 0 || !is_model) return damaged(r, "the XML of a part is damaged");
     return SKG_OK;
 }
 
-/* The part of this name, read if it was not yet. */
-static skg_status find_model(reader *r, const char *name, int64_t *index) {
-    for (int64_t i = 0; i < r->count; i++)
-        if (strcmp(r->models[i].name, name) == 0) {
-            *index = i;
-            return SKG_OK;
-        }
-    SKG_TRY(skg_realloc(r->count + 1, sizeof *r->models, r->path, &r->models));
-    model *m = &r->models[r->count];
-    *m = (model){0};
-    snprintf(m->name, sizeof m->name, "%s", name);
-    *index = r->count++;
-    if (*name)
-        SKG_TRY(skg_archive_read(r->path, r->stream, r->size, name, 1, &m->text));
-    else
-        SKG_TRY(skg_archive_read_model(r->path, r->stream, r->size, (char[SKG_RELATION_MAX]){0}, &m->text));
-    if (!m->text)
+static skg_status read_model(reader *r, int64_t index) {
+    char name[LONGEST], *text = NULL;
+    memcpy(name, r->models[index].name, sizeof name);
+    SKG_TRY(*name ? skg_archive_read(r->path, r->stream, r->size, name, 1, &text)
+                  : skg_archive_read_model(r->path, r->stream, r->size, (char[SKG_RELATION_MAX]){0}, &text));
+    if (!text)
         return skg_fail(SKG_ERR_FORMAT, "%s: its objects name the part \"%s\", which is not there", r->path,
                         name);
-    return list_objects(r, m);
+    r->models[index].text = text;
+    return list_objects(r, index);
 }
 
 static int read_numbers(const char *text, int count, double *numbers) {
@@ -177,17 +212,14 @@ static skg_status add_object(reader *r, int64_t index, const char *id, const dou
 
 static skg_status add_component(reader *r, int64_t index, const skg_xml *xml, const double pose[16],
                                 int depth) {
-    char id[32], path[LONGEST];
+    char id[32];
     double own[16];
-    const int found = skg_xml_attribute(xml, "path", path, sizeof path);
-    if (found < 0 || skg_xml_attribute(xml, "objectid", id, sizeof id) <= 0)
-        return damaged(r, "a component or an item names no object");
+    SKG_TRY(read_reference(r, xml, &index, id));
     SKG_TRY(read_transform(r, xml, pose, own));
-    if (found > 0) SKG_TRY(find_model(r, path, &index));
     return add_object(r, index, id, own, depth + 1);
 }
 
-/* Adds what stands within the tag of an object. The model may move while others are read: it is named by its index. */
+/* Adds what stands within the tag of an object. */
 static skg_status add_contents(reader *r, int64_t index, const object *o, const double pose[16], int depth) {
     const int64_t base = r->arrays->vertices;
     const int mirrored = skg_pose_determinant(pose) < 0;
@@ -196,7 +228,7 @@ static skg_status add_contents(reader *r, int64_t index, const object *o, const 
     for (int k = 0; k < 16; k++)
         placed[k] = pose[k] * (k % 4 < 3 && k < 12 ? r->models[index].mm / r->root_mm : 1);
     skg_xml xml = {.at = o->at};
-    while (skg_xml_next(&xml) > 0 && !(xml.closes && skg_xml_is(&xml, "object"))) {
+    while (!o->empty && skg_xml_next(&xml) > 0 && !skg_xml_is(&xml, "object")) {
         if (!xml.opens) continue;
         if (skg_xml_is(&xml, "vertex")) SKG_TRY(add_vertex(r, &xml, placed));
         if (skg_xml_is(&xml, "triangle")) SKG_TRY(add_triangle(r, &xml, base, mirrored));
@@ -206,7 +238,6 @@ static skg_status add_contents(reader *r, int64_t index, const object *o, const 
 }
 
 static skg_status add_object(reader *r, int64_t index, const char *id, const double pose[16], int depth) {
-    if (depth > DEEPEST || ++r->added > MOST) return damaged(r, "its objects are made of each other");
     const model *m = &r->models[index];
     for (int64_t i = 0; i < m->count; i++) {
         if (strcmp(m->objects[i].id, id) != 0) continue;
@@ -222,11 +253,21 @@ static skg_status add_object(reader *r, int64_t index, const char *id, const dou
     return skg_fail(SKG_ERR_FORMAT, "%s: it is made of the object %s, which is not there", r->path, id);
 }
 
+/* Lists and counts all objects, before the first is added. */
+static skg_status read_models(reader *r) {
+    int64_t whole = 0, root = 0;
+    r->parts = (skg_instances){.path = r->path, .kind = "object", .size = r->size, .deepest = DEEPEST};
+    SKG_TRY(skg_instances_add(&r->parts, "build", 0, &whole));
+    SKG_TRY(find_model(r, "", &root));
+    for (int64_t i = 0; i < r->count; i++) SKG_TRY(read_model(r, i));
+    return skg_instances_check(&r->parts);
+}
+
 static skg_status read_build(reader *r) {
-    int64_t root = 0;
+    const int64_t root = 0;
     double identity[16];
     skg_pose_identity(identity);
-    SKG_TRY(find_model(r, "", &root));
+    SKG_TRY(read_models(r));
     r->root_mm = r->arrays->file_unit_mm = r->models[root].mm;
     skg_xml xml = {.at = r->models[root].text};
     while (skg_xml_next(&xml) > 0)
@@ -243,5 +284,6 @@ skg_status skg_mesh_read_3mf(FILE *stream, const char *path, int64_t size, skg_m
         skg_free(&r.models[i].objects);
     }
     skg_free(&r.models);
+    skg_instances_free(&r.parts);
     return status;
 }

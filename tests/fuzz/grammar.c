@@ -1,16 +1,8 @@
 /* Scene files by a grammar: each byte of the input chooses an alternative, so that most files get past the reader of JSON and
  * the checks of single keys. */
+#include "fuzz/expand.h"
 #include "fuzz/fuzz.h"
 #include "fuzz/read_scene.h"
-
-#include <string.h>
-
-enum { ALTERNATIVES_MAX = 24, LONGEST = 1 << 16, DEEPEST = 24 };
-
-/* <name> in an alternative stands for one of the alternatives of that rule. The first one ends every recursion. */
-typedef struct {
-    const char *name, *alternatives[ALTERNATIVES_MAX];
-} rule;
 
 /* clang-format off */
 static const rule rules[] = {
@@ -90,44 +82,8 @@ static const rule rules[] = {
                "{\"Needle\":[[<number>,<number>],[6,<number>]]}", "{\"Contrast\":\"<word>\",\"Share\":[[<number>,<number>]]}"}}};
 /* clang-format on */
 
-typedef struct {
-    const uint8_t *next, *end;
-    char text[LONGEST];
-    size_t length;
-} writer;
-
-static const rule *find_rule(const char *name, size_t length) {
-    for (size_t n = 0; n < sizeof rules / sizeof *rules; n++)
-        if (strlen(rules[n].name) == length && strncmp(rules[n].name, name, length) == 0) return &rules[n];
-    return NULL;
-}
-
-/* The first alternative when the input is used up, or at the depth where recursion has to end. */
-static const char *choose(writer *w, const rule *from, int depth) {
-    int count = 0;
-    while (count < ALTERNATIVES_MAX && from->alternatives[count]) count++;
-    if (w->next == w->end || depth >= DEEPEST) return from->alternatives[0];
-    return from->alternatives[*w->next++ % count];
-}
-
-static void write_rule(writer *w, const rule *from, int depth) {
-    for (const char *at = choose(w, from, depth); *at && w->length < LONGEST; at++) {
-        const char *close = *at == '<' ? strchr(at, '>') : NULL;
-        if (!close) {
-            w->text[w->length++] = *at;
-            continue;
-        }
-        write_rule(w, find_rule(at + 1, (size_t)(close - at - 1)), depth + 1);
-        at = close;
-    }
-}
-
 int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
-    static writer w;
-    w.next = data;
-    w.end = data + size;
-    w.length = 0;
-    write_rule(&w, &rules[0], 0);
-    fuzz_read_scene(w.text, w.length);
+    static char text[EXPANDED_MAX];
+    fuzz_read_scene(text, fuzz_expand(rules, sizeof rules / sizeof *rules, data, size, text));
     return 0;
 }

@@ -1,5 +1,6 @@
 /* Inputs that never end, never begin or grow when they are unpacked: each is refused at once with a sentence. */
 #include "suite.h"
+#include "support/archive.h"
 
 #include <skiagraph/skiagraph.h>
 
@@ -119,52 +120,6 @@ START_TEST(references_are_opened_alike) {
 }
 END_TEST
 
-/* A 3MF archive of three files that are stored, not compressed. */
-typedef struct {
-    unsigned char bytes[16384];
-    size_t size, directory; /* of the archive; where its directory begins */
-} archive;
-
-static void put(archive *a, uint64_t value, int count) {
-    for (int b = 0; b < count; b++) a->bytes[a->size++] = (unsigned char)(value >> 8 * b);
-}
-
-static uint32_t crc_of(const char *text) {
-    uint32_t crc = UINT32_MAX;
-    for (; *text; text++) {
-        crc ^= (unsigned char)*text;
-        for (int b = 0; b < 8; b++) crc = crc >> 1 ^ (crc & 1 ? 0xEDB88320u : 0);
-    }
-    return ~crc;
-}
-
-static void put_entry(archive *a, const char *name, const char *text, size_t at, int is_directory) {
-    put(a, is_directory ? 0x02014b50 : 0x04034b50, 4);
-    if (is_directory) put(a, 20, 2);
-    put(a, 20, 2), put(a, 0, 8);
-    put(a, crc_of(text), 4), put(a, strlen(text), 4), put(a, strlen(text), 4);
-    put(a, strlen(name), 2), put(a, 0, 2);
-    if (is_directory) put(a, 0, 10), put(a, at, 4);
-    memcpy(a->bytes + a->size, name, strlen(name));
-    a->size += strlen(name);
-    if (is_directory) return;
-    memcpy(a->bytes + a->size, text, strlen(text));
-    a->size += strlen(text);
-}
-
-enum { FILES_MAX = 4 };
-
-static void make_archive_of(archive *a, int count, const char *const *names, const char *const *texts) {
-    size_t at[FILES_MAX];
-    a->size = 0;
-    for (int f = 0; f < count; f++) at[f] = a->size, put_entry(a, names[f], texts[f], 0, 0);
-    a->directory = a->size;
-    for (int f = 0; f < count; f++) put_entry(a, names[f], texts[f], at[f], 1);
-    const size_t length = a->size - a->directory;
-    put(a, 0x06054b50, 4), put(a, 0, 4), put(a, (uint64_t)count, 2), put(a, (uint64_t)count, 2);
-    put(a, length, 4), put(a, a->directory, 4), put(a, 0, 2);
-}
-
 /* relations: instead of the usual text; NULL: that */
 static void make_archive_with(archive *a, const char *relations) {
     static const char *const names[] = {"[Content_Types].xml", "_rels/.rels", "3D/3dmodel.model"};
@@ -250,11 +205,139 @@ START_TEST(objects_of_3mf_lie_anywhere) {
     skg_mesh_release(&mesh);
     snprintf(text, sizeof text, build, "4");
     make_archive_of(&a, 3, names, (const char *const[]){relations, text, mesh_text});
-    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "made of each other");
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "a.3mf: the object \"4\" contains itself; take what leads back");
     make_archive_of(&a, 2, names, (const char *const[]){relations, text});
     snprintf(text, sizeof text, build, "2");
     make_archive_of(&a, 2, names, (const char *const[]){relations, text});
     ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "a.model\", which is not there");
+}
+END_TEST
+
+static const char root_relations[] =
+    "<Relationships><Relationship Target=\"/m.model\" Id=\"r\" "
+    "Type=\"http://schemas.microsoft.com/3dmanufacturing/2013/01/3dmodel\"/></Relationships>";
+
+/* Eight objects, each of ten of the next, are 11,111,111 in a kilobyte; five of them 11,111. */
+START_TEST(objects_are_counted_before_they_are_opened) {
+    static archive a;
+    static char text[16384];
+    size_t n = 0;
+    for (int deep = 5; deep <= 8; deep += 3) {
+        n = (size_t)sprintf(
+            text, "<model><resources><object id=\"0\"><mesh><vertices><vertex x=\"0\" y=\"0\" "
+                  "z=\"0\"/><vertex x=\"1\" y=\"0\" z=\"0\"/><vertex x=\"0\" y=\"1\" z=\"0\"/></vertices>"
+                  "<triangles><triangle v1=\"0\" v2=\"1\" v3=\"2\"/></triangles></mesh></object>");
+        for (int k = 1; k < deep; k++) {
+            n += (size_t)sprintf(text + n, "<object id=\"%d\"><components>", k);
+            for (int i = 0; i < 10; i++)
+                n += (size_t)sprintf(text + n, "<component objectid=\"%d\"/>", k - 1);
+            n += (size_t)sprintf(text + n, "</components></object>");
+        }
+        sprintf(text + n, "</resources><build><item objectid=\"%d\"/></build></model>", deep - 1);
+        make_archive_of(&a, 2, (const char *const[]){"_rels/.rels", "m.model"},
+                        (const char *const[]){root_relations, text});
+        if (deep == 5)
+            ck_archive(&a, "a.3mf", SKG_OK, "");
+        else
+            ck_archive(&a, "a.3mf", SKG_ERR_FORMAT,
+                       "a.3mf: places 11111111 parts, more than 100000 (the object \"7\" alone");
+    }
+}
+END_TEST
+
+/* The same of the formats that Assimp reads, which follows circles until the stack ends. */
+START_TEST(circles_of_nodes_are_refused) {
+    static const struct {
+        const char *name, *text, *sentence;
+    } cases[] = {
+        {"a.gltf",
+         "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[{\"children\":[1]},{\"children\":"
+         "[0]}]}",
+         "the node \"0\" contains itself"},
+        {"one.gltf",
+         "{\"asset\":{\"version\":\"1.0\"},\"nodes\":{\"a\":{\"children\":[\"b\"]},\"b\":{\"children\":[\"b\"]}}}",
+         "the node \"b\" contains itself"},
+        {"a.dae",
+         "<COLLADA version=\"1.4.1\"><library_nodes><node id=\"n\"><node><instance_node url=\"#n\"/></node></node>"
+         "</library_nodes><library_visual_scenes><visual_scene id=\"s\"><node><instance_node url=\"#n\"/></node></visual_scene>"
+         "</library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
+         "the node \"n\" contains itself"},
+        {"named.unknown",
+         "<COLLADA version=\"1.4.1\"><library_visual_scenes><visual_scene id=\"s\"><node name=\"n\"><instance_node url=\"#n\"/>"
+         "</node></visual_scene></library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
+         "the node \"\" contains itself"},
+        {"a.amf",
+         "<amf unit=\"inch\"><constellation id=\"1\"><instance objectid=\"2\"/></constellation><constellation id=\"2\"><instance "
+         "objectid=\"1\"/></constellation></amf>",
+         "the object \"1\" contains itself"},
+        {"a.x3d",
+         "<X3D><Scene><Group DEF=\"g\"><Transform><Group USE=\"g\"/></Transform></Group></Scene></X3D>",
+         "the node \"g\" contains itself"},
+    };
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        skg_mesh *mesh = NULL;
+        write_bytes(cases[k].name, cases[k].text, strlen(cases[k].text));
+        ck_skg_fails(skg_mesh_load(NULL, path, 1, &mesh), SKG_ERR_FORMAT, cases[k].sentence);
+    }
+}
+END_TEST
+
+/* Lengths of a glTF file that its bytes do not have, which Assimp would take memory for; nodes that place each other. */
+START_TEST(lengths_of_gltf_are_held_against_its_bytes) {
+    static const struct {
+        const char *view, *count, *bytes, *nodes, *sentence;
+    } cases[] = {
+        {"\"bufferView\":0,", "3", "36", "{\"mesh\":0}", NULL},
+        {"\"bufferView\":0,", "3", "2000000000", "{\"mesh\":0}", "the buffer \"0\" is 2000000000 bytes long"},
+        {"\"bufferView\":0,", "4", "36", "{\"mesh\":0}",
+         "the accessor \"0\" is 48 bytes long by its text, and has 36"},
+        {"", "100000000", "36", "{\"mesh\":0}", "the accessor \"0\" is 1200000000 bytes long"},
+        {"", "5000000", "36", "{\"mesh\":0},{\"mesh\":0},{\"mesh\":0},{\"mesh\":0}",
+         "MiB of memory, more than 1 GiB and more than 64"},
+        {"\"bufferView\":0,", "3", "36",
+         "{\"mesh\":0},{\"children\":[0,0,0,0,0,0,0,0]},{\"children\":[1,1,1,1,1,1,1,1]},"
+         "{\"children\":[2,2,2,2,2,2,2,2]},{\"children\":[3,3,3,3,3,3,3,3]},{\"children\":[4,4,4,4,4,4,4,4]},{\"children\":[5,5,5,5,5,5,5,5]}",
+         "places 299593 parts, more than 100000 (the node \"6\""},
+    };
+    char text[2048];
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        skg_mesh *mesh = NULL;
+        sprintf(
+            text,
+            "{\"asset\":{\"version\":\"2.0\"},\"scene\":0,\"scenes\":[{\"nodes\":[0]}],\"nodes\":[%s],\"meshes\":[{\"primitives\":["
+            "{\"attributes\":{\"POSITION\":0}}]}],\"accessors\":[{%s\"componentType\":5126,\"count\":%s,\"type\":\"VEC3\"}],"
+            "\"bufferViews\":[{\"buffer\":0,\"byteLength\":36}],\"buffers\":[{\"byteLength\":%s,\"uri\":\"data:application/octet-"
+            "stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA\"}]}",
+            cases[k].nodes, cases[k].view, cases[k].count, cases[k].bytes);
+        write_bytes("a.gltf", text, strlen(text));
+        if (cases[k].sentence)
+            ck_skg_fails(skg_mesh_load(NULL, path, 1, &mesh), SKG_ERR_FORMAT, cases[k].sentence);
+        else
+            ck_skg(skg_mesh_load(NULL, path, 1, &mesh));
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
+/* Binary glTF: chunks longer than the file, and a buffer longer than its chunk. */
+START_TEST(chunks_of_glb_are_held_against_the_file) {
+    static const char text[] =
+        "{\"asset\":{\"version\":\"2.0\"},\"buffers\":[{\"byteLength\":2000000000}]}  ";
+    static const struct {
+        uint32_t text, binary;
+        const char *sentence;
+    } cases[] = {{1u << 31, 4, "its text is 2147483648 bytes long by its head"},
+                 {sizeof text - 1, 1u << 31, "its chunk of numbers is 2147483648 bytes long"},
+                 {sizeof text - 1, 4, "the buffer \"0\" is 2000000000 bytes long by its text, and has 4"}};
+    static archive a;
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        a.size = 0;
+        put(&a, 0x46546C67, 4), put(&a, 2, 4), put(&a, 32 + sizeof text - 1, 4);
+        put(&a, cases[k].text, 4), put(&a, 0x4E4F534A, 4);
+        memcpy(a.bytes + a.size, text, sizeof text - 1), a.size += sizeof text - 1;
+        put(&a, cases[k].binary, 4), put(&a, 0x004E4942, 4), put(&a, 0, 4);
+        ck_archive(&a, "a.glb", SKG_ERR_FORMAT, cases[k].sentence);
+    }
 }
 END_TEST
 
@@ -272,6 +355,10 @@ START_TEST(archives_are_measured_before_they_are_unpacked) {
     ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
     memmove(a.bytes + 7, a.bytes, a.size), a.size += 7; /* behind other bytes, as Assimp accepts it */
     ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
+    make_archive(&a);
+    set(&a, a.directory + LENGTH, 900u << 20, 4);
+    ck_archive(&a, "a.3mf", SKG_ERR_FORMAT,
+               "\"[Content_Types].xml\" is 943718400 bytes long by its directory");
     make_archive(&a);
     set(&a, a.directory + LENGTH, UINT32_MAX, 4); /* a length of 8 bytes that is not there */
     ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "longer than 1024 MiB when it is unpacked");
@@ -352,6 +439,10 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, what_is_too_long_is_refused, 0, KINDS);
     tcase_add_test(tests, references_are_opened_alike);
     tcase_add_test(tests, objects_of_3mf_lie_anywhere);
+    tcase_add_test(tests, objects_are_counted_before_they_are_opened);
+    tcase_add_test(tests, circles_of_nodes_are_refused);
+    tcase_add_test(tests, lengths_of_gltf_are_held_against_its_bytes);
+    tcase_add_test(tests, chunks_of_glb_are_held_against_the_file);
     tcase_add_test(tests, archives_are_measured_before_they_are_unpacked);
 }
 
