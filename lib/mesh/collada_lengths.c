@@ -1,6 +1,8 @@
 /* Holds the lengths that arrays and accessors of a COLLADA file announce against their numbers: Assimp takes memory for what an
  * array announces, and reads behind its end where an accessor announces more. */
-#include "mesh/counts.h"
+#include "mesh/collada_lengths.h"
+
+#include "mesh/instances.h"
 #include "mesh/xml.h"
 
 #include <stdlib.h>

@@ -3,6 +3,9 @@
 
 #include "core/text.h"
 #include "mesh/archive.h"
+#include "mesh/collada_lengths.h"
+#include "mesh/gltf_counts.h"
+#include "mesh/xml_counts.h"
 
 #include <errno.h>
 #include <string.h>

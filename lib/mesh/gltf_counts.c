@@ -1,5 +1,7 @@
 /* Counts what the nodes of a glTF file (1 or 2) place, and holds the lengths that it announces against the bytes that it has. */
-#include "mesh/counts.h"
+#include "mesh/gltf_counts.h"
+
+#include "mesh/instances.h"
 
 #include <jansson.h>
 #include <limits.h>

@@ -10,6 +10,7 @@
 #include "mesh/assimp_files.h"
 #include "mesh/counts.h"
 #include "mesh/file_unit.h"
+#include "mesh/instances.h"
 #include "mesh/mesh.h"
 #include "mesh/read.h"
 

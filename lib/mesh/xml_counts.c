@@ -1,5 +1,7 @@
 /* Counts what the nodes of COLLADA, AMF and X3D files place. */
-#include "mesh/counts.h"
+#include "mesh/xml_counts.h"
+
+#include "mesh/instances.h"
 #include "mesh/xml.h"
 
 #include <string.h>

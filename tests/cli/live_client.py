@@ -30,19 +30,21 @@ class Frame:
 class Server:
     """The command, running."""
 
-    def __init__(self, command, *words):
-        self.process = subprocess.Popen([command, "live", *words, "--no-open"], stdout=subprocess.PIPE,
-                                        stderr=subprocess.PIPE, text=True)
+    def __init__(self, command, *words, desktop=None):
+        """desktop: variables of a desktop, where a browser opens the page"""
+        self.process = subprocess.Popen([command, "live", *words, *([] if desktop else ["--no-open"])], stdout=subprocess.PIPE,
+                                        stderr=subprocess.PIPE, text=True, env={**os.environ, **(desktop or {})})
         self.url = self.process.stdout.readline().strip()
         if not self.url:
             raise RuntimeError(self.process.stderr.read())
         parts = urllib.parse.urlsplit(self.url)
         self.port, self.token = parts.port, urllib.parse.parse_qs(parts.query)["token"][0]
 
-    def get(self, path, headers=(), method="GET"):
-        """Status and text of an answer."""
-        with socket.create_connection(("127.0.0.1", self.port), timeout=LIMIT) as connection:
-            lines = [f"{method} {path} HTTP/1.1", f"Host: 127.0.0.1:{self.port}", "Connection: close", *headers, "", ""]
+    def get(self, path, headers=(), method="GET", host=None, limit=LIMIT):
+        """Status and text of an answer. host: "" for none"""
+        with socket.create_connection(("127.0.0.1", self.port), timeout=limit) as connection:
+            named = [] if host == "" else [f"Host: {host or f'127.0.0.1:{self.port}'}"]
+            lines = [f"{method} {path} HTTP/1.1", *named, "Connection: close", *headers, "", ""]
             connection.sendall("\r\n".join(lines).encode())
             data = b""
             while chunk := connection.recv(1 << 16):

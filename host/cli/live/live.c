@@ -1,16 +1,15 @@
 #define _GNU_SOURCE /* gethostname */
 #include "verbs/verbs.h"
 
-#include "common/child.h"
 #include "common/encode.h"
 #include "common/interrupt.h"
 #include "common/say.h"
 #include "common/values.h"
+#include "live/browser.h"
 #include "live/loop.h"
 #include "live/server.h"
 
 #include <errno.h>
-#include <fcntl.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -37,18 +36,15 @@ static void name_host(const char *address, char *host, size_t size) {
     host[size - 1] = '\0';
 }
 
-static void open_browser(const char *url) {
-    const char *const words[] = {"xdg-open", url, NULL};
-    const int nothing = open("/dev/null", O_RDWR | O_CLOEXEC);
-    pid_t process;
-    if (nothing < 0) return;
-    if ((getenv("DISPLAY") || getenv("WAYLAND_DISPLAY")) && cli_has_program(words[0]))
-        (void)cli_process_start(words, nothing, -1, nothing, &process);
-    close(nothing);
+/* Names of the machine itself, which others do not reach. */
+static int is_own(const char *address) {
+    return strncmp(address, "127.", 4) == 0 || strcmp(address, "localhost") == 0 ||
+           strcmp(address, "[::1]") == 0;
 }
 
 /* The first line on standard output is the address, for programs that read it. */
-static int announce(const cli_arguments *arguments, const char *address, int port, const char *token) {
+static int announce(const cli_arguments *arguments, const char *address, int port, const char *token,
+                    char *file) {
     char host[256], url[400];
     int exit_status = CLI_DONE;
     name_host(address, host, sizeof host);
@@ -63,13 +59,14 @@ static int announce(const cli_arguments *arguments, const char *address, int por
         printf("%s\n", url);
     }
     fflush(stdout);
-    if (strcmp(address, own_address) != 0)
+    if (!is_own(address))
         cli_warn(
             "live: --bind %s: whoever has this address can see and change the scene, from other machines too, "
             "and nothing that is sent is encrypted; ssh -L %d:localhost:%d does without --bind",
             address, port, port);
     cli_note("live: open the address in a browser; Ctrl-C ends");
-    if (exit_status == CLI_DONE && !cli_given(arguments, &cli_flag_live_no_open)) open_browser(url);
+    if (exit_status == CLI_DONE && !cli_given(arguments, &cli_flag_live_no_open))
+        live_browser_open(url, file);
     return exit_status;
 }
 
@@ -97,7 +94,7 @@ static int read_flags(const cli_arguments *arguments, flags *given) {
 
 /* Serves the scene until it ends. */
 static int serve(const cli_arguments *arguments, const flags *given, live_loop *loop) {
-    char token[LIVE_TOKEN], nonce[LIVE_TOKEN];
+    char token[LIVE_TOKEN], nonce[LIVE_TOKEN], file[LIVE_BROWSER_PATH] = "";
     live_server *server = NULL;
     const live_server_options options = {
         .address = given->address, .port = (int)given->port, .token = token, .nonce = nonce};
@@ -107,9 +104,10 @@ static int serve(const cli_arguments *arguments, const flags *given, live_loop *
     cli_stop_gently(); /* from now on a signal is the end that was meant */
     if (exit_status == CLI_DONE) exit_status = live_server_start(&options, loop->hub, &server);
     if (exit_status == CLI_DONE)
-        exit_status = announce(arguments, given->address, live_server_port(server), token);
+        exit_status = announce(arguments, given->address, live_server_port(server), token, file);
     if (exit_status == CLI_DONE) live_loop_run(loop, given->idle);
     live_server_stop(&server);
+    live_browser_end(file);
     return exit_status;
 }
 

@@ -8,6 +8,7 @@
 #include "live/describe.h"
 #include "live/frame.h"
 #include "live/page.h"
+#include "live/paths.h"
 #include "live/picture.h"
 
 #include <math.h>
@@ -144,8 +145,9 @@ static void take_wish(live_loop *loop, live_wish *wish) {
     char sentence[LIVE_SENTENCE];
     const int is_new = !live_scene_fits(&loop->scene, wish);
     skg_view view;
-    const int is_made = is_new ? change_scene(loop, wish, sentence)
-                               : live_scene_view(&loop->base, &loop->scene, wish, &view, sentence);
+    const int is_made = live_paths_check(loop->base.path, wish->settings, sentence) &&
+                        (is_new ? change_scene(loop, wish, sentence)
+                                : live_scene_view(&loop->base, &loop->scene, wish, &view, sentence));
     if (!is_made) {
         tell_error(loop, wish->number, sentence);
         live_wish_free(wish);

@@ -1,3 +1,4 @@
+#define _GNU_SOURCE /* gethostname */
 #include "live/server.h"
 
 #include "common/say.h"
@@ -7,16 +8,22 @@
 #include <stdlib.h>
 #include <string.h>
 #include <strings.h>
+#include <unistd.h>
 
 const int live_has_server = 1;
 
 enum { FIN = 0x80, OPCODE = 0x0f, CODE_CONTINUATION = 0, CODE_TEXT = 1, CODE_BINARY = 2, CODE_CLOSE = 8 };
 enum { MESSAGE_MAX = 1 << 20 };
 
+/* Connections that say nothing take a thread each, for 2 s. */
+enum { SILENT_MAX = 128 };
+
 struct live_server {
     struct mg_context *context;
     live_hub *hub;
     char token[LIVE_TOKEN], nonce[LIVE_TOKEN];
+    char names[5][256]; /* under which it may be asked, without ports; the rest is empty */
+    int is_any;         /* it listens on every address of the machine */
 };
 
 static live_server *server_of(const struct mg_connection *connection) {
@@ -51,6 +58,32 @@ static int is_same_origin(const struct mg_connection *connection) {
     return host && named && strcasecmp(named + 3, host) == 0;
 }
 
+/* A site may let its name lead to this machine, and would then be the page's own: only the name that was bound is answered, by
+ * any port, which a tunnel changes. Of the addresses of a machine that listens on all, each. */
+static int is_own_host(const live_server *server, const struct mg_connection *connection) {
+    const char *host = mg_get_header(connection, "Host");
+    if (!host) return 0;
+    const char *close = *host == '[' ? strchr(host, ']') : NULL;
+    const size_t length = close ? (size_t)(close + 1 - host) : strcspn(host, ":");
+    for (int k = 0; k < 5; k++)
+        if (strlen(server->names[k]) == length && strncasecmp(server->names[k], host, length) == 0 && length)
+            return 1;
+    return server->is_any && (close || (length > 0 && strspn(host, "0123456789.") == length));
+}
+
+/* The names of a loopback address are all of them; a machine that listens on every address has its own, too. */
+static void take_names(live_server *server, const char *address) {
+    static const char *const own[] = {"localhost", "127.0.0.1", "[::1]"};
+    const int is_own =
+        strcasecmp(address, own[0]) == 0 || strcmp(address, own[2]) == 0 || strncmp(address, "127.", 4) == 0;
+    server->is_any = strcmp(address, "0.0.0.0") == 0 || strcmp(address, "[::]") == 0;
+    snprintf(server->names[0], sizeof server->names[0], "%s", address);
+    for (int k = 0; (is_own || server->is_any) && k < 3; k++)
+        snprintf(server->names[k + 1], sizeof server->names[0], "%s", own[k]);
+    if (server->is_any && gethostname(server->names[4], sizeof server->names[4] - 1) != 0)
+        server->names[4][0] = '\0';
+}
+
 static int answer(struct mg_connection *connection, int status, const char *reason, const char *sentence) {
     mg_printf(connection,
               "HTTP/1.1 %d %s\r\nContent-Type: text/plain; charset=utf-8\r\nContent-Length: %zu\r\n"
@@ -81,6 +114,9 @@ static int answer_page(live_server *server, struct mg_connection *connection) {
 static int begin_request(struct mg_connection *connection) {
     live_server *server = server_of(connection);
     const struct mg_request_info *request = mg_get_request_info(connection);
+    if (!is_own_host(server, connection))
+        return answer(connection, 421, "Misdirected Request",
+                      "This server answers by the name that it was bound to (--bind) only.\n");
     if (!has_token(server, request))
         return answer(connection, 403, "Forbidden",
                       "The address needs the token that skiagraph live has printed.\n");
@@ -141,9 +177,9 @@ static int drop_sentence(const struct mg_connection *connection, const char *sen
 
 int live_server_start(const live_server_options *options, live_hub *hub, live_server **server) {
     char listens[300], threads[16];
-    static const char requests[] = "10000", silent[] = "3600000";
+    static const char requests[] = "2000", silent[] = "3600000";
     snprintf(listens, sizeof listens, "%s:%d", options->address, options->port);
-    snprintf(threads, sizeof threads, "%d", LIVE_PAGES_MAX + 4);
+    snprintf(threads, sizeof threads, "%d", LIVE_PAGES_MAX + SILENT_MAX);
     const char *const words[] = {"listening_ports",
                                  listens,
                                  "num_threads",
@@ -159,6 +195,7 @@ int live_server_start(const live_server_options *options, live_hub *hub, live_se
     live_server *made = *server = calloc(1, sizeof *made);
     if (!made) return cli_error(CLI_DEVICE, "out of host memory");
     made->hub = hub;
+    take_names(made, options->address);
     snprintf(made->token, sizeof made->token, "%s", options->token);
     snprintf(made->nonce, sizeof made->nonce, "%s", options->nonce);
     mg_init_library(0);
