@@ -1,6 +1,7 @@
 /* The command skiagraph: finds the verb, parses what follows it, runs it. */
 #include "common/args.h"
 #include "common/encode.h"
+#include "common/file.h"
 #include "common/interrupt.h"
 #include "common/probe.h"
 #include "common/say.h"
@@ -49,6 +50,10 @@ static int run_verb(const cli_verb *verb, int count, char **words) {
             exit_status = cli_error(CLI_CHECK_FAILED, "%d warning%s, which --strict makes an error",
                                     cli_warning_count(), cli_warning_count() == 1 ? "" : "s");
     }
+    if (exit_status == CLI_OUTPUT)
+        cli_unmake();
+    else
+        cli_made_forget();
     cli_arguments_free(&arguments);
     return exit_status;
 }

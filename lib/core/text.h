@@ -32,8 +32,9 @@ static inline int64_t skg_element_bytes(int32_t type) {
 }
 
 /* --- Names of files that are not finished: NAME.part-PID-TAG. *
- * The tag is random for each process, because a process that is started again in a container often has the same number
- * as before, and two nodes that share a folder may have processes of the same number. */
+ * The tag has four digits of the machine since its start, because two nodes that share a folder may have processes of the same
+ * number, and eight that are random for each process, because one that is started again in a container often has the same number
+ * as before. */
 
 enum { SKG_PART_ENDING = 64 };
 
@@ -48,6 +49,9 @@ int skg_part_open(const char *path, char *temporary);
 
 /* 1: `name` is an unfinished file whose finished name ends in `end`, of whichever process. */
 int skg_part_is_of(const char *name, const char *end);
+
+/* 1: `name` is an unfinished file of a process that lived on this machine since its start, and has ended: nobody will finish it. */
+int skg_part_is_left(const char *name);
 
 /* --- What may be meant by the path of a file that is not there. */
 

@@ -71,6 +71,17 @@ static void device_text(cl_device_id device, cl_device_info what, char *text, si
     text[size - 1] = '\0';
 }
 
+/* What drivers say without thinking: 0 compute units, or 2^64-1 bytes for "no limit". Work is divided by the one and buffers are
+ * compared with the other, so both stay numbers that a device can have. */
+static int32_t believable_units(cl_uint units) {
+    enum { MOST_UNITS = 1 << 20 };
+    return units < 1 ? 1 : units > MOST_UNITS ? MOST_UNITS : (int32_t)units;
+}
+
+static int64_t believable_bytes(cl_ulong bytes) {
+    return bytes > INT64_MAX ? INT64_MAX : (int64_t)bytes;
+}
+
 skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_platform_id platform,
                              cl_device_id device, skg_device_info *info) {
     cl_device_type type = 0;
@@ -92,13 +103,13 @@ skg_status skg_device_inform(int32_t platform_number, int32_t device_number, cl_
     info->known = skg_platform_is_known(platform);
     info->gpu = (type & CL_DEVICE_TYPE_GPU) != 0;
     info->cpu = (type & CL_DEVICE_TYPE_CPU) != 0;
-    info->compute_units = (int32_t)units;
+    info->compute_units = believable_units(units);
     info->float_width = (int32_t)width;
     info->double_precision = twice != 0;
     info->correct_division = (single & CL_FP_CORRECTLY_ROUNDED_DIVIDE_SQRT) != 0;
-    info->memory = (int64_t)memory;
-    info->max_allocation = (int64_t)allocation;
-    info->local_memory = (int64_t)local;
+    info->memory = believable_bytes(memory);
+    info->max_allocation = believable_bytes(allocation);
+    info->local_memory = believable_bytes(local);
     device_text(device, CL_DEVICE_NAME, info->name, sizeof info->name);
     device_text(device, CL_DEVICE_VERSION, info->version, sizeof info->version);
     device_text(device, CL_DRIVER_VERSION, info->driver, sizeof info->driver);

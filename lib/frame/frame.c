@@ -1,3 +1,4 @@
+/* The passes of a frame: each from the vertices to its share of the image. */
 #include "frame/frame.h"
 #include "frame/derivative_pass.h"
 #include "frame/derivative_rates.h"
@@ -65,20 +66,15 @@ static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, int
     return SKG_OK;
 }
 
-/* The number of the first pass of an image. */
-static int64_t first_of(const skg_recipe *recipe) {
-    return skg_recipe_averages(recipe) ? 0 : -1;
-}
-
 /* The first pass of an image of the recipe's view. */
 static skg_status fill_first(const skg_recipe *recipe, const skg_machine *machine, skg_pass *pass) {
     const skg_frame_work work = {.view = &recipe->view, .lengths_of = -1};
-    return skg_pass_fill(recipe, &work, first_of(recipe), &machine->pass, pass);
+    return skg_pass_fill(recipe, &work, skg_frame_first_pass(recipe), &machine->pass, pass);
 }
 
 /* The programs of one pass. */
 static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machine, const skg_pass *pass) {
-    const skg_raster_options options = raster_of(recipe, machine, first_of(recipe), pass);
+    const skg_raster_options options = raster_of(recipe, machine, skg_frame_first_pass(recipe), pass);
     const skg_sums sums = {.mixed = pass->mix.sums ? recipe->mixed : 0, .fine = pass->fine};
     skg_attenuation shape;
     skg_image_place place = {0};
@@ -102,7 +98,8 @@ void skg_frame_prefetch(const skg_recipe *recipe, const skg_machine *machine) {
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome) {
     skg_pass pass;
     skg_status status = fill_first(recipe, machine, &pass);
-    if (status == SKG_OK) status = pin_raster(recipe, machine, first_of(recipe), &pass, 0, outcome);
+    if (status == SKG_OK)
+        status = pin_raster(recipe, machine, skg_frame_first_pass(recipe), &pass, 0, outcome);
     skg_pass_release(&pass);
     return status;
 }
@@ -340,8 +337,7 @@ cleanup:
     return status;
 }
 
-/* The passes from number `first` on, before `end`. */
-static skg_status enqueue_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end) {
+skg_status skg_frame_enqueue_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end) {
     gathered g = {0};
     skg_status status = SKG_OK;
     for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(enqueue_pass(job, work, p, &g));
@@ -353,7 +349,7 @@ cleanup:
 }
 
 skg_status skg_frame_enqueue_sums(skg_job *job, const skg_frame_work *work) {
-    const int64_t number = first_of(job->recipe);
+    const int64_t number = skg_frame_first_pass(job->recipe);
     skg_pass pass;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &job->machine->pass, &pass));
@@ -362,63 +358,4 @@ skg_status skg_frame_enqueue_sums(skg_job *job, const skg_frame_work *work) {
 cleanup:
     skg_pass_release(&pass);
     return status;
-}
-
-/* Enqueues what arrives at the detector, primary and scattered; layers: result: where it is put. */
-static skg_status enqueue_layers(skg_job *job, const skg_frame_work *work, skg_image_place *layers) {
-    const skg_recipe *recipe = job->recipe;
-    const int64_t first = first_of(recipe);
-    skg_frame_work layered = *work;
-    SKG_TRY(skg_layers_place(job->machine->context, &job->machine->layers, skg_frame_layers(job, work),
-                             &work->place, recipe->view.columns, recipe->view.rows, recipe->model.channels,
-                             layers));
-    layered.place = *layers;
-    SKG_TRY(enqueue_passes(job, &layered, first, first < 0 ? 0 : skg_samples_passes(&recipe->samples)));
-    return skg_frame_scatters(job) ? skg_frame_add_scatter(job, work, layers) : SKG_OK;
-}
-
-/* Enqueues what is shown, before its logarithm. */
-static skg_status enqueue_values(skg_job *job, const skg_frame_work *work) {
-    skg_image_place layers;
-    SKG_TRY(enqueue_layers(job, work, &layers));
-    return skg_frame_detect(job, work, &layers);
-}
-
-/* The variance of a logarithm needs the mean of its argument. */
-static skg_status enqueue_mean(skg_job *job, const skg_frame_work *work, cl_mem *mean) {
-    const skg_recipe *recipe = job->recipe;
-    skg_machine *machine = job->machine;
-    const int64_t size = recipe->view.rows * recipe->view.columns;
-    skg_frame_work other = *work;
-    SKG_TRY(
-        skg_buffer_reserve(machine->context, &machine->mean,
-                           recipe->model.channels * size *
-                               (int64_t)(work->place.output_double ? sizeof(cl_double) : sizeof(cl_float)),
-                           CL_MEM_READ_WRITE, "mean"));
-    *mean = machine->mean.memory;
-    other.shows = SKG_OUTPUT_MEAN;
-    other.place = (skg_image_place){.memory = *mean,
-                                    .output_double = work->place.output_double,
-                                    .row_stride = recipe->view.columns,
-                                    .channel_stride = size};
-    return enqueue_values(job, &other);
-}
-
-static skg_status enqueue_variance(skg_job *job, const skg_frame_work *work) {
-    skg_image_place layers;
-    cl_mem mean = NULL;
-    if (skg_decide_late_logarithm(job->recipe)) SKG_TRY(enqueue_mean(job, work, &mean));
-    SKG_TRY(enqueue_layers(job, work, &layers));
-    return skg_frame_detect_variance(job, work, &layers, mean);
-}
-
-skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
-    const skg_recipe *recipe = job->recipe;
-    const int64_t first = first_of(recipe);
-    if (work->lengths_of >= 0) return enqueue_passes(job, work, -1, 0);
-    if (skg_output_is_scatter(work->shows)) return skg_frame_show_scatter(job, work);
-    if (job->gradient) return enqueue_passes(job, work, first + work->pass, first + work->pass + 1);
-    if (work->shows == SKG_OUTPUT_VARIANCE) return enqueue_variance(job, work);
-    SKG_TRY(enqueue_values(job, work));
-    return skg_decide_late_logarithm(recipe) ? skg_frame_take_logarithm(job, work) : SKG_OK;
 }

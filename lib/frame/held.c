@@ -116,7 +116,7 @@ static skg_status copy_scene(skg_job *job) {
 }
 
 skg_status skg_held_frames_copy(skg_job *job, const skg_frame *frames) {
-    const int64_t count = job->gradient ? 1 : job->count - job->enqueued;
+    const int64_t first = job->enqueued / job->steps, count = job->gradient ? 1 : job->count - first;
     const double **poses = NULL; /* are checked here, and read again later */
     skg_frame *copies = NULL;
     skg_status status = SKG_OK;
@@ -127,14 +127,13 @@ skg_status skg_held_frames_copy(skg_job *job, const skg_frame *frames) {
     for (int64_t i = 0; frames && i < count; i++) {
         skg_view view;
         skg_noise_args noise;
-        SKG_TRY_CLEANUP(
-            skg_held_frame_read(job, frames, job->enqueued + i, &copies[i], &view, poses, &noise));
+        SKG_TRY_CLEANUP(skg_held_frame_read(job, frames, first + i, &copies[i], &view, poses, &noise));
         SKG_TRY_CLEANUP(check_overrides(job->recipe, &copies[i]));
         SKG_TRY_CLEANUP(own_arrays(job, &view, &copies[i]));
     }
     SKG_TRY_CLEANUP(copy_scene(job));
     job->then.frames = copies;
-    job->then.first = job->enqueued;
+    job->then.first = first;
 cleanup:
     skg_free(&poses);
     return status;

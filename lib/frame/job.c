@@ -19,6 +19,7 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
     skg_work_begin();
     made->outcome = outcome;
     made->count = results->frames = count;
+    made->steps = 1;
     made->staging.context = machine->context;
     made->staging.log.on = recipe->options.profile;
     SKG_TRY_CLEANUP(

@@ -29,10 +29,12 @@ struct skg_job {
     skg_outcome *outcome; /* takes what is known of a frame when it is enqueued, and remembers warnings */
     skg_frame_output *outputs; /* [output_count] */
     int64_t output_count;
-    int64_t count;       /* frames */
-    int64_t enqueued;    /* of them */
+    int64_t count; /* frames */
+    int64_t steps; /* of each frame, which are given to the device one after another; 1: it is given whole */
+    int64_t each;  /* passes of a step; 0: all */
+    int64_t enqueued;    /* steps of all frames */
     int64_t done;        /* of them: known to be finished */
-    cl_event *ends;      /* [count] of the last command of each frame that was enqueued */
+    cl_event *ends;      /* [count][steps] of the last command of each step that was enqueued */
     skg_job_scene then;  /* staged */
     skg_raster_pin main; /* the raster of the closed parts of the last pass */
     skg_staging staging; /* host memory that the device reads or writes; the log of all frames */
@@ -49,6 +51,11 @@ struct skg_job {
 skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machine *machine,
                           skg_outcome *outcome, int64_t count, int64_t output_count,
                           const skg_output *outputs, skg_job **job);
+
+/* Steps of all frames. */
+static inline int64_t skg_job_steps(const skg_job *job) {
+    return job->count * job->steps;
+}
 
 /* Waits for everything enqueued, frees what the job holds, and gives up the reference that it was created with; *job becomes NULL.
  * Also for submissions that failed half way. */

@@ -1,3 +1,4 @@
+/* Frames of jobs: given to the device, all at once or one after another, long ones in steps. */
 #include "frame/submission.h"
 
 #include "frame/frame.h"
@@ -9,7 +10,7 @@
 
 /* --- one frame */
 
-/* Enqueues one output of a frame. */
+/* Enqueues a step of one output of a frame. */
 static skg_status enqueue_output(skg_job *job, const skg_frame_output *output, int64_t index,
                                  skg_frame_work *work) {
     const int is_length = output->to.kind == SKG_OUTPUT_LENGTHS;
@@ -19,15 +20,23 @@ static skg_status enqueue_output(skg_job *job, const skg_frame_output *output, i
     work->shows = output->to.kind;
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
     SKG_TRY(skg_frame_enqueue(job, work));
+    if (work->step + 1 < skg_frame_steps(job->recipe, output->to.kind, work->each)) return SKG_OK;
     return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log);
 }
 
-/* What is reported of a frame is that of its last output: images come last. */
-static skg_status enqueue_outputs(skg_job *job, int64_t index, skg_frame_work *work) {
+/* Enqueues a step of a frame, or all its outputs. What is reported of a frame is that of its last output: images come last. */
+static skg_status enqueue_outputs(skg_job *job, int64_t index, int64_t step, skg_frame_work *work) {
+    work->each = job->each;
     for (int images = 0; images < 2; images++)
-        for (int64_t o = 0; o < job->output_count; o++)
-            if ((job->outputs[o].to.kind == SKG_OUTPUT_IMAGE) == images)
+        for (int64_t o = 0; o < job->output_count; o++) {
+            const int32_t kind = job->outputs[o].to.kind;
+            if ((kind == SKG_OUTPUT_IMAGE) != images) continue;
+            const int64_t steps = skg_frame_steps(job->recipe, kind, job->each);
+            work->step = job->each ? step : 0;
+            if (!job->each || (step >= 0 && step < steps))
                 SKG_TRY(enqueue_output(job, &job->outputs[o], index, work));
+            step -= steps;
+        }
     return SKG_OK;
 }
 
@@ -39,25 +48,28 @@ static skg_status enqueue_gradient(skg_job *job, int64_t pass, skg_frame_work *w
     return skg_frame_enqueue(job, work);
 }
 
-static skg_status enqueue_frame(skg_job *job, const skg_frame *frames, const double **poses) {
+static skg_status enqueue_step(skg_job *job, const skg_frame *frames, const double **poses) {
     skg_machine *machine = job->machine;
-    const int64_t index = job->enqueued;
+    const int64_t index = job->enqueued / job->steps, step = job->enqueued % job->steps;
     int32_t *bad_vertex = job->results.bad_vertex + index;
     skg_view view;
     skg_frame frame;
     skg_frame_work work = {.view = &view, .poses = poses, .meshes = job->then.meshes, .frame = &frame};
     SKG_TRY(skg_held_frame_read(job, frames, job->gradient ? 0 : index, &frame, &view, poses, &work.noise));
-    if (!job->gradient || index > 0) /* what a gradient needs first was projected for its first pass, too */
+    if (step == 0 &&
+        (!job->gradient || index > 0)) /* what a gradient needs first was projected for its first pass, too */
         SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
-    SKG_TRY(job->gradient ? enqueue_gradient(job, index, &work) : enqueue_outputs(job, index, &work));
-    SKG_TRY(skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *bad_vertex, bad_vertex));
+    SKG_TRY(job->gradient ? enqueue_gradient(job, index, &work) : enqueue_outputs(job, index, step, &work));
+    if (step + 1 == job->steps)
+        SKG_TRY(
+            skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *bad_vertex, bad_vertex));
     SKG_CL_TRY(
         clEnqueueMarkerWithWaitList(machine->context->device->queue, 0, NULL, &job->ends[job->enqueued]));
     job->enqueued++;
     return SKG_OK;
 }
 
-/* Enqueues frames until number `end`. */
+/* Enqueues steps until number `end`. */
 static skg_status enqueue_until(skg_job *job, const skg_frame *frames, int64_t end) {
     const double **poses = NULL;
     skg_status status = SKG_OK;
@@ -70,7 +82,7 @@ static skg_status enqueue_until(skg_job *job, const skg_frame *frames, int64_t e
     while (status == SKG_OK && job->enqueued < end) {
         /* Passes of a gradient are waited for, so that there is time to cancel them. */
         if (job->gradient && atomic_load(&job->cancelled)) break;
-        status = enqueue_frame(job, frames, poses);
+        status = enqueue_step(job, frames, poses);
     }
     skg_free(&poses);
     return status;
@@ -82,21 +94,51 @@ static skg_status enqueue_until(skg_job *job, const skg_frame *frames, int64_t e
  * cancelled job takes to end. */
 static const double AHEAD_S = 0.5;
 
+/* A frame of more than half of that is given in steps of about this long, and the device has four of them, s. */
+static const double STEP_S = 0.05;
+enum { STEPS_AHEAD = 4 };
+
 /* Orders of magnitude of a processor's core for a ray and a triangle, and of a GPU's compute unit over one. */
 static const double RAY_S = 20e-9, TRIANGLE_S = 200e-9, GPU_UNIT = 20;
 
-/* How many frames are under way at once: at least two, so that the device does not wait for the host. */
-static int64_t frames_ahead(const skg_job *job) {
-    if (job->gradient) return 1;
+/* About how long a pass takes, s. */
+static double pass_time(const skg_job *job) {
     const skg_recipe *recipe = job->recipe;
     const skg_device_info *device = &job->machine->context->device->info;
     const double fine = (double)recipe->samples.fine;
     const double rays = (double)(recipe->view.rows * recipe->view.columns) * fine * fine;
-    const double pass_s = RAY_S * rays + TRIANGLE_S * (double)skg_scene_triangles(recipe->scene);
-    const double passes = (double)(skg_samples_passes(&recipe->samples) * job->output_count);
     const double units = (double)device->compute_units * (device->cpu ? 1 : GPU_UNIT);
-    const double frames = AHEAD_S * units / (passes * pass_s);
+    return (RAY_S * rays + TRIANGLE_S * (double)skg_scene_triangles(recipe->scene)) / units;
+}
+
+/* How many steps are under way at once: at least two, so that the device does not wait for the host. */
+static int64_t steps_ahead(const skg_job *job) {
+    if (job->gradient) return 1;
+    if (job->each) return STEPS_AHEAD;
+    const double passes = (double)(skg_samples_passes(&job->recipe->samples) * job->output_count);
+    const double frames = AHEAD_S / (passes * pass_time(job));
     return frames > 2 ? (frames < (double)job->count ? (int64_t)frames : job->count) : 2;
+}
+
+/* Divides long frames of many passes into steps. Passes that a raster draws together (skg_passes_choose) stay together. */
+static skg_status divide(skg_job *job) {
+    const skg_recipe *recipe = job->recipe;
+    const int64_t passes = skg_samples_passes(&recipe->samples);
+    const int64_t together = SKG_SIDE_MAX * (int64_t)job->machine->context->device->info.compute_units;
+    const double pass_s = pass_time(job);
+    if (!skg_recipe_averages(recipe) || (double)passes * pass_s * (double)job->output_count < AHEAD_S / 2)
+        return SKG_OK;
+    const double wanted = STEP_S / pass_s;
+    int64_t each = wanted > 1 ? wanted < (double)passes ? (int64_t)wanted : passes : 1;
+    if (job->machine->context->device->info.cpu) each = (each + together - 1) / together * together;
+    if (each >= passes) return SKG_OK;
+    int64_t steps = 0;
+    for (int64_t o = 0; o < job->output_count; o++)
+        steps += skg_frame_steps(recipe, job->outputs[o].to.kind, each);
+    SKG_TRY(skg_staging_take(&job->staging, job->count * steps, sizeof *job->ends, "events", &job->ends));
+    job->each = each;
+    job->steps = steps;
+    return SKG_OK;
 }
 
 /* What a device was given cannot be taken back. The repair of leaky parts looks at the meshes on the host, and commands of the
@@ -143,7 +185,7 @@ skg_status skg_submission_finish(skg_job *job) {
     cl_command_queue queue = machine->context->device->queue;
     if (machine->context->held == job) machine->context->held = NULL;
     if (job->last) return SKG_OK;
-    results->frames = job->enqueued;
+    results->frames = job->enqueued / job->steps;
     SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 4 * sizeof *results->negative,
                              results->negative));
     if (job->main.raster) /* scatter alone has none */
@@ -193,10 +235,12 @@ static skg_status start_gradient(skg_job *job, const skg_frame *frames) {
 static skg_status start(skg_job *job, const skg_frame *frames, int at_once) {
     if (job->gradient) return start_gradient(job, frames);
     skg_context *context = job->machine->context;
-    const int64_t ahead = at_once || !is_for_later(job) ? job->count : frames_ahead(job);
+    const int is_whole = at_once || !is_for_later(job);
+    if (!is_whole) SKG_TRY(divide(job));
+    const int64_t all = skg_job_steps(job), ahead = is_whole ? all : steps_ahead(job);
     SKG_TRY(clear_counters(job->machine));
-    SKG_TRY(enqueue_until(job, frames, ahead < job->count ? ahead : job->count));
-    if (job->enqueued == job->count) return skg_submission_finish(job);
+    SKG_TRY(enqueue_until(job, frames, ahead < all ? ahead : all));
+    if (job->enqueued == all) return skg_submission_finish(job);
     SKG_TRY(skg_held_frames_copy(job, frames));
     SKG_TRY(skg_queue_flush(context));
     context->held = job;
@@ -210,12 +254,13 @@ skg_status skg_submission_enqueue(skg_job **job, const skg_frame *frames, int at
 }
 
 static skg_status enqueue_held(skg_job *job, int64_t end) {
-    SKG_TRY(enqueue_until(job, job->then.frames, end < job->count ? end : job->count));
-    if (job->enqueued == job->count) return skg_submission_finish(job);
+    const int64_t all = skg_job_steps(job);
+    SKG_TRY(enqueue_until(job, job->then.frames, end < all ? end : all));
+    if (job->enqueued == all) return skg_submission_finish(job);
     return skg_queue_flush(job->machine->context);
 }
 
-/* Enqueues frames that were held back, up to number `end`. Their failure is that of the job. */
+/* Enqueues steps that were held back, up to number `end`. Their failure is that of the job. */
 static void hand_over(skg_job *job, int64_t end) {
     if (job->last || job->failure != SKG_OK || atomic_load(&job->cancelled)) return;
     job->failure = enqueue_held(job, end);
@@ -223,13 +268,13 @@ static void hand_over(skg_job *job, int64_t end) {
 }
 
 void skg_submission_continue(skg_job *job) {
-    hand_over(job, job->done + frames_ahead(job));
+    hand_over(job, job->done + steps_ahead(job));
 }
 
 void skg_submission_flush(const skg_context *context) {
     skg_job *job = context->held;
     if (!job) return;
-    hand_over(job, job->count);
+    hand_over(job, skg_job_steps(job));
     const skg_status status = skg_submission_finish(job);
     if (job->failure == SKG_OK) job->failure = status;
 }

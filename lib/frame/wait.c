@@ -1,3 +1,4 @@
+/* Jobs are asked, cancelled and waited for. */
 #include "frame/wait.h"
 
 #include "core/text.h"
@@ -25,7 +26,7 @@ static skg_status outcome_of(skg_job *job) {
                                                 &job->results, &job->staging.log, job->outcome);
     if (job->failure != SKG_OK)
         return skg_fail(job->failure, "%s", job->sentence ? job->sentence : "out of host memory");
-    if (job->enqueued == job->count) {
+    if (job->enqueued == skg_job_steps(job)) {
         if (job->gradient && reported >= 0) SKG_TRY(skg_gradient_finish(job));
         return reported;
     }
@@ -35,8 +36,8 @@ static skg_status outcome_of(skg_job *job) {
                         " passes were made, and the results are not in place",
                         job->enqueued, job->count);
     return skg_fail(SKG_ERR_CANCELLED,
-                    "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place", job->enqueued,
-                    job->count);
+                    "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place",
+                    job->enqueued / job->steps, job->count);
 }
 
 skg_status skg_job_complete(skg_job **job) {
@@ -71,7 +72,7 @@ static skg_status is_over(cl_event event, int *over) {
     return SKG_OK;
 }
 
-/* Counts the frames that are done, and gives the device others. */
+/* Counts the steps that are done, and gives the device others. */
 static skg_status look(skg_job *job) {
     SKG_TRY(skg_context_enter(job->machine->context));
     for (int over = 1; over && job->done < job->enqueued; job->done += over)
@@ -107,7 +108,7 @@ static skg_status progress(skg_job *job, int64_t *done, int64_t *total) {
     SKG_NEEDS_OF("skg_job_progress", job);
     if (!atomic_load(&job->over)) SKG_TRY(look(job));
     if (done) *done = job->done;
-    if (total) *total = job->count;
+    if (total) *total = skg_job_steps(job);
     return SKG_OK;
 }
 

@@ -14,6 +14,7 @@ typedef struct {
         kind; /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE; of a component of the scatter: which */
     int32_t shows;        /* enum skg_output_kind */
     int64_t pass;         /* of a gradient: which of the frame's passes is made */
+    int64_t step, each;   /* of an image: which step is made, of so many passes; each: 0: all its passes */
     skg_noise_args noise; /* its key */
     skg_image_place place;
 } skg_frame_work;

@@ -177,7 +177,7 @@ int32_t skg_max_mixed(const skg_fine_request *request, int32_t planes) {
  *        42,000     512^2       5  44.4   44.7   45.8 */
 /* clang-format on */
 enum {
-    SIDE = 4,               /* SKG_SIDE of the kernels */
+    SIDE = SKG_SIDE_MAX,    /* SKG_SIDE of the kernels */
     SIDE_IMAGE = 1 << 20,   /* bytes of an image of which four stay in the caches, */
     OWN_IMAGE = 4 << 20,    /* and of one that a worker may have for itself */
     SIDE_TRIANGLE = 4,      /* bytes of an image whose misses a shared triangle makes up for */

@@ -107,6 +107,8 @@ typedef struct {
     int64_t triangles;   /* of a pass */
 } skg_passes_request;
 
+enum { SKG_SIDE_MAX = 4 }; /* most passes that a worker draws side by side */
+
 /* How many passes are drawn together, each by one worker in accumulators of its own: a multiple of the workers, or 1, with all
  * workers at each pass. side: of these, how many a worker draws side by side. */
 int32_t skg_passes_choose(const skg_passes_request *request, int32_t *side);

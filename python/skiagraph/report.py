@@ -5,7 +5,7 @@ import html
 from collections.abc import Iterator, Mapping
 from typing import Any
 
-from ._interface import ArgumentError
+from ._interface import ArgumentError, Error
 from ._library import call, ffi, filled, integer, listed
 
 _OVERLAPS_SHOWN = 3
@@ -15,7 +15,8 @@ class Report(Mapping[str, Any]):
     """A plan's decisions, as a mapping and as text: what is simulated, what is not, and why.
 
     The keys are the fields of the library's skg_plan_report, and `effects`, `channels`, `energies`, `overlaps` and
-    `stages`; `scatter` are those of skg_scatter_report for the last image, or None.
+    `stages`; `scatter` are those of skg_scatter_report for the last image, or None; `precision_bound` bounds the error of
+    rounding, which adds to `bound`, that of fewer energies and planes; None where it cannot be found out.
     """
 
     def __init__(self, plan: Any, labels: list[str]) -> None:
@@ -29,6 +30,7 @@ class Report(Mapping[str, Any]):
         for overlap in found["overlaps"]:
             overlap["part"], overlap["other"] = labels[overlap["part"]], labels[overlap["other"]]
         found["scatter"] = scatter_report(plan)
+        found["precision_bound"] = _precision_bound(plan)
         found["stages"] = listed("skg_stage", "skg_plan_stage", plan)
         self._found = found
 
@@ -43,8 +45,9 @@ class Report(Mapping[str, Any]):
 
     def _summary(self) -> list[tuple[str, str]]:
         f = self._found
+        rounding = "" if f["precision_bound"] is None else f", rounding at most {f['precision_bound']:.2g}"
         return [("scene", f"{f['parts']} parts ({f['leaky_parts']} leaky), {f['triangles']} triangles"),
-                ("precision", f["precision"]), ("strategy", f["strategy"]),
+                ("precision", f["precision"] + rounding), ("strategy", f["strategy"]),
                 ("planes", f"{f['planes']} of {f['plane_bits']} bits"),
                 ("energies", f"{f['nodes']} of {f['bins']}, error at most {f['bound']:.2g}"),
                 ("rays per pixel", str(f["samples"])), *_scatter_lines(f["scatter"])]
@@ -92,6 +95,16 @@ def scatter_report(plan: Any) -> dict[str, Any] | None:
         return filled("skg_scatter_report", "skg_plan_scatter_report_get", plan)
     except ArgumentError:
         return None
+
+
+def _precision_bound(plan: Any) -> float | None:
+    """The bound of the error of rounding; None: the plan has none, as the command shows none then."""
+    bound = ffi.new("double *")
+    try:
+        call("skg_plan_precision_bound_get", plan, bound)
+    except Error:
+        return None
+    return float(bound[0])
 
 
 def _energies(plan: Any) -> list[tuple[float, float]]:

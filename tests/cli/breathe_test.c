@@ -141,10 +141,10 @@ START_TEST(the_needle_passes_in_silence) {
 }
 END_TEST
 
-/* Stopped while it writes, it keeps the frames so far and their lines, and says so. */
-START_TEST(what_is_written_is_kept) {
+/* Starts breathe, which writes to the folder f, and lets a signal end it behind the fourth frame. */
+static void end_while_it_writes(int number) {
     const struct timespec pause = {.tv_nsec = 10000000};
-    int status = 0, frames = 0, lines = 0, said_frames = 0;
+    int status = 0;
     fflush(NULL);
     const pid_t child = fork();
     ck_assert_int_ge(child, 0);
@@ -158,9 +158,41 @@ START_TEST(what_is_written_is_kept) {
     }
     while (!has_file("f/frame-0003.png") && waitpid(child, &status, WNOHANG) == 0) nanosleep(&pause, NULL);
     ck_assert_msg(has_file("f/frame-0003.png"), "the command ended before it wrote a frame");
-    kill(child, SIGINT);
+    kill(child, number);
     ck_assert_int_eq(waitpid(child, &status, 0), child);
-    ck_assert(WIFSIGNALED(status) && WTERMSIG(status) == SIGINT);
+    ck_assert(WIFSIGNALED(status) && WTERMSIG(status) == number);
+}
+
+static int unfinished_files(const char *place) {
+    int found = 0;
+    DIR *directory = opendir(place);
+    for (struct dirent *entry; directory && (entry = readdir(directory));)
+        found += strstr(entry->d_name, ".part-") != NULL;
+    if (directory) closedir(directory);
+    return found;
+}
+
+/* Killed, it leaves no table under its name; what it leaves unfinished goes when the next command writes there. */
+START_TEST(what_was_killed_is_cleared) {
+    char place[256], path[512];
+    snprintf(place, sizeof place, "%s/f", folder);
+    end_while_it_writes(SIGKILL);
+    ck_assert(!has_file("f/motion.csv") && unfinished_files(place) >= 1);
+    static const char *const others[] = {"mine.part-1-notes", "far.png.part-1-00000badcafe"};
+    for (int i = 0; i < 2; i++) { /* the user's, and perhaps another machine's: both stay */
+        snprintf(path, sizeof path, "%s/%s", place, others[i]);
+        fclose(fopen(path, "wb"));
+    }
+    ck_run(0, "breathe thorax.json %s %s --phase 0.25 --range 0:8 -o f/one.png --quiet", SMALL, PLAIN);
+    ck_assert(has_file("f/one.png") && has_file("f/frame-0003.png"));
+    ck_assert_int_eq(unfinished_files(place), 2);
+}
+END_TEST
+
+/* Stopped while it writes, it keeps the frames so far and their lines, and says so. */
+START_TEST(what_is_written_is_kept) {
+    int frames = 0, lines = 0, said_frames = 0;
+    end_while_it_writes(SIGINT);
     read_back(".complained", complained, sizeof complained);
     const char *sentence = strstr(complained, "skiagraph: interrupted; ");
     ck_assert_msg(sentence && sscanf(sentence, "skiagraph: interrupted; %d of", &said_frames) == 1, "\"%s\"",
@@ -281,6 +313,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_liver_is_on_the_left);
     tcase_add_test(tests, the_needle_passes_in_silence);
     tcase_add_test(tests, what_is_written_is_kept);
+    tcase_add_test(tests, what_was_killed_is_cleared);
     tcase_add_test(tests, a_phase_alone_is_the_phase_in_sequence);
     tcase_add_test(tests, a_moment_alone_is_the_moment_in_sequence);
     tcase_add_test(tests, conflicts_are_reported);

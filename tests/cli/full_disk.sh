@@ -45,5 +45,18 @@ for size in 8k 16k 64k 1m; do
     mount -t tmpfs -o size=$size tmpfs "$work/disk"
     try view "$scene" -o "$work/disk/a.png"
     umount "$work/disk"
+    # Outputs of several files, in a folder that the command makes or that is there with a file of another.
+    mount -t tmpfs -o size=$size tmpfs "$work/disk"
+    try thorax --simple --triangles 10000 -o "$work/disk/thorax"
+    umount "$work/disk"
+    mount -t tmpfs -o size=$size tmpfs "$work/disk"
+    try breathe "$work/thorax/thorax.json" --set "Detector.NumberOfPixels=[64,64]" --seconds 3 --fps 4 --range 0:8 \
+        --meshes "$work/disk/meshes" -o "$work/disk/frames"
+    umount "$work/disk"
 done
+# The page of cost has room for its table, but not for itself.
+mount -t tmpfs -o size=16k tmpfs "$work/disk"
+size=16k
+try cost "$scene" --quick --within 1 -o "$work/disk/a.html"
+umount "$work/disk"
 exit $failed

@@ -6,6 +6,7 @@
 #include "suite.h"
 
 #include <string.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 START_TEST(every_status_has_name_and_text) {
@@ -134,6 +135,38 @@ START_TEST(unfinished_files_have_names_of_their_own) {
 }
 END_TEST
 
+/* Of a process of this machine that has ended, and of none else. */
+START_TEST(files_that_nobody_finishes) {
+    char own[SKG_PART_ENDING], name[2 * SKG_PART_ENDING];
+    int status = 0;
+    skg_part_ending(own);
+    const char *tag = strrchr(own, '-');
+    ck_assert_ptr_nonnull(tag);
+    ck_assert_uint_eq(strlen(tag), 13);
+    fflush(NULL);
+    const pid_t child = fork();
+    ck_assert_int_ge(child, 0);
+    if (child == 0) _exit(0);
+    ck_assert_int_eq(waitpid(child, &status, 0), child);
+    snprintf(name, sizeof name, "a.png.part-%ld%s", (long)child, tag);
+    ck_assert(skg_part_is_left(name));
+    snprintf(name, sizeof name, "a.png.part-%ld%s-17", (long)child, tag);
+    ck_assert(skg_part_is_left(name));
+    snprintf(name, sizeof name, "a.png.part-%ld%.5s0badcafe", (long)getpid(),
+             tag); /* had our number before */
+    ck_assert(skg_part_is_left(name));
+    snprintf(name, sizeof name, "a.png%s", own);
+    ck_assert(!skg_part_is_left(name));
+    snprintf(name, sizeof name, "a.png.part-%ld%s", (long)getppid(), tag);
+    ck_assert(!skg_part_is_left(name));
+    snprintf(name, sizeof name, "a.png.part-%ld-%s%s", (long)child, tag[1] == '0' ? "1" : "0", tag + 2);
+    ck_assert(!skg_part_is_left(name)); /* of another machine */
+    snprintf(name, sizeof name, "a.png.part-%ld%s.bak", (long)child, tag);
+    ck_assert(!skg_part_is_left(name));
+    ck_assert(!skg_part_is_left("a.png") && !skg_part_is_left("a.part-17") && !skg_part_is_left(own));
+}
+END_TEST
+
 static skg_status needs_a_mesh(const void *mesh) {
     SKG_NEEDS(mesh);
     return SKG_OK;
@@ -227,6 +260,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, nearest_name_is_a_slip_of_the_finger);
     tcase_add_test(tests, output_appears_whole_or_not_at_all);
     tcase_add_test(tests, unfinished_files_have_names_of_their_own);
+    tcase_add_test(tests, files_that_nobody_finishes);
     tcase_add_test(tests, a_missing_argument_is_named);
     tcase_add_test(tests, rounding_up_stays_where_it_is_exact);
     tcase_add_test(tests, a_mailbox_is_bounded);

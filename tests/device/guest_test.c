@@ -82,6 +82,26 @@ START_TEST(a_device_that_is_named_is_tested) {
 }
 END_TEST
 
+/* Work is divided by the number of compute units, and buffers are compared with the memory. */
+START_TEST(numbers_that_no_device_has) {
+    skg_context *context = NULL;
+    int32_t index = 0;
+    setenv("SKG_GUEST", "odd:", 1);
+    const skg_device_info info = find_guest();
+    ck_assert_int_eq(info.compute_units, 1);
+    ck_assert_int_eq(info.memory, INT64_MAX);
+    ck_assert_int_eq(info.max_allocation, INT64_MAX);
+    ck_assert_int_eq(info.local_memory, INT64_MAX);
+    ck_skg(skg_context_open("device=guest", 0, &context, &index));
+    skg_buffer buffer = {0};
+    ck_skg(skg_buffer_reserve(context, &buffer, (int64_t)1 << 40, CL_MEM_READ_WRITE,
+                              "a buffer")); /* not "at most -1 MiB" */
+    skg_buffer_release(&buffer);
+    skg_context_release(&context);
+    ck_skg_fails(skg_context_create("device=guest", &context), SKG_ERR_DEVICE, "computes wrongly");
+}
+END_TEST
+
 /* Keeps that the guest has passed, as its test would. */
 static void let_pass(double score) {
     cl_platform_id platform = NULL;
@@ -186,6 +206,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, a_driver_that_is_not_known_is_left_alone, 0,
                         (int)(sizeof misdeeds / sizeof *misdeeds));
     tcase_add_test(tests, a_device_that_is_named_is_tested);
+    tcase_add_test(tests, numbers_that_no_device_has);
     tcase_add_test(tests, a_device_that_has_passed_is_chosen);
     tcase_add_test(tests, a_device_that_fails_later_is_passed_over);
     tcase_add_loop_test(tests, without_a_cache_it_is_never_chosen, 0, 2);

@@ -2,6 +2,8 @@
 #include "suite.h"
 #include "support/run.h"
 
+#include <skiagraph/opencl.h>
+
 #include <math.h>
 #include <pthread.h>
 #include <string.h>
@@ -23,17 +25,30 @@ static skg_output output_of(float *to) {
     return output;
 }
 
-static skg_plan *fine_plan(void) {
+/* samples: of the source; 0: a point. noise: 1: -ln of images with noise. */
+static skg_plan *plan_of(int32_t samples, int32_t noise) {
     skg_plan *made = NULL;
     skg_plan_options options;
+    skg_spot spot;
     skg_spectrum *beam = NULL;
     skg_plan_options_init(&options);
+    skg_spot_init(&spot);
+    spot.shape = SKG_SPOT_DISC;
+    spot.extent[0] = 1;
+    spot.samples = samples;
+    if (samples) options.spot = &spot;
+    options.noise = noise;
+    if (noise) options.quantity = SKG_QUANTITY_ATTENUATION;
     options.supersampling = FINE;
     options.overlaps = 0;
     ck_skg(skg_spectrum_create_mono(60, 1000, &beam));
     ck_skg(skg_plan_create(run_context, scene, &view, beam, &options, &made));
     skg_spectrum_release(&beam);
     return made;
+}
+
+static skg_plan *fine_plan(void) {
+    return plan_of(0, 0);
 }
 
 static void open_plan(void) {
@@ -317,6 +332,78 @@ START_TEST(another_thread_cancels_while_one_waits) {
 }
 END_TEST
 
+/* One frame of so many samples of the source that it is given to the device in some 20 steps of 50 ms (lib/frame/submission.c), four
+ * at a time; the noise of a sample does not matter here. */
+static skg_plan *long_plan(int32_t noise) {
+    enum { SAMPLES_PER_CORE = 340 };
+    return plan_of((int32_t)(SAMPLES_PER_CORE * frames / FRAMES_PER_CORE), noise);
+}
+
+/* However late it is cancelled: no frame is in place, nothing was written, and its steps were counted. */
+START_TEST(cancelled_within_a_frame) {
+    if (!holds_frames()) return;
+    skg_plan *slow = long_plan(0);
+    skg_job *job = NULL;
+    const skg_output output = output_of(pixels);
+    int64_t done = 0, total = 0, before = 0;
+    ck_skg(skg_plan_submit(slow, 1, NULL, &output, &job));
+    while (_i && done == 0) ck_skg(skg_job_progress(job, &done, &total));
+    ck_skg(skg_job_cancel(job));
+    before = done;
+    ck_skg(skg_job_progress(job, &done, &total));
+    ck_assert(total > 12 && done >= before && done < total);
+    ck_skg_fails(skg_job_wait(&job), SKG_ERR_CANCELLED, "the job was cancelled: 0 of 1 frames are in place");
+    check_images(0);
+    ck_skg(skg_plan_image(plan, &output)); /* others are not touched */
+    ck_assert_mem_eq(pixels, reference, sizeof reference);
+    skg_plan_release(&slow);
+}
+END_TEST
+
+/* A frame in steps has the bits of one that is given whole, beside another output, however it is asked, and of the scene as it was. */
+START_TEST(steps_do_not_change_bits) {
+    static const double away[16] = {1, 0, 0, 5, 0, 1, 0, 3, 0, 0, 1, 0, 0, 0, 0, 1};
+    static float whole[2 * PIXELS], steps[2 * PIXELS], lengths[2 * PIXELS], again[PIXELS];
+    skg_plan *slow = long_plan(0);
+    skg_output outputs[2] = {output_of(steps), output_of(lengths)}, output = output_of(whole);
+    skg_job *job = NULL, *later = NULL;
+    cl_event event = NULL;
+    outputs[1].kind = SKG_OUTPUT_LENGTHS;
+    ck_skg(skg_plan_submit_cl(slow, 2, NULL, 1, &output, 0, NULL, &event, &job)); /* all at once */
+    ck_skg(skg_job_wait(&job));
+    clReleaseEvent(event);
+    ck_skg(skg_plan_outputs_submit(slow, 2, NULL, 2, outputs, &job));
+    ck_skg(skg_scene_part_pose_set(scene, 0, away));
+    if (_i) { /* another job comes in between */
+        output = output_of(again);
+        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &later));
+        ck_skg(skg_job_wait(&later));
+    }
+    ck_skg(skg_job_wait(&job));
+    ck_assert_mem_eq(steps, whole, sizeof whole);
+    ck_assert_mem_eq(lengths, lengths + PIXELS, sizeof again);
+    skg_plan_release(&slow);
+}
+END_TEST
+
+/* The variance of a logarithm is made in the steps of a mean and its own. */
+START_TEST(steps_of_a_variance) {
+    static float whole[PIXELS], steps[PIXELS];
+    skg_plan *slow = long_plan(1);
+    skg_output output = output_of(whole);
+    skg_job *job = NULL;
+    output.kind = SKG_OUTPUT_VARIANCE;
+    ck_skg(skg_plan_submit_cl(slow, 1, NULL, 1, &output, 0, NULL, NULL, &job)); /* all at once */
+    ck_skg(skg_job_wait(&job));
+    output.data = steps;
+    ck_skg(skg_plan_submit(slow, 1, NULL, &output, &job));
+    ck_skg(skg_job_wait(&job));
+    ck_assert(whole[PIXELS / 2 + SIDE / 2] > 0);
+    ck_assert_mem_eq(steps, whole, sizeof whole);
+    skg_plan_release(&slow);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_plan, close_plan);
     tcase_add_test(tests, cancelled_at_once);
@@ -327,6 +414,9 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_frames_of_the_submission);
     tcase_add_test(tests, a_part_is_added_too_early);
     tcase_add_test(tests, several_outputs);
+    tcase_add_loop_test(tests, cancelled_within_a_frame, 0, 2);
+    tcase_add_loop_test(tests, steps_do_not_change_bits, 0, 2);
+    tcase_add_test(tests, steps_of_a_variance);
 }
 
 SKG_SUITE_MAIN("cancel", add_tests)

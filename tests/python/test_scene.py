@@ -146,6 +146,7 @@ def test_a_plan_explains_itself(scene):
     assert effects["blur"]["reason"] in str(report)
     assert "<table>" in report._repr_html_() and "quantum noise" in repr(report)
     assert dict(report)["energies"] == [(60, 1000)]
+    assert 0 < report["precision_bound"] < 1e-3 and f"rounding at most {report['precision_bound']:.2g}" in str(report)
     assert report["channels"][0]["unit"] == "keV per pixel"
     assert "<td>ball</td>" in scene._repr_html_()
 

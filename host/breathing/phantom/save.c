@@ -5,6 +5,8 @@
 
 #include <stdio.h>
 #include <string.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 static skg_status path_of(const char *folder, const char *label, const char *extension, char **path) {
     size_t size = strlen(folder) + strlen(label) + strlen(extension) + 2;
@@ -74,25 +76,44 @@ static void write_scene(const skg_thorax *thorax, FILE *f) {
                "    }\n}\n");
 }
 
+/* Writes a file of the folder, and says in *is_new whether there was none before. part: its number; the number of parts: the scene. */
+static skg_status save_file(const skg_thorax *thorax, int64_t part, const char *folder, char **path,
+                            int *is_new) {
+    struct stat there;
+    skg_output_file file;
+    const int is_scene = part == thorax->parts;
+    *is_new = 0;
+    SKG_TRY(
+        path_of(folder, is_scene ? "thorax" : thorax->part[part].label, is_scene ? ".json" : ".ply", path));
+    const int was_there = stat(*path, &there) == 0;
+    if (is_scene) {
+        SKG_TRY(skg_output_open(*path, &file));
+        write_scene(thorax, file.stream);
+        SKG_TRY(skg_output_commit(&file));
+    } else {
+        SKG_TRY(skg_mesh_save(thorax->part[part].mesh, *path));
+    }
+    *is_new = !was_there;
+    return SKG_OK;
+}
+
+/* What cannot be written whole leaves none of its files, but for those that took the place of older ones. */
 skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder) {
     SKG_PLAIN;
     SKG_NEEDS(thorax);
     SKG_NEEDS(folder);
-    for (int64_t i = 0; i < thorax->parts; i++) {
-        char *path;
-        SKG_TRY(path_of(folder, thorax->part[i].label, ".ply", &path));
-        skg_status status = skg_mesh_save(thorax->part[i].mesh, path);
-        skg_free(&path);
-        SKG_TRY(status);
+    char **paths = NULL;
+    int *is_new = NULL;
+    const int64_t files = thorax->parts + 1;
+    skg_status status = skg_alloc(files, sizeof *paths, "paths", &paths);
+    if (status == SKG_OK) status = skg_alloc(files, sizeof *is_new, "paths", &is_new);
+    for (int64_t i = 0; i < files && status == SKG_OK; i++)
+        status = save_file(thorax, i, folder, &paths[i], &is_new[i]);
+    for (int64_t i = 0; paths && is_new && i < files; i++) {
+        if (status != SKG_OK && is_new[i]) unlink(paths[i]);
+        skg_free(&paths[i]);
     }
-    char *path;
-    SKG_TRY(path_of(folder, "thorax", ".json", &path));
-    skg_output_file file;
-    skg_status status = skg_output_open(path, &file);
-    if (status == SKG_OK) {
-        write_scene(thorax, file.stream);
-        status = skg_output_commit(&file);
-    }
-    skg_free(&path);
+    skg_free(&is_new);
+    skg_free(&paths);
     return status;
 }

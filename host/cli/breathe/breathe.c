@@ -147,6 +147,7 @@ static int write_frame(fluoroscopy *f, const sequence *s, int64_t i, motion_tabl
         int waited = fluoroscopy_wait_image(f, &job);
         if (exit_status == CLI_DONE) exit_status = waited;
     }
+    if (exit_status == CLI_DONE) cli_made(path);
     if (exit_status == CLI_DONE) exit_status = fluoroscopy_write(f, 0, path);
     if (exit_status == CLI_DONE) sheet_add(f, 0, i, s->frames, sheet);
     free(path);
@@ -160,16 +161,18 @@ static int write_sequence(fluoroscopy *f, const sequence *s) {
     int exit_status = motion && contact ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
     if (exit_status == CLI_DONE) exit_status = table_open(motion, &table);
     if (exit_status == CLI_DONE) exit_status = sheet_create(f, s->frames, &sheet);
+    if (exit_status == CLI_DONE) cli_made(motion), cli_made(contact);
     cli_progress_begin("writing, frames", s->frames);
     for (int64_t i = 0; i < s->frames && exit_status == CLI_DONE; i++) {
         exit_status = write_frame(f, s, i, &table, &sheet);
         if (exit_status != CLI_DONE) break;
+        table_keep(&table);
         cli_keep("%" PRId64 " of %" PRId64 " frames are in %s, with their lines in motion.csv", i + 1,
                  s->frames, s->place);
         cli_progress_step(i + 1);
     }
     cli_progress_end();
-    const int closed = table_close(&table);
+    const int closed = table_close(&table, exit_status == CLI_DONE);
     if (exit_status == CLI_DONE) exit_status = closed;
     if (exit_status == CLI_DONE) exit_status = sheet_write(f, &sheet, contact);
     free(sheet.values);

@@ -51,6 +51,7 @@ static int write_ply(const char *path, int64_t vertices, const double *now, cons
         to = put(to, 3, 1);
         for (int k = 0; k < 3; k++) to = put(to, (uint32_t)corners[3 * t + k], 4);
     }
+    cli_made(path);
     const int exit_status = cli_write_file(path, bytes, (size_t)(to - bytes));
     free(bytes);
     return exit_status;

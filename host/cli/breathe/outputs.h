@@ -4,6 +4,7 @@
 #define CLI_BREATHE_OUTPUTS_H
 
 #include "breathe/fluoroscopy.h"
+#include "common/file.h"
 
 #include <stdio.h>
 
@@ -14,11 +15,10 @@ int outline_find(fluoroscopy *f, const char *wanted);
 /* Writes "LABEL-0042.ply" for every part that moves, with the displacement of each vertex in mm. */
 int meshes_write(const fluoroscopy *f, const char *folder, int64_t frame);
 
-/* motion.csv: its heading, and a line of the motion for each frame, which is in the file as soon as the frame is. */
+/* motion.csv: its heading, and a line of the motion for each frame. The file appears with the last one. */
 
 typedef struct {
-    const char *path; /* the caller's */
-    FILE *stream;
+    cli_file file;
 } motion_table;
 
 int table_open(const char *path, motion_table *table);
@@ -26,8 +26,11 @@ int table_open(const char *path, motion_table *table);
 /* Adds a line of the motion in its present pose. */
 int table_add(const fluoroscopy *f, double time_s, motion_table *table);
 
-/* Does nothing if the table is not open. */
-int table_close(motion_table *table);
+/* A signal that ends the command leaves the lines so far under the table's name. */
+void table_keep(const motion_table *table);
+
+/* Finishes the table or, if it is not whole, removes it. Does nothing to one that is not open if it is not whole. */
+int table_close(motion_table *table, int is_whole);
 
 /* The contact sheet: small pictures of up to 16 frames, side by side. */
 

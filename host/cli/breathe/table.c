@@ -1,6 +1,8 @@
+/* motion.csv: a line of the motion for each frame. */
 #include "breathe/outputs.h"
 
 #include "common/encode.h"
+#include "common/interrupt.h"
 #include "common/say.h"
 
 #include <errno.h>
@@ -10,12 +12,12 @@
 #include <string.h>
 
 int table_open(const char *path, motion_table *table) {
-    *table = (motion_table){.path = path, .stream = fopen(path, "w")};
-    if (!table->stream) return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", path, strerror(errno));
+    const int exit_status = cli_file_open(path, &table->file);
+    if (exit_status != CLI_DONE) return exit_status;
     fputs("t_s,phase,amplitude,thoracic,diaphragmatic,lung_ml,tidal_ml,lung_hu,diaphragm_left_mm,"
           "diaphragm_right_mm,liver_x_mm,liver_y_mm,liver_z_mm,liver_volume_ratio,flipped_triangles,"
           "conflict_mm,broken_links,needle_mm,conflict\n",
-          table->stream);
+          table->file.stream);
     return CLI_DONE;
 }
 
@@ -42,21 +44,27 @@ int table_add(const fluoroscopy *f, double time_s, motion_table *table) {
     if (status == SKG_OK) status = skg_motion_body_get(f->motion, &body);
     if (status == SKG_OK) status = skg_body_measure_get(body, &m);
     if (status != SKG_OK) return cli_fail(status);
-    fprintf(table->stream,
+    fprintf(table->file.stream,
             "%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%.9g,%" PRId64 ",%.9g,%" PRId64
             ",%.9g,",
             time_s, s.phase, s.amplitude, s.thoracic, s.diaphragmatic, m.lung_ml, m.tidal_ml, s.lung_hu,
             m.diaphragm_mm[0], m.diaphragm_mm[1], m.liver_mm[0], m.liver_mm[1], m.liver_mm[2],
             m.liver_volume_ratio, m.flipped_triangles, m.conflict_mm, m.broken_links, s.needle_mm);
-    write_conflict(&m, table->stream);
-    if (fflush(table->stream) == 0) return CLI_DONE;
-    return cli_error(CLI_OUTPUT, "%s: cannot be written: %s", table->path, strerror(errno));
+    write_conflict(&m, table->file.stream);
+    if (fflush(table->file.stream) == 0) return CLI_DONE;
+    return cli_file_fail(table->file.path, strerror(errno));
 }
 
-int table_close(motion_table *table) {
-    if (!table->stream) return CLI_DONE;
-    const int failed = ferror(table->stream) | fclose(table->stream);
-    table->stream = NULL;
-    return failed ? cli_error(CLI_OUTPUT, "%s: cannot be written: %s", table->path, strerror(errno))
-                  : CLI_DONE;
+void table_keep(const motion_table *table) {
+    cli_keep_file(table->file.temporary, table->file.path);
+}
+
+int table_close(motion_table *table, int is_whole) {
+    int exit_status = CLI_DONE;
+    if (is_whole)
+        exit_status = cli_file_commit(&table->file);
+    else
+        cli_file_discard(&table->file);
+    cli_keep_file(NULL, NULL);
+    return exit_status;
 }

@@ -1,3 +1,4 @@
+/* Files that appear whole or not at all, and folders. */
 #include "common/file.h"
 
 #include "common/say.h"
@@ -128,6 +129,7 @@ static int check_folder_name(const char *folder) {
 int cli_make_folder(const char *folder) {
     struct stat found;
     if (stat(folder, &found) != 0 && check_folder_name(folder) != CLI_DONE) return CLI_USAGE;
+    cli_made(folder);
     if (mkdir(folder, 0777) == 0) return CLI_DONE;
     int reason = errno;
     if (stat(folder, &found) == 0 && S_ISDIR(found.st_mode)) return CLI_DONE;

@@ -28,6 +28,8 @@ static volatile sig_atomic_t guarded_child;
 /* Two sentences, so that the handler reads a whole one while the other is written. */
 static char kept[2][LONGEST_PATH] = {"no output was written", ""};
 static volatile sig_atomic_t kept_now;
+static char kept_file[2][LONGEST_PATH]; /* its name until now, and then */
+static volatile sig_atomic_t has_kept_file;
 static volatile sig_atomic_t is_gentle, is_asked; /* is_asked: the signal; 0: none */
 static skg_progress *cancelled;                   /* by the first signal; NULL: none */
 
@@ -38,6 +40,14 @@ void cli_keep(const char *format, ...) {
     vsnprintf(kept[next], sizeof kept[next], format, arguments);
     va_end(arguments);
     kept_now = next;
+}
+
+void cli_keep_file(const char *temporary, const char *path) {
+    has_kept_file = 0;
+    if (!temporary || strlen(temporary) >= LONGEST_PATH || strlen(path) >= LONGEST_PATH) return;
+    strcpy(kept_file[0], temporary);
+    strcpy(kept_file[1], path);
+    has_kept_file = 1;
 }
 
 void cli_guard_child(pid_t child) {
@@ -97,6 +107,7 @@ static void end(int number) {
         return;
     }
     if (guarded_child > 0 && kill(guarded_child, SIGKILL) == 0) waitpid(guarded_child, NULL, 0);
+    if (has_kept_file && rename(kept_file[0], kept_file[1]) == 0) has_kept_file = 0;
     for (int f = 0; f < folder_count; f++) clear_folder(folders[f]);
     say("\nskiagraph: interrupted; ");
     say(kept[kept_now]);
@@ -119,11 +130,19 @@ void cli_catch_signals(void) {
             sigaction(numbers[n], &action, NULL);
 }
 
+static void clear_leftovers(const char *path) {
+    DIR *folder = opendir(path);
+    for (struct dirent *entry; folder && (entry = readdir(folder));)
+        if (skg_part_is_left(entry->d_name)) unlinkat(dirfd(folder), entry->d_name, 0);
+    if (folder) closedir(folder);
+}
+
 static void guard(const char *path, size_t length) {
     if (folder_count == FOLDERS_MAX || length >= LONGEST_PATH) return;
     memcpy(folders[folder_count], path, length);
     folders[folder_count][length] = '\0';
     folder_count++;
+    clear_leftovers(folders[folder_count - 1]);
 }
 
 void cli_guard_output(const char *path) {

@@ -8,7 +8,8 @@
  * guarded outputs and then end the process. Call it once, in the thread that writes. */
 void cli_catch_signals(void);
 
-/* Guards the folder that holds `path`, and `path` itself if it is a folder. */
+/* Guards the folder that holds `path`, and `path` itself if it is a folder, and removes what commands that were killed have left
+ * unfinished there. */
 void cli_guard_output(const char *path);
 
 /* The handler kills this child process before it removes files, so that the child makes none. 0: there is no child. */
@@ -27,5 +28,8 @@ void cli_end_by_signal(void);
 /* What the handler says after "skiagraph: interrupted; ": the files that are kept. Until the first call: "no output was
  * written". */
 void cli_keep(const char *format, ...) __attribute__((format(printf, 1, 2)));
+
+/* A signal that ends the process gives the unfinished file its name, since what is in it is whole so far; NULL: no longer. */
+void cli_keep_file(const char *temporary, const char *path);
 
 #endif

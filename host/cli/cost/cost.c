@@ -52,6 +52,7 @@ static int check_outputs(const cli_arguments *arguments) {
 static int write_csv(const cost_study *study, const char *path) {
     char *text = cost_csv(study);
     if (!text) return cli_error(CLI_DEVICE, "out of host memory");
+    cli_made(path);
     int exit_status = cli_write_file(path, text, strlen(text));
     free(text);
     return exit_status;

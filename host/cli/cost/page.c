@@ -136,6 +136,7 @@ int cost_write_page(const cost_study *study, const char *path) {
     if (exit_status == CLI_DONE) exit_status = add_source_pictures(study, json_object_get(object, "sources"));
     char *text = exit_status == CLI_DONE ? fill_page(object) : NULL;
     if (exit_status == CLI_DONE && !text) exit_status = cli_error(CLI_DEVICE, "out of host memory");
+    if (exit_status == CLI_DONE) cli_made(path);
     if (exit_status == CLI_DONE) exit_status = cli_write_file(path, text, strlen(text));
     free(text);
     json_decref(object);

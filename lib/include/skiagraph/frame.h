@@ -11,10 +11,11 @@
  * a job keeps what it needs. Every job must be waited for, because that is what releases it, also one that
  * was cancelled.
  *
- * The device is given frames for about half a second at once. If a job has more, the others follow during
+ * The device is given frames for about half a second at once, and of a frame that takes longer, because it has many samples of the
+ * source, some of these samples at once. If a job has more, the others follow during
  * skg_job_test, skg_job_progress and skg_job_wait, and when another job is submitted to the context. Until then
  * a job can be cancelled (skg_job_cancel), and no part may be added to its scene or put elsewhere. Frames of leaky
- * meshes, and those of opencl.h, are all given at once. */
+ * meshes, those with scatter and those of opencl.h are all given at once. */
 #ifndef SKIAGRAPH_FRAME_H
 #define SKIAGRAPH_FRAME_H
 
@@ -181,10 +182,12 @@ SKG_API skg_status skg_job_test(skg_job *job, int32_t *done);
 /** Gets how far a job is, without waiting.
  *
  *     done    result: number of frames that are in place; may be NULL
- *     total   result: number of frames of the job; may be NULL */
+ *     total   result: number of frames of the job; may be NULL
+ *
+ * If the device is given the frames' samples of the source in steps, both are numbers of steps, and a multiple of the frames. */
 SKG_API skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total);
 
-/** Cancels a job: frames that the device was not given yet are not made. Those that it was given cannot be taken back;
+/** Cancels a job: frames, and steps of a frame, that the device was not given yet are not made. Those that it was given cannot be taken back;
  * skg_job_wait waits for them. Does nothing if the device has them all, or if the job was waited for. Other jobs are not touched.
  * Any thread may call it at any time while it holds a reference: a window's thread retains the job that another thread waits for. */
 SKG_API skg_status skg_job_cancel(skg_job *job);

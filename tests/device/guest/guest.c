@@ -2,6 +2,7 @@
  * with one GPU, compiles everything and computes nothing: what is read from its memory is 0.
  *
  * SKG_GUEST=KIND:CALL   at that call it ends the process (exit), aborts, crashes, hangs, fails, or leaks 1 MiB each time
+ * SKG_GUEST=odd:        it says numbers that no device has: 0 compute units, and 2^64-1 bytes of memory
  * SKG_GUEST_LOG=FILE    the names of the calls, one a line */
 #define CL_TARGET_OPENCL_VERSION 120
 #include <CL/cl_icd.h>
@@ -109,8 +110,10 @@ static cl_int CL_API_CALL device_ids(cl_platform_id of, cl_device_type type, cl_
 static cl_int CL_API_CALL device_info(cl_device_id of, cl_device_info what, size_t size, void *place,
                                       size_t *needed) {
     const cl_device_type type = CL_DEVICE_TYPE_GPU;
-    const cl_uint units = 9999;
-    const cl_ulong bytes = 1 << 30, local = 48 << 10;
+    const char *kind = getenv("SKG_GUEST");
+    const int odd = kind && strncmp(kind, "odd:", 4) == 0;
+    const cl_uint units = odd ? 0 : 9999;
+    const cl_ulong bytes = odd ? UINT64_MAX : 1 << 30, local = odd ? UINT64_MAX : 48 << 10;
     const size_t group = 1024;
     const object *own = &platform;
     (void)of;
