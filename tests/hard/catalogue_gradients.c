@@ -98,8 +98,8 @@ static void drawn(hard_outcome *o) {
     o->name = "derivatives of drawn scenes";
     o->danger = "what moves is nested, touches, displaces, or is behind much";
     o->unit = "of the sum";
-    o->bar[0] = 1e-3, o->bar[1] = 1e-6;
-    if (!run_has_double()) return; /* differences are of images in double precision */
+    o->bar[0] = 1e-3, o->bar[1] = 1e-5; /* a hit may change slightly and pass the test of differences */
+    if (!run_has_double()) return;      /* differences are of images in double precision */
     o->worst[0] = o->worst[1] = 0;
     for (uint64_t number = begin; number < begin + scenes; number++) judge_scene(o, number);
 }
