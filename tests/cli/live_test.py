@@ -241,6 +241,23 @@ def answers(path):
         assert "as it is" in names and "2 x 2 rays a pixel" in names
 
 
+def long_frames(path):
+    """A frame of minutes is dropped for a newer wish, and for the end."""
+    slow = {"Source.Shape": ["Disc", 1, "mm"], "Source.Samples": 65536, "Detector.Oversampling": 8}
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        page.wish(settings=slow)
+        page.text("scene")
+        time.sleep(0.2)  # the frame is under way by then, or will be: both must end
+        newer = page.wish(settings={"Source.Position": [8, -400, 4, "mm"]})
+        assert page.frame(newer).wish == newer
+        page.wish(settings=slow)
+        page.text("scene")
+        time.sleep(0.2)
+        assert server.end(60) == 0
+
+
 def errors(path):
     """What fails keeps the last image, and the sentence says what it is."""
     with Server(command, path) as server:
@@ -507,7 +524,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, answers, looks, scatter, interrupted, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, answers, looks, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):
