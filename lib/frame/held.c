@@ -1,6 +1,7 @@
 #include "frame/held.h"
 
 #include "frame/overrides.h"
+#include "plan/decisions.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -33,7 +34,7 @@ skg_status skg_held_frame_place(const skg_recipe *recipe, int64_t index, const s
         SKG_TRY(skg_view_check(frame->view));
         skg_view_init(view);
         SKG_TRY(skg_struct_read(frame->view, "skg_view", view, sizeof *view));
-        SKG_TRY(skg_recipe_check_view(recipe, view));
+        SKG_TRY(skg_decide_view(recipe, view));
     }
     return read_poses(recipe, index, frame, poses);
 }

@@ -3,6 +3,7 @@
 #include "core/text.h"
 #include "frame/assemble.h"
 #include "frame/quiet.h"
+#include "plan/decisions.h"
 
 skg_status skg_plan_retain(skg_plan *plan) {
     SKG_NEEDS(plan);
@@ -38,7 +39,7 @@ static skg_status move(skg_plan *plan, const skg_view *view) {
     skg_recipe *recipe = NULL;
     skg_view_init(&moved);
     SKG_TRY(skg_struct_read(view, "skg_view", &moved, sizeof moved));
-    SKG_TRY(skg_recipe_check_view(plan->recipe, &moved));
+    SKG_TRY(skg_decide_view(plan->recipe, &moved));
     SKG_TRY(skg_recipe_copy(plan->recipe, &recipe));
     recipe->view = moved;
     replace(plan, recipe);

@@ -1,6 +1,9 @@
+/* What follows from a recipe: how intensities become what is shown, and which views it is for. */
 #include "geometry/optics.h"
 #include "plan/decisions.h"
 #include "spectral/model.h"
+
+#include <inttypes.h>
 
 /* Whether the weights of the model are those of a ratio already. */
 static int has_ratio_weights(const skg_plan_options *options) {
@@ -65,4 +68,38 @@ skg_status skg_decide_detection(const skg_recipe *recipe, skg_detection *detecti
         factors[c] = ratio && !detection->over_flat_field ? 1 / model->flat_field[c] : 1;
     }
     return SKG_OK;
+}
+
+skg_status skg_decide_world(const skg_recipe *recipe, const skg_view *view) {
+    const char *name = "";
+    skg_attenuation shape;
+    if (view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY || !recipe->options.world) return SKG_OK;
+    skg_decide_attenuation(recipe, &shape);
+    if (shape.world_plane < 0) return SKG_OK;
+    SKG_TRY(skg_material_name_get(recipe->options.world, &name));
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "a parallel beam from infinity never comes through a World of %s; give the place where it "
+        "begins, or leave out the World, or take a ratio of one energy, in which it cancels",
+        name);
+}
+
+/* The photons of an absolute beam are found from a distance, which a parallel beam has not. */
+static skg_status check_distance(const skg_recipe *recipe, const skg_view *view) {
+    const int has_distance = view->projection == SKG_PROJECTION_POINT,
+              had_distance = recipe->view.projection == SKG_PROJECTION_POINT;
+    if (!recipe->absolute || has_distance == had_distance) return SKG_OK;
+    return skg_fail(
+        SKG_STALE, "the plan is for a %s and an absolute beam, the view has a %s; make a plan for it",
+        had_distance ? "point source" : "parallel beam", has_distance ? "point source" : "parallel beam");
+}
+
+skg_status skg_decide_view(const skg_recipe *recipe, const skg_view *view) {
+    SKG_TRY(skg_decide_world(recipe, view));
+    if (view->columns == recipe->view.columns && view->rows == recipe->view.rows)
+        return check_distance(recipe, view);
+    return skg_fail(SKG_STALE,
+                    "the plan is for %" PRId64 " x %" PRId64 " pixels, the view has %" PRId64 " x %" PRId64
+                    "; make a plan for it",
+                    recipe->view.columns, recipe->view.rows, view->columns, view->rows);
 }

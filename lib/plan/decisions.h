@@ -157,4 +157,10 @@ void skg_plan_overlaps_release(skg_plan_overlaps *found);
 skg_status skg_plan_overlaps_take(const skg_recipe *recipe, const skg_context *context,
                                   skg_plan_overlaps *found, skg_outcome *outcome);
 
+/* SKG_ERR_UNSUPPORTED if a beam of a view comes from infinity through a world that does not cancel in what the image shows. */
+skg_status skg_decide_world(const skg_recipe *recipe, const skg_view *view);
+
+/* The same; SKG_STALE if a view has another size than the recipe's, or with an absolute beam, a distance where the recipe's has none. */
+skg_status skg_decide_view(const skg_recipe *recipe, const skg_view *view);
+
 #endif

@@ -1,9 +1,7 @@
 #include "plan/recipe.h"
 #include "geometry/optics.h"
-#include "plan/decisions.h"
 
 #include <float.h>
-#include <inttypes.h>
 #include <math.h>
 
 int skg_recipe_averages(const skg_recipe *recipe) {
@@ -29,40 +27,6 @@ int32_t skg_recipe_kernel_precision(const skg_recipe *recipe) {
 
 double skg_recipe_last_bit(const skg_recipe *recipe) {
     return skg_recipe_kernel_precision(recipe) == SKG_PRECISION_DOUBLE ? DBL_EPSILON : (double)FLT_EPSILON;
-}
-
-/* The photons of an absolute beam are found from a distance, which a parallel beam has not. */
-static skg_status check_distance(const skg_recipe *recipe, const skg_view *view) {
-    const int has_distance = view->projection == SKG_PROJECTION_POINT,
-              had_distance = recipe->view.projection == SKG_PROJECTION_POINT;
-    if (!recipe->absolute || has_distance == had_distance) return SKG_OK;
-    return skg_fail(
-        SKG_STALE, "the plan is for a %s and an absolute beam, the view has a %s; make a plan for it",
-        had_distance ? "point source" : "parallel beam", has_distance ? "point source" : "parallel beam");
-}
-
-skg_status skg_recipe_check_world(const skg_recipe *recipe, const skg_view *view) {
-    const char *name = "";
-    skg_attenuation shape;
-    if (view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY || !recipe->options.world) return SKG_OK;
-    skg_decide_attenuation(recipe, &shape);
-    if (shape.world_plane < 0) return SKG_OK;
-    SKG_TRY(skg_material_name_get(recipe->options.world, &name));
-    return skg_fail(
-        SKG_ERR_UNSUPPORTED,
-        "a parallel beam from infinity never comes through a World of %s; give the place where it "
-        "begins, or leave out the World, or take a ratio of one energy, in which it cancels",
-        name);
-}
-
-skg_status skg_recipe_check_view(const skg_recipe *recipe, const skg_view *view) {
-    SKG_TRY(skg_recipe_check_world(recipe, view));
-    if (view->columns == recipe->view.columns && view->rows == recipe->view.rows)
-        return check_distance(recipe, view);
-    return skg_fail(SKG_STALE,
-                    "the plan is for %" PRId64 " x %" PRId64 " pixels, the view has %" PRId64 " x %" PRId64
-                    "; make a plan for it",
-                    recipe->view.columns, recipe->view.rows, view->columns, view->rows);
 }
 
 /* The count of references is the one member that changes. */

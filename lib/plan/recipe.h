@@ -77,10 +77,4 @@ int32_t skg_recipe_kernel_precision(const skg_recipe *recipe);
 /* The last bit of the device's numbers relative to 1. */
 double skg_recipe_last_bit(const skg_recipe *recipe);
 
-/* SKG_ERR_UNSUPPORTED if a beam of a view comes from infinity through a world that does not cancel in what the image shows. */
-skg_status skg_recipe_check_world(const skg_recipe *recipe, const skg_view *view);
-
-/* The same; SKG_STALE if a view has another size than the recipe's, or with an absolute beam, a distance where the recipe's has none. */
-skg_status skg_recipe_check_view(const skg_recipe *recipe, const skg_view *view);
-
 #endif

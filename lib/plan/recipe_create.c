@@ -168,7 +168,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     if (spot) recipe->options.spot = &recipe->samples.spot;
     SKG_TRY(check_field(recipe));
     SKG_TRY(make_model(recipe));
-    SKG_TRY(skg_recipe_check_world(recipe, &recipe->view));
+    SKG_TRY(skg_decide_world(recipe, &recipe->view));
     SKG_TRY(skg_channel_names_create(options, recipe->model.channels, &recipe->channel_names));
     SKG_TRY(find_leaky(recipe));
     recipe->priority_possible =

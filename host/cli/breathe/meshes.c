@@ -1,6 +1,7 @@
 #include "breathe/outputs.h"
 
 #include "common/file.h"
+#include "common/made.h"
 #include "common/say.h"
 #include "common/values.h"
 

@@ -1,5 +1,6 @@
 /* Files that appear whole or not at all, and folders. */
 #include "common/file.h"
+#include "common/made.h"
 
 #include "common/say.h"
 #include "core/text.h"

@@ -44,16 +44,6 @@ int cli_names_folder(const char *path);
  * refused. */
 int cli_make_folder(const char *folder);
 
-/* Of an output of several files, or of a folder: a path that is about to be made. If the command cannot finish the output, cli_unmake
- * removes those that were not there before. A folder is remembered before what is in it (cli_make_folder does so). */
-void cli_made(const char *path);
-
-/* Removes what was remembered, the last first; folders only if they are empty. */
-void cli_unmake(void);
-
-/* Forgets it: it stays. */
-void cli_made_forget(void);
-
 enum { CLI_NAME_OF_PART = 160 };
 
 /* A file name of a part's label, without extension. Blanks and slashes become hyphens. A label that is long, begins with a

@@ -1,5 +1,5 @@
 /* What a command has made of an output that it could not finish: files and folders that were not there before. */
-#include "common/file.h"
+#include "common/made.h"
 
 #include <stdlib.h>
 #include <string.h>

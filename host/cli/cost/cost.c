@@ -3,6 +3,7 @@
 #include "common/encode.h"
 #include "common/file.h"
 #include "common/interrupt.h"
+#include "common/made.h"
 #include "common/progress.h"
 #include "common/say.h"
 #include "common/values.h"

@@ -2,6 +2,7 @@
 
 #include "common/encode.h"
 #include "common/file.h"
+#include "common/made.h"
 #include "common/say.h"
 #include "map/surface_png.h"
 

@@ -92,9 +92,11 @@ int live_frame_poses(const live_scene *scene, const live_wish *wish, double *pos
 /* Waits for the image, and cancels what the device was not given yet when a newer wish comes. */
 static skg_status wait_for(skg_job **job, live_hub *hub, double expected_ms, int *dropped) {
     static const struct timespec pause = {.tv_nsec = 2000000};
-    int32_t is_done = expected_ms < LONG_MS || !hub;
+    int64_t total = 1; /* above 1: passes of a frame that takes long */
+    int32_t is_done =
+        !hub || (expected_ms < LONG_MS && skg_job_progress(*job, NULL, &total) == SKG_OK && total == 1);
     while (!is_done && skg_job_test(*job, &is_done) == SKG_OK && !is_done) {
-        if (live_hub_has_news(hub)) {
+        if (live_hub_has_news(hub) || cli_stop_asked()) {
             *dropped = 1;
             (void)skg_job_cancel(*job);
             break;
