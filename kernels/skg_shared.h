@@ -75,7 +75,7 @@
     SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
     SKG_INT first_contribution, contributions;                                                               \
     SKG_INT                                                                                                  \
-        fine; /* 1: behind the mesh's vertices stands what rounding them to floats has lost, and it counts */
+    fine; /* 1: behind the mesh's vertices stands what rounding them to floats has lost, and it counts */
 
 /* What a hit of a part adds to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count
  * plane has weight 0 and bias 1. */
