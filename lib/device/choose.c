@@ -1,3 +1,4 @@
+/* Which devices there are, what they say of themselves, and which one is taken. */
 #include "core/text.h"
 #include "device/cache.h"
 #include "device/choice.h"

@@ -1,3 +1,4 @@
+/* The derivative of a pass along a direction, added to the image of derivatives. */
 #include "frame/derivative_pass.h"
 
 #include "core/maths.h"

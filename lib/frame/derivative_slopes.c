@@ -1,3 +1,4 @@
+/* How parts, source and detector move along a direction, and the slopes of their faces. */
 #include "frame/derivative_slopes.h"
 
 #include "core/maths.h"

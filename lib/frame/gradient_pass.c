@@ -1,3 +1,4 @@
+/* The gradient of a pass: weights of its pixels, and what faces and edges gather of them. */
 #include "frame/gradient_pass.h"
 
 #include "core/maths.h"

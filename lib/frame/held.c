@@ -1,3 +1,4 @@
+/* Frames of the caller, read and copied, so that they may be enqueued later. */
 #include "frame/held.h"
 
 #include "frame/overrides.h"

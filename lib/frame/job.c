@@ -1,3 +1,4 @@
+/* A job: what a submission holds until it is waited for, and its references. */
 #include "frame/job.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* A plan after it was made: references, another view, and a scene that has changed. */
 #include "frame/plan.h"
 
 #include "core/text.h"

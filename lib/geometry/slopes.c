@@ -1,3 +1,4 @@
+/* How the depth of a face at a pixel changes when vertices, pose, source or detector move. */
 #include "geometry/slopes.h"
 
 #include "core/maths.h"

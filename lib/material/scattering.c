@@ -1,3 +1,4 @@
+/* Form factors and scattering functions of atoms and materials. */
 #include "material/scattering.h"
 
 #include "materials/spline.h"

@@ -1,3 +1,4 @@
+/* Meshes made of arrays, and moved. */
 #include "mesh/mesh.h"
 
 #include "core/context.h"

@@ -1,3 +1,4 @@
+/* Which strategy, tile and passes a plan draws with, by what they would take. */
 #include "geometry/bounds.h"
 #include "plan/decisions.h"
 

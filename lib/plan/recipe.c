@@ -1,3 +1,4 @@
+/* What a recipe says of itself, and its references. */
 #include "plan/recipe.h"
 #include "geometry/optics.h"
 

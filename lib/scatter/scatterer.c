@@ -1,3 +1,4 @@
+/* The scatter of a frame: from its object to smoothed images, unless they are known. */
 #include "scatter/scatterer.h"
 
 #include "core/clock.h"

@@ -1,3 +1,4 @@
+/* A few rays through the parts on the host, for the choice of energies and for bounds. */
 #include "spectral/verification.h"
 
 #include "core/maths.h"

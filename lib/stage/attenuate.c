@@ -1,3 +1,4 @@
+/* From path lengths to intensities: the kernels of attenuate.cl, their options and arguments. */
 #include "stage/attenuate.h"
 #include "core/maths.h"
 #include "stage/raster_private.h"

@@ -1,3 +1,4 @@
+/* Sums of weights over the pixels of faces and edges, for gradients. */
 #include "stage/gradient_private.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The verb breathe: a breathing scene as frames, a film, one picture or meshes. */
 #include "verbs/verbs.h"
 
 #include "breathe/outputs.h"

@@ -1,3 +1,4 @@
+/* The meshes of the parts at one moment of the breath, as files of a folder. */
 #include "breathe/outputs.h"
 
 #include "common/file.h"

@@ -1,3 +1,4 @@
+/* The verb cost, from its words to its outputs. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* The page that cost writes: its data put into the page of page/. */
 #include "cost/output.h"
 
 #include "common/encode.h"

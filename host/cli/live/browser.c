@@ -1,3 +1,4 @@
+/* The browser that live opens, through a file of the user alone that holds the address with its token. */
 #define _GNU_SOURCE /* mkostemps */
 #include "live/browser.h"
 

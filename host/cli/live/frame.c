@@ -1,3 +1,4 @@
+/* A frame for a page: the scene posed as its wish says, rendered, and dropped for a newer wish. */
 #include "live/frame.h"
 
 #include "common/interrupt.h"

@@ -1,3 +1,4 @@
+/* The verb live. */
 #define _GNU_SOURCE /* gethostname */
 #include "verbs/verbs.h"
 

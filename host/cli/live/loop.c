@@ -1,3 +1,4 @@
+/* The loop of live: takes wishes, renders what is asked for, and ends when it is idle or asked to. */
 #include "live/loop.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* Which files a page may name: those in the folder of the scene. */
 #define _GNU_SOURCE /* realpath */
 #include "live/paths.h"
 

@@ -1,3 +1,4 @@
+/* The server of live: its page, its socket, and who may come in. */
 #define _GNU_SOURCE /* gethostname */
 #include "live/server.h"
 

@@ -1,3 +1,4 @@
+/* What help says of scan: its flags, text and examples. */
 #include "manual/manual.h"
 
 const cli_flag cli_flag_scan_output = {

@@ -1,3 +1,4 @@
+/* A scan from the flags to its finished file. */
 #include "scan/steps.h"
 
 #include "common/file.h"
