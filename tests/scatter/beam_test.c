@@ -309,6 +309,8 @@ START_TEST(dense_worlds_are_refused) {
     s.view.source[2] = 1;
     ck_skg_fails(subject_try(&s), SKG_ERR_UNSUPPORTED, "a parallel beam from infinity");
     skg_material_release(&world);
+    s.view.projection = SKG_PROJECTION_POINT;
+    s.view.source[2] = -500;
     s.options.world = world = named("mu:0.0001");
     ck_skg_fails(subject_try(&s), SKG_ERR_MATERIAL, "World: mu:0.0001");
     skg_material_release(&world);
