@@ -205,7 +205,7 @@ def test_breath(tmp_path):
 def test_costs_are_the_commands(path):
     if not shutil.which("skiagraph"):
         pytest.skip("the command skiagraph is not on the path")
-    scene = sk.Scene(path, settings={"Detector.NumberOfPixels": [8, 8]})
+    scene = sk.Scene(path, settings={"Detector.NumberOfPixels": [16, 16]})
     cost = scene.cost(quick=True)
     assert {"points", "advice"} <= cost.keys() and cost["sensitivity"] is None
     found = scene.cost(quick=True, within=1, sensitivity=True)["sensitivity"]["parts"]
