@@ -1,3 +1,4 @@
+/* Derivatives and gradients of a plan: the public calls, what they refuse, and how a job of them is submitted. */
 #include "core/text.h"
 #include "device/self_tests.h"
 #include "frame/adjoint.h"
