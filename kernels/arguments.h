@@ -103,13 +103,7 @@
     X(GRADIENT_BATCHES, args) X(GRADIENT_BATCHES, corners) X(GRADIENT_BATCHES, projected) X(GRADIENT_BATCHES, parts) \
     X(GRADIENT_BATCHES, blocks) X(GRADIENT_BATCHES, contributions) X(GRADIENT_BATCHES, weights) \
     X(GRADIENT_BATCHES, scales) X(GRADIENT_BATCHES, first_around) X(GRADIENT_BATCHES, around) \
-    X(GRADIENT_BATCHES, moments)
-
-#define SKG_ARGUMENTS_DERIVATIVE_BATCHES(X) \
-    X(DERIVATIVE_BATCHES, args) X(DERIVATIVE_BATCHES, corners) X(DERIVATIVE_BATCHES, projected) \
-    X(DERIVATIVE_BATCHES, parts) X(DERIVATIVE_BATCHES, blocks) X(DERIVATIVE_BATCHES, contributions) \
-    X(DERIVATIVE_BATCHES, weights) X(DERIVATIVE_BATCHES, scales) X(DERIVATIVE_BATCHES, face_slopes) X(DERIVATIVE_BATCHES, lines) \
-    X(DERIVATIVE_BATCHES, sums)
+    X(GRADIENT_BATCHES, face_slopes) X(GRADIENT_BATCHES, lines) X(GRADIENT_BATCHES, moments)
 
 #define SKG_ARGUMENTS_COUNT_BAD_ROWS(X) \
     X(COUNT_BAD_ROWS, layout) X(COUNT_BAD_ROWS, copies) X(COUNT_BAD_ROWS, used) X(COUNT_BAD_ROWS, planes) \
@@ -193,7 +187,7 @@
     X(HITS_CLEAR, skg_hits_clear) X(HITS_LIST, skg_hits_list) X(HITS_SOURCE_PLANE, skg_hits_source_plane) X(HITS_PLACE, skg_hits_place) \
     X(HITS_SETTLE, skg_hits_settle) X(HITS_SLOPES, skg_hits_slopes) \
     X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_BATCHES, skg_gradient_batches) \
-    X(DERIVATIVE_BATCHES, skg_derivative_batches) X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
+    X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \
     X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(WEIGHTS, skg_weights) X(LOGARITHM, skg_logarithm) \
     X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(BLUR_VARIANCE, skg_blur_variance) X(DETECT, skg_detect) \

@@ -147,7 +147,7 @@ static void skg_gather_row(const skg_gathering *g, const skg_range *range, const
 }
 
 /* Whether a face is seen as a line: narrower than SKG_LINE pixels, or than what rounding makes of the places of its corners. A ray that hits it
- * is an accident, and its slope has no bound. The host integrates such faces over the pixels (lib/geometry/steep.h). */
+ * is an accident, and its slope has no bound. The host integrates such faces over the pixels (lib/gradient/steep.h). */
 static int skg_is_edge_on(skg_real4 a, skg_real4 b, skg_real4 c) {
     const skg_real4 ab = fabs(b - a), ac = fabs(c - a), bc = fabs(c - b);
     const skg_real longest = fmax(fmax(fmax(ab.x, ab.y), fmax(ac.x, ac.y)), fmax(bc.x, bc.y));

@@ -1,10 +1,6 @@
 /* The passes of a frame: each from the vertices to its share of the image. */
 #include "frame/frame.h"
-#include "frame/derivative_pass.h"
-#include "frame/derivative_rates.h"
 #include "frame/detector.h"
-#include "frame/gradient_density.h"
-#include "frame/gradient_pass.h"
 #include "frame/parts.h"
 #include "frame/scatter.h"
 #include "plan/decisions.h"
@@ -104,17 +100,6 @@ skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg
     return status;
 }
 
-/* The sums of a pass, as the attenuation reads them. place: of the pass among those of its raster. */
-static skg_sums sums_of(const skg_machine *machine, const skg_recipe *recipe, const skg_pass *pass,
-                        int32_t place) {
-    return (skg_sums){.raster = pass->main.raster,
-                      .pass = place,
-                      .scale = pass->scale.scale,
-                      .mixed = pass->mix.sums ? recipe->mixed : 0,
-                      .fine = pass->fine,
-                      .lists = machine->mix_lists.memory.memory};
-}
-
 /* Uploads the positions of meshes that have changed. After the submission they are no longer looked at. */
 static skg_status update_meshes(skg_job *job) {
     const skg_recipe *recipe = job->recipe;
@@ -136,16 +121,12 @@ static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const s
                                    .tile = recipe->options.tile};
     cl_int *extents = NULL;
     const cl_kernel projection = skg_raster_projection(pass->main.raster);
-    /* What is found from the sums of a frame that was rendered last needs none besides those that stand there; gradients need its
-     * vertices. */
-    const int from_sums =
-        job->gradient || work->shows == SKG_OUTPUT_MEAN || work->shows == SKG_OUTPUT_VARIANCE;
     SKG_TRY(update_meshes(job));
     SKG_TRY(skg_geometry_weigh(machine->context, &machine->geometry, &pass->camera, pass->parts,
                                pass->scale.scale));
-    if (!from_sums || !skg_geometry_take_projection(&machine->geometry, projection))
+    if (!work->reuses || !skg_geometry_take_projection(&machine->geometry, projection))
         SKG_TRY(skg_geometry_project(machine->context, &machine->geometry, projection, log));
-    if (from_sums && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
+    if (work->reuses && is_image && skg_raster_keeps(pass->main.raster, &machine->geometry)) return SKG_OK;
     if (pass->kernels.half) skg_raster_set_rays(pass->main.raster, &pass->camera);
     if (pass->priority.count)
         SKG_TRY(skg_hits_count(pass, &machine->geometry, &machine->hits, &job->staging));
@@ -162,17 +143,22 @@ static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const s
                          &job->results.leaky, &job->staging);
 }
 
-/* Uploads the lists by which planes are mixed. */
-static skg_status send_mix(skg_job *job, const skg_pass *pass) {
+skg_status skg_frame_sums(skg_job *job, const skg_pass *pass, int32_t place, skg_sums *sums) {
     const skg_recipe *recipe = job->recipe;
-    if (!pass->mix.sums) return SKG_OK;
-    return skg_mix_lists_send(&job->machine->mix_lists, pass->mix.lists,
-                              (int64_t)recipe->mixed * recipe->model.planes,
-                              recipe->options.precision == SKG_PRECISION_DOUBLE, &job->staging);
+    skg_mix_lists *lists = &job->machine->mix_lists;
+    if (pass->mix.sums)
+        SKG_TRY(skg_mix_lists_send(lists, pass->mix.lists, (int64_t)recipe->mixed * recipe->model.planes,
+                                   recipe->options.precision == SKG_PRECISION_DOUBLE, &job->staging));
+    *sums = (skg_sums){.raster = pass->main.raster,
+                       .pass = place,
+                       .scale = pass->scale.scale,
+                       .mixed = pass->mix.sums ? recipe->mixed : 0,
+                       .fine = pass->fine,
+                       .lists = lists->memory.memory};
+    return SKG_OK;
 }
 
-/* What the intensities of a pass are multiplied by. */
-static double factor_of(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass *pass) {
+double skg_frame_factor(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass *pass) {
     /* Noise is that of photons in a pixel; its area is divided by later. */
     const int areas =
         recipe->options.quantity == SKG_QUANTITY_FLUENCE && !skg_quantity_is_absolute(&recipe->options);
@@ -204,7 +190,7 @@ static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_
     skg_machine *machine = job->machine;
     const int lengths = work->lengths_of >= 0;
     const double share = 1 / (double)skg_samples_count(&recipe->samples);
-    const double factor = lengths ? 1 : factor_of(recipe, work, pass);
+    const double factor = lengths ? 1 : skg_frame_factor(recipe, work, pass);
     const double least = least_of(recipe, pass, lengths);
     const cl_int none = 0;
     skg_attenuation attenuation = lengths ? machine->lengths : machine->images;
@@ -221,49 +207,10 @@ static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_
         number + 1 == skg_samples_passes(&recipe->samples)) /* the last pass's count is reported */
         SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
                                        sizeof none, 0, sizeof none, 0, NULL, NULL));
-    SKG_TRY(send_mix(job, pass));
-    const skg_sums sums = sums_of(machine, recipe, pass, place_of_pass);
+    skg_sums sums;
+    SKG_TRY(skg_frame_sums(job, pass, place_of_pass, &sums));
     return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, share, least,
                          machine->negative.memory, &noise, &place, &job->staging.log);
-}
-
-/* Adds one pass to the gradient of the job, from the sums. */
-static skg_status add_gradient(skg_job *job, const skg_frame_work *work, int64_t number,
-                               const skg_pass *pass) {
-    SKG_TRY(send_mix(job, pass));
-    const skg_sums sums = sums_of(job->machine, job->recipe, pass, 0);
-    const double factor = factor_of(job->recipe, work, pass);
-    if (job->gradient->direction_count)
-        return skg_derivative_add_pass(job, work, number, pass, &sums, factor);
-    return skg_gradient_add_pass(job, work, number, pass, &sums, factor);
-}
-
-/* Adds the density of one part, from its path lengths along the rays of a pass. */
-static skg_status add_density(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part) {
-    skg_frame_work lengths = *work;
-    skg_pass pass;
-    skg_status status = SKG_OK;
-    lengths.lengths_of = part;
-    lengths.kind = SKG_LENGTHS_NET;
-    SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, &lengths, number, &job->machine->pass, &pass));
-    SKG_TRY_CLEANUP(pin_raster(job->recipe, job->machine, number, &pass, 1, job->outcome));
-    SKG_TRY_CLEANUP(enqueue_sums(job, &lengths, &pass));
-    SKG_TRY_CLEANUP(skg_gradient_place_lengths(job, &pass, &lengths.place));
-    pass.fine = 1; /* every ray is shown */
-    SKG_TRY_CLEANUP(enqueue_image(job, &lengths, 0, &pass, 0));
-    status = skg_gradient_add_density(job, &pass, part);
-cleanup:
-    skg_pass_release(&pass);
-    return status;
-}
-
-/* Those of all parts that need path lengths. */
-static skg_status add_densities(skg_job *job, const skg_frame_work *work, int64_t number) {
-    const uint8_t *needs = job->gradient->needs_lengths;
-    if (job->gradient->direction_count) skg_derivative_clear_rates(job);
-    for (int64_t p = 0; p < job->recipe->scene->count; p++)
-        if (needs[p]) SKG_TRY(add_density(job, work, number, p));
-    return SKG_OK;
 }
 
 /* Passes that wait to be drawn together: `count` of them, from number `first` on, in a raster of `room`. */
@@ -315,10 +262,8 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
     skg_machine *machine = job->machine;
     skg_pass pass;
     skg_status status = SKG_OK;
-    /* A pass by itself, and so before this one, whose memory it shares. */
-    if (job->gradient && job->gradient->direction_count) SKG_TRY(add_densities(job, work, number));
     SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &machine->pass, &pass));
-    SKG_TRY_CLEANUP(pin_raster(job->recipe, machine, number, &pass, job->gradient != NULL, job->outcome));
+    SKG_TRY_CLEANUP(pin_raster(job->recipe, machine, number, &pass, 0, job->outcome));
     skg_raster_pin_copy(&pass.main, &job->main);
     skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, job->outcome);
     if (g->count && (g->count == g->room || g->passes->main.raster != pass.main.raster))
@@ -328,12 +273,9 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
         return SKG_OK;
     }
     SKG_TRY_CLEANUP(enqueue_sums(job, work, &pass));
-    status =
-        job->gradient ? add_gradient(job, work, number, &pass) : enqueue_image(job, work, number, &pass, 0);
+    status = enqueue_image(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
-    if (job->gradient && !job->gradient->direction_count && status == SKG_OK)
-        status = add_densities(job, work, number);
     return status;
 }
 
@@ -348,14 +290,33 @@ cleanup:
     return status;
 }
 
-skg_status skg_frame_enqueue_sums(skg_job *job, const skg_frame_work *work) {
-    const int64_t number = skg_frame_first_pass(job->recipe);
-    skg_pass pass;
-    skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_pass_fill(job->recipe, work, number, &job->machine->pass, &pass));
-    SKG_TRY_CLEANUP(pin_raster(job->recipe, job->machine, number, &pass, 1, job->outcome));
-    status = enqueue_sums(job, work, &pass);
-cleanup:
-    skg_pass_release(&pass);
-    return status;
+skg_status skg_frame_draw_pass(skg_job *job, const skg_frame_work *work, int64_t number, skg_pass *pass) {
+    SKG_TRY(skg_pass_fill(job->recipe, work, number, &job->machine->pass, pass));
+    SKG_TRY(pin_raster(job->recipe, job->machine, number, pass, 1, job->outcome));
+    skg_raster_pin_copy(&pass->main, &job->main);
+    skg_warn_unseen(job->machine->context, pass->scene, &pass->camera, pass->extents, pass->fine,
+                    job->outcome);
+    return enqueue_sums(job, work, pass);
+}
+
+skg_status skg_frame_draw_lengths(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
+                                  skg_buffer *lengths, skg_pass *pass) {
+    skg_machine *machine = job->machine;
+    skg_frame_work of_part = *work;
+    of_part.lengths_of = part;
+    of_part.kind = SKG_LENGTHS_NET;
+    SKG_TRY(skg_pass_fill(job->recipe, &of_part, number, &machine->pass, pass));
+    SKG_TRY(pin_raster(job->recipe, machine, number, pass, 1, job->outcome));
+    SKG_TRY(enqueue_sums(job, &of_part, pass));
+    const int is_double = pass->kernels.precision == SKG_PRECISION_DOUBLE;
+    const int64_t columns = pass->camera.columns, rows = pass->camera.rows;
+    SKG_TRY(skg_buffer_reserve(machine->context, lengths,
+                               columns * rows * (int64_t)(is_double ? sizeof(double) : sizeof(float)),
+                               CL_MEM_READ_WRITE, "path lengths"));
+    of_part.place = (skg_image_place){.memory = lengths->memory,
+                                      .output_double = is_double,
+                                      .row_stride = columns,
+                                      .channel_stride = rows * columns};
+    pass->fine = 1; /* every ray is shown */
+    return enqueue_image(job, &of_part, 0, pass, 0);
 }

@@ -94,7 +94,7 @@ static skg_status check_overrides(const skg_recipe *recipe, const skg_frame *fra
     return status;
 }
 
-/* The host's part of a gradient reads vertices when the caller may have moved them. */
+/* What the host does between steps reads vertices when the caller may have moved them. */
 static skg_status own_vertices(skg_job *job, skg_mesh *mesh) {
     const int64_t count = 3 * mesh->vertices;
     if (mesh->positions_stale)
@@ -113,12 +113,13 @@ static skg_status copy_scene(skg_job *job) {
         memcpy(then->poses + 16 * p, scene->parts[p].pose, 16 * sizeof *then->poses);
     for (int64_t m = 0; m < meshes->count; m++)
         memcpy(&then->meshes[m], meshes->meshes[m], sizeof *then->meshes);
-    for (int64_t m = 0; job->gradient && m < meshes->count; m++) SKG_TRY(own_vertices(job, &then->meshes[m]));
+    for (int64_t m = 0; job->kind->begin && m < meshes->count; m++)
+        SKG_TRY(own_vertices(job, &then->meshes[m]));
     return SKG_OK;
 }
 
 skg_status skg_held_frames_copy(skg_job *job, const skg_frame *frames) {
-    const int64_t first = job->enqueued / job->steps, count = job->gradient ? 1 : job->count - first;
+    const int64_t first = job->enqueued / job->steps, count = job->count - first;
     const double **poses = NULL; /* are checked here, and read again later */
     skg_frame *copies = NULL;
     skg_status status = SKG_OK;

@@ -3,8 +3,8 @@
 
 #include <inttypes.h>
 
-skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machine *machine,
-                          skg_outcome *outcome, int64_t count, int64_t output_count,
+skg_status skg_job_create(const char *call, const skg_job_kind *kind, const skg_recipe *recipe,
+                          skg_machine *machine, skg_outcome *outcome, int64_t count, int64_t output_count,
                           const skg_output *outputs, skg_job **job) {
     skg_job *made = NULL;
     skg_status status = SKG_OK;
@@ -15,12 +15,12 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
     SKG_TRY(skg_alloc(1, sizeof *made, "job", &made));
     skg_results *results = &made->results;
     atomic_init(&made->references, 1);
+    made->kind = kind;
     made->recipe = skg_recipe_retain(recipe);
     made->machine = machine;
     skg_work_begin();
     made->outcome = outcome;
     made->count = results->frames = count;
-    made->steps = 1;
     made->staging.context = machine->context;
     made->staging.log.on = recipe->options.profile;
     SKG_TRY_CLEANUP(
@@ -28,7 +28,7 @@ skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machin
     for (; made->output_count < output_count; made->output_count++)
         SKG_TRY_CLEANUP(skg_frame_output_read(call, recipe, machine, count, outputs, made->output_count,
                                               &made->outputs[made->output_count]));
-    SKG_TRY_CLEANUP(skg_staging_take(&made->staging, count, sizeof *made->ends, "events", &made->ends));
+    SKG_TRY_CLEANUP(skg_job_divide(made, 1));
     SKG_TRY_CLEANUP(
         skg_staging_take(&made->staging, 4, sizeof *results->negative, "counters", &results->negative));
     SKG_TRY_CLEANUP(
@@ -43,6 +43,11 @@ cleanup:
     return status;
 }
 
+skg_status skg_job_divide(skg_job *job, int64_t steps) {
+    job->steps = steps;
+    return skg_staging_take(&job->staging, job->count * steps, sizeof *job->ends, "events", &job->ends);
+}
+
 void skg_job_empty(skg_job *done) {
     skg_context *context = done->machine->context;
     if (context->held == done) context->held = NULL;
@@ -54,7 +59,7 @@ void skg_job_empty(skg_job *done) {
     for (int64_t f = 0; done->ends && f < done->enqueued; f++) clReleaseEvent(done->ends[f]);
     if (done->last) clReleaseEvent(done->last);
     skg_raster_pin_release(&done->main);
-    skg_gradient_work_release(&done->gradient);
+    if (done->state) done->kind->release(&done->state);
     skg_staging_release(&done->staging);
     skg_recipe_release(&done->recipe);
     skg_plan_release(&done->plan);

@@ -3,7 +3,6 @@
 #ifndef SKG_JOB_H
 #define SKG_JOB_H
 
-#include "frame/gradient_work.h"
 #include "frame/outputs.h"
 #include "frame/plan.h"
 #include "plan/results.h"
@@ -20,12 +19,26 @@ typedef struct {
     int64_t first;     /* number of frames[0] */
 } skg_job_scene;
 
+/* What the steps of a job are. frame/submission.c has the kind whose frames are images; rooms above have others. */
+typedef struct {
+    /* Enqueues what comes before the steps. These then follow one by one, when the job is asked or waited for, on vertices that are
+     * copied. NULL: there is nothing before. frames: the caller's; poses: [parts] memory */
+    skg_status (*begin)(skg_job *job, const skg_frame *frames, const double **poses);
+    /* Enqueues a step of a frame. work: of the frame; what it is to show is filled in */
+    skg_status (*step)(skg_job *job, int64_t frame, int64_t step, skg_frame_work *work);
+    skg_status (*finish)(
+        skg_job *job); /* hands out results when all steps are done; NULL: they are in place */
+    skg_status (*cancelled)(const skg_job *job); /* fails, and says what is in place */
+    void (*release)(void **state);               /* NULL: there is no state */
+} skg_job_kind;
+
 struct skg_job {
     skg_plan *plan;     /* retained; NULL: the caller keeps machine and outcome */
     skg_recipe *recipe; /* retained: that of the submission */
     skg_machine *machine;
-    skg_scatterer *scatterer;           /* of the plan; NULL: images of the primary alone */
-    struct skg_gradient_work *gradient; /* frames are the passes of a gradient; NULL: frames are images */
+    skg_scatterer *scatterer; /* of the plan; NULL: images of the primary alone */
+    const skg_job_kind *kind;
+    void *state;          /* of the kind */
     skg_outcome *outcome; /* takes what is known of a frame when it is enqueued, and remembers warnings */
     skg_frame_output *outputs; /* [output_count] */
     int64_t output_count;
@@ -48,9 +61,12 @@ struct skg_job {
 };
 
 /* Checks the outputs and makes a job of no frames yet. call: the name of the public function. */
-skg_status skg_job_create(const char *call, const skg_recipe *recipe, skg_machine *machine,
-                          skg_outcome *outcome, int64_t count, int64_t output_count,
+skg_status skg_job_create(const char *call, const skg_job_kind *kind, const skg_recipe *recipe,
+                          skg_machine *machine, skg_outcome *outcome, int64_t count, int64_t output_count,
                           const skg_output *outputs, skg_job **job);
+
+/* Has each frame given in so many steps. Before any is enqueued. */
+skg_status skg_job_divide(skg_job *job, int64_t steps);
 
 /* Steps of all frames. */
 static inline int64_t skg_job_steps(const skg_job *job) {

@@ -83,10 +83,8 @@ static skg_status enqueue_variance(skg_job *job, const skg_frame_work *work) {
 
 skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
     const skg_recipe *recipe = job->recipe;
-    const int64_t first = skg_frame_first_pass(recipe);
     if (work->lengths_of >= 0) return skg_frame_enqueue_passes(job, work, -1, 0);
     if (skg_output_is_scatter(work->shows)) return skg_frame_show_scatter(job, work);
-    if (job->gradient) return skg_frame_enqueue_passes(job, work, first + work->pass, first + work->pass + 1);
     if (work->shows == SKG_OUTPUT_VARIANCE) return enqueue_variance(job, work);
     SKG_TRY(enqueue_values(job, work));
     return is_last_step(job, work) && skg_decide_late_logarithm(recipe) ? skg_frame_take_logarithm(job, work)

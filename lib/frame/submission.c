@@ -2,22 +2,22 @@
 #include "frame/submission.h"
 
 #include "frame/frame.h"
-#include "frame/gradient_run.h"
 #include "frame/held.h"
 #include "plan/decisions.h"
 
+#include <inttypes.h>
 #include <limits.h>
 
 /* --- one frame */
 
-/* Enqueues a step of one output of a frame. */
-static skg_status enqueue_output(skg_job *job, const skg_frame_output *output, int64_t index,
-                                 skg_frame_work *work) {
+skg_status skg_frame_enqueue_output(skg_job *job, const skg_frame_output *output, int64_t index,
+                                    skg_frame_work *work) {
     const int is_length = output->to.kind == SKG_OUTPUT_LENGTHS;
     const skg_view *view = &job->recipe->view;
     work->lengths_of = is_length ? output->to.part : -1;
     work->kind = is_length ? output->to.lengths : output->to.component;
     work->shows = output->to.kind;
+    work->reuses = output->to.kind == SKG_OUTPUT_MEAN || output->to.kind == SKG_OUTPUT_VARIANCE;
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
     SKG_TRY(skg_frame_enqueue(job, work));
     if (work->step + 1 < skg_frame_steps(job->recipe, output->to.kind, work->each)) return SKG_OK;
@@ -34,19 +34,20 @@ static skg_status enqueue_outputs(skg_job *job, int64_t index, int64_t step, skg
             const int64_t steps = skg_frame_steps(job->recipe, kind, job->each);
             work->step = job->each ? step : 0;
             if (!job->each || (step >= 0 && step < steps))
-                SKG_TRY(enqueue_output(job, &job->outputs[o], index, work));
+                SKG_TRY(skg_frame_enqueue_output(job, &job->outputs[o], index, work));
             step -= steps;
         }
     return SKG_OK;
 }
 
-/* One pass of a gradient. */
-static skg_status enqueue_gradient(skg_job *job, int64_t pass, skg_frame_work *work) {
-    if (pass == 0) SKG_TRY(skg_gradient_begin(job));
-    work->lengths_of = -1;
-    work->pass = pass;
-    return skg_frame_enqueue(job, work);
+/* What became of a job that was cancelled. */
+static skg_status fail_cancelled(const skg_job *job) {
+    return skg_fail(SKG_ERR_CANCELLED,
+                    "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place",
+                    job->enqueued / job->steps, job->count);
 }
+
+const skg_job_kind skg_job_images = {.step = enqueue_outputs, .cancelled = fail_cancelled};
 
 static skg_status enqueue_step(skg_job *job, const skg_frame *frames, const double **poses) {
     skg_machine *machine = job->machine;
@@ -55,11 +56,10 @@ static skg_status enqueue_step(skg_job *job, const skg_frame *frames, const doub
     skg_view view;
     skg_frame frame;
     skg_frame_work work = {.view = &view, .poses = poses, .meshes = job->then.meshes, .frame = &frame};
-    SKG_TRY(skg_held_frame_read(job, frames, job->gradient ? 0 : index, &frame, &view, poses, &work.noise));
-    if (step == 0 &&
-        (!job->gradient || index > 0)) /* what a gradient needs first was projected for its first pass, too */
+    SKG_TRY(skg_held_frame_read(job, frames, index, &frame, &view, poses, &work.noise));
+    if (step == 0 && !job->kind->begin) /* what came before was projected for the first step, too */
         SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
-    SKG_TRY(job->gradient ? enqueue_gradient(job, index, &work) : enqueue_outputs(job, index, step, &work));
+    SKG_TRY(job->kind->step(job, index, step, &work));
     if (step + 1 == job->steps)
         SKG_TRY(
             skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *bad_vertex, bad_vertex));
@@ -79,11 +79,8 @@ static skg_status enqueue_until(skg_job *job, const skg_frame *frames, int64_t e
                         "parts of the scene were added or put elsewhere before all frames of a job "
                         "were given to the device; wait for the job first");
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
-    while (status == SKG_OK && job->enqueued < end) {
-        /* Passes of a gradient are waited for, so that there is time to cancel them. */
-        if (job->gradient && atomic_load(&job->cancelled)) break;
+    while (status == SKG_OK && job->enqueued < end && !atomic_load(&job->cancelled))
         status = enqueue_step(job, frames, poses);
-    }
     skg_free(&poses);
     return status;
 }
@@ -113,7 +110,7 @@ static double pass_time(const skg_job *job) {
 
 /* How many steps are under way at once: at least two, so that the device does not wait for the host. */
 static int64_t steps_ahead(const skg_job *job) {
-    if (job->gradient) return 1;
+    if (job->kind->begin) return 1;
     if (job->each) return STEPS_AHEAD;
     const double passes = (double)(skg_samples_passes(&job->recipe->samples) * job->output_count);
     const double frames = AHEAD_S / (passes * pass_time(job));
@@ -135,10 +132,8 @@ static skg_status divide(skg_job *job) {
     int64_t steps = 0;
     for (int64_t o = 0; o < job->output_count; o++)
         steps += skg_frame_steps(recipe, job->outputs[o].to.kind, each);
-    SKG_TRY(skg_staging_take(&job->staging, job->count * steps, sizeof *job->ends, "events", &job->ends));
     job->each = each;
-    job->steps = steps;
-    return SKG_OK;
+    return skg_job_divide(job, steps);
 }
 
 /* What a device was given cannot be taken back. The repair of leaky parts looks at the meshes on the host, and commands of the
@@ -195,49 +190,22 @@ skg_status skg_submission_finish(skg_job *job) {
     return skg_queue_flush(machine->context);
 }
 
-/* Enqueues what a gradient needs first: the image, if it has to be known, or the sums of the first pass. */
-static skg_status enqueue_first(skg_job *job, const skg_frame *frames, const double **poses) {
-    struct skg_gradient_work *gradient = job->gradient;
-    skg_machine *machine = job->machine;
-    skg_frame frame;
-    skg_frame_work work = {.view = &gradient->of_frame, .poses = poses, .frame = &frame, .lengths_of = -1};
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_held_frame_read(job, frames, 0, &frame, &gradient->of_frame, poses, &work.noise));
-    if (gradient->image) {
-        SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
-        job->gradient = NULL; /* the image is that of any frame */
-        status = enqueue_output(job, &gradient->shown, 0, &work);
-        job->gradient = gradient;
-    } else {
-        SKG_TRY(skg_geometry_continue(machine->context, &machine->geometry));
-        status = skg_frame_enqueue_sums(job, &work);
-    }
-    SKG_TRY(status);
-    SKG_CL_TRY(clEnqueueMarkerWithWaitList(machine->context->device->queue, 0, NULL, &gradient->ready));
-    return SKG_OK;
-}
-
-/* The passes of a gradient alternate between device and host, and follow when the job is asked or waited for. */
-static skg_status start_gradient(skg_job *job, const skg_frame *frames) {
-    skg_context *context = job->machine->context;
+static skg_status begin(skg_job *job, const skg_frame *frames) {
     const double **poses = NULL;
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
-    const skg_status status = enqueue_first(job, frames, poses);
+    const skg_status status = job->kind->begin(job, frames, poses);
     skg_free(&poses);
-    SKG_TRY(status);
-    SKG_TRY(clear_counters(job->machine)); /* what is counted is that of the gradient */
-    SKG_TRY(skg_held_frames_copy(job, frames));
-    SKG_TRY(skg_queue_flush(context));
-    context->held = job;
-    return SKG_OK;
+    return status;
 }
 
 static skg_status start(skg_job *job, const skg_frame *frames, int at_once) {
-    if (job->gradient) return start_gradient(job, frames);
     skg_context *context = job->machine->context;
-    const int is_whole = at_once || !is_for_later(job);
-    if (!is_whole) SKG_TRY(divide(job));
-    const int64_t all = skg_job_steps(job), ahead = is_whole ? all : steps_ahead(job);
+    const int begins = job->kind->begin != NULL, is_whole = !begins && (at_once || !is_for_later(job));
+    if (begins)
+        SKG_TRY(begin(job, frames));
+    else if (!is_whole)
+        SKG_TRY(divide(job));
+    const int64_t all = skg_job_steps(job), ahead = is_whole ? all : begins ? 0 : steps_ahead(job);
     SKG_TRY(clear_counters(job->machine));
     SKG_TRY(enqueue_until(job, frames, ahead < all ? ahead : all));
     if (job->enqueued == all) return skg_submission_finish(job);

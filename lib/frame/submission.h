@@ -9,6 +9,13 @@
  * plan and scene stand. at_once: 1: all are enqueued. After a failure nothing is under way, and the job is released. */
 skg_status skg_submission_enqueue(skg_job **job, const skg_frame *frames, int at_once);
 
+/* The kind of job whose frames are images, and other outputs. */
+extern const skg_job_kind skg_job_images;
+
+/* Enqueues a step of one output of a frame; of an undivided job all of it. index: of the frame */
+skg_status skg_frame_enqueue_output(skg_job *job, const skg_frame_output *output, int64_t index,
+                                    skg_frame_work *work);
+
 /* Enqueues frames that the device can be given by now, unless the job was cancelled. A failure is reported by skg_job_wait. */
 void skg_submission_continue(skg_job *job);
 

@@ -38,8 +38,8 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
     SKG_TRY(test_outputs(plan, output_count, outputs));
     if (events) SKG_TRY(skg_caller_events_check(call, events));
     SKG_TRY(skg_plan_renew(plan));
-    SKG_TRY(skg_job_create(call, plan->recipe, &plan->machine, &plan->outcome, count, output_count, outputs,
-                           &made));
+    SKG_TRY(skg_job_create(call, &skg_job_images, plan->recipe, &plan->machine, &plan->outcome, count,
+                           output_count, outputs, &made));
     made->scatterer = &plan->scatterer;
     if (events) {
         const skg_status status = skg_caller_events_wait(plan->context, events);

@@ -3,10 +3,7 @@
 
 #include "core/text.h"
 #include "driver/driver.h"
-#include "frame/gradient_run.h"
 #include "frame/submission.h"
-
-#include <inttypes.h>
 
 /* Waits until every frame that will be made is, and gives the device those that were held back. */
 static cl_int wait_for_frames(skg_job *job) {
@@ -27,17 +24,10 @@ static skg_status outcome_of(skg_job *job) {
     if (job->failure != SKG_OK)
         return skg_fail(job->failure, "%s", job->sentence ? job->sentence : "out of host memory");
     if (job->enqueued == skg_job_steps(job)) {
-        if (job->gradient && reported >= 0) SKG_TRY(skg_gradient_finish(job));
+        if (job->kind->finish && reported >= 0) SKG_TRY(job->kind->finish(job));
         return reported;
     }
-    if (job->gradient)
-        return skg_fail(SKG_ERR_CANCELLED,
-                        "the job was cancelled: %" PRId64 " of %" PRId64
-                        " passes were made, and the results are not in place",
-                        job->enqueued, job->count);
-    return skg_fail(SKG_ERR_CANCELLED,
-                    "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place",
-                    job->enqueued / job->steps, job->count);
+    return job->kind->cancelled(job);
 }
 
 skg_status skg_job_complete(skg_job **job) {

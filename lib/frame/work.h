@@ -12,8 +12,9 @@ typedef struct {
     int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
     int32_t
         kind; /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE; of a component of the scatter: which */
-    int32_t shows;        /* enum skg_output_kind */
-    int64_t pass;         /* of a gradient: which of the frame's passes is made */
+    int32_t shows; /* enum skg_output_kind */
+    int32_t
+        reuses; /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
     int64_t step, each;   /* of an image: which step is made, of so many passes; each: 0: all its passes */
     skg_noise_args noise; /* its key */
     skg_image_place place;

@@ -1,3 +1,4 @@
+/* What a plan has on the device: released, and counted in bytes. */
 #include "stage/machine.h"
 
 void skg_machine_release(skg_machine *machine) {
@@ -13,7 +14,7 @@ void skg_machine_release(skg_machine *machine) {
     skg_mix_lists_release(&machine->mix_lists);
     skg_leaky_memory_release(&machine->leaky);
     skg_hits_memory_release(&machine->hits);
-    skg_gradient_memory_release(&machine->gradient);
+    if (machine->attached.memory) machine->attached.release(machine->attached.memory);
     skg_buffer_release(&machine->image);
     skg_buffer_release(&machine->mean);
     skg_buffer_release(&machine->negative);
@@ -24,9 +25,10 @@ int64_t skg_machine_bytes(const skg_machine *machine) {
     int64_t bytes = skg_geometry_bytes(&machine->geometry) + machine->image.bytes + machine->mean.bytes +
                     machine->negative.bytes + skg_leaky_memory_bytes(&machine->leaky) +
                     machine->flat_field.image.bytes + skg_hits_memory_bytes(&machine->hits) +
-                    skg_gradient_memory_bytes(&machine->gradient) + skg_placement_bytes(&machine->placement) +
-                    skg_attenuation_bytes(&machine->images) + skg_attenuation_bytes(&machine->lengths) +
-                    skg_raster_cache_bytes(&machine->rasters) + skg_layers_bytes(&machine->layers);
+                    skg_placement_bytes(&machine->placement) + skg_attenuation_bytes(&machine->images) +
+                    skg_attenuation_bytes(&machine->lengths) + skg_raster_cache_bytes(&machine->rasters) +
+                    skg_layers_bytes(&machine->layers);
+    if (machine->attached.memory) bytes += machine->attached.bytes(machine->attached.memory);
     if (machine->detector) bytes += skg_detector_bytes(machine->detector);
     return bytes;
 }

@@ -5,12 +5,18 @@
 #define SKG_MACHINE_H
 
 #include "stage/attenuate.h"
-#include "stage/gradient.h"
 #include "stage/hits.h"
 #include "stage/leaks.h"
 #include "stage/place.h"
 #include "stage/readout.h"
 #include "stage/tables.h"
+
+/* What a room above keeps with a plan's device from call to call. All zero: nothing. */
+typedef struct {
+    void *memory;
+    void (*release)(void *memory);
+    int64_t (*bytes)(const void *memory); /* on the device */
+} skg_attachment;
 
 typedef struct {
     skg_context *context;
@@ -25,13 +31,13 @@ typedef struct {
     skg_mix_lists mix_lists;
     skg_leaky_memory leaky;
     skg_hits_memory hits;
-    skg_gradient_memory gradient;
     skg_buffer image; /* on its way to the host */
     skg_buffer mean;  /* of the transmission, for the variance of its logarithm */
     skg_buffer
         negative; /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
     skg_pass_memory pass;
     skg_raster_cache rasters;
+    skg_attachment attached;
 } skg_machine;
 
 void skg_machine_release(skg_machine *machine);

@@ -28,4 +28,9 @@ done
 for room in $(sed -n '/^### Each room/,/^Which room/s/^| `\([a-z/]*\)` | .*/\1/p' "$root/docs/architecture.md"); do
     echo "$rooms" | grep -qxF "$room" || { echo "docs/architecture.md names $room, which is no room"; status=1; }
 done
+# A frame knows nothing of derivatives: they are a kind of job of a room above.
+if grep -rniE 'gradient|derivative' "$root/lib/frame"; then
+    echo "lib/frame names derivatives, which are lib/gradient's"
+    status=1
+fi
 exit $status
