@@ -2,6 +2,8 @@
 #include "core/clock.h"
 #include "core/text.h"
 #include "frame/plan.h"
+#include "plan/decisions.h"
+#include "plan/rules.h"
 
 #include <math.h>
 
@@ -36,14 +38,9 @@ static skg_plan_options coarse_options(const skg_recipe *recipe, const skg_scatt
     options.strategy = SKG_STRATEGY_AUTO;
     options.precision = SKG_PRECISION_SINGLE;
     options.quantity = SKG_QUANTITY_ENERGY;
-    options.falloff = SKG_FALLOFF_OFF;
-    options.tile = options.overlaps = options.profile = options.noise = options.oblique = 0;
-    options.bands = options.view_count = 0;
-    options.supersampling = 1;
-    options.spot = NULL, options.blur = NULL, options.world = NULL, options.heel = NULL;
-    options.bowtie = NULL, options.depth_blur = NULL, options.dqe = NULL, options.views = NULL;
-    options.band_kev = NULL;
-    options.electronic_kev = options.quantum_step_kev = 0;
+    options.tile = options.profile = 0;
+    options.view_count = 0, options.views = NULL;
+    skg_effects_leave_out(&options);
     options.tolerance = fmax(options.tolerance, TOLERANCE);
     options.scatter = scatter;
     return options;
@@ -131,7 +128,7 @@ static skg_status predict(skg_plan *plan, skg_scatter_prediction *prediction) {
     SKG_TRY_CLEANUP(skg_alloc(4 * count, sizeof *images, "prediction of scatter", &images));
     rendering own = {images, images + count, 0}, bare = {images + 2 * count, images + 3 * count, 0};
     SKG_TRY_CLEANUP(render(plan, &options, &own));
-    options.grid = NULL;
+    skg_effect_grid.leave_out(&options);
     if (has_grid) SKG_TRY_CLEANUP(render(plan, &options, &bare));
     sum_up(count, &own, has_grid ? &bare : &own, prediction);
     if (has_grid) compare(count, &own, &bare, prediction);

@@ -3,6 +3,7 @@
 #include "device/self_tests.h"
 #include "gradient/refusals.h"
 #include "gradient/submit.h"
+#include "plan/rules.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -89,8 +90,8 @@ static skg_status check_directions(skg_plan *plan, const skg_frame *frame, const
         SKG_TRY(skg_gradient_check(work->call, plan, frame, &wanted));
     }
     if (plan->recipe->model.layers > 1)
-        return skg_gradient_refuse(work->call, "a blur that depends on depth, along a direction,",
-                                   "take skg_plan_gradient");
+        return skg_effect_no_gradient(work->call, "a blur that depends on depth, along a direction,",
+                                      "take skg_plan_gradient");
     return SKG_OK;
 }
 

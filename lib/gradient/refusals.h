@@ -6,9 +6,6 @@
 
 #include <skiagraph/gradient.h>
 
-/* Fails with SKG_ERR_UNSUPPORTED and a name: "CALL: WHAT has no gradient; MEND". */
-skg_status skg_gradient_refuse(const char *call, const char *what, const char *mend);
-
 /* Refuses by name what has no gradient of a frame by what is wanted, and attenuations for another number of energies than the plan's.
  * call: the name of the public function; frame: NULL: as plan and scene stand */
 skg_status skg_gradient_check(const char *call, const skg_plan *plan, const skg_frame *frame,

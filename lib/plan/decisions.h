@@ -23,8 +23,14 @@ skg_status skg_effects_copy(skg_recipe *recipe);
 /* Refuses options of effects that cannot be used. */
 skg_status skg_effects_check(const skg_plan_options *options);
 
-/* Whether any effect refuses half precision. */
-int skg_effects_refuse_half(const skg_recipe *recipe);
+/* Writes the names of the effects of a recipe that half precision is refused with, "A, B and C", and returns how many there are. */
+int skg_effects_refuse_half(const skg_recipe *recipe, size_t size, char *names);
+
+/* Fails if an effect of a recipe has no derivatives. by_view: by source and detector. call: the public function */
+skg_status skg_effects_check_gradient(const char *call, const skg_recipe *recipe, int by_view);
+
+/* Leaves out of the options what the prediction of scatter does without. */
+void skg_effects_leave_out(skg_plan_options *options);
 
 /* Fills the effects of an outcome whose overlaps and samples are known. layers: and their blurs. */
 skg_status skg_effects_find(const skg_recipe *recipe, const skg_context *context, const skg_layers *layers,

@@ -1,4 +1,9 @@
+/* The table of effects: what goes over all rows. */
 #include "plan/decisions.h"
+#include "plan/rules.h"
+
+#include <stdio.h>
+#include <string.h>
 
 static const skg_effect_row *const rows[SKG_EFFECTS] = {
 #define SKG_EFFECT_ADDRESS(row) &skg_effect_##row,
@@ -22,10 +27,44 @@ skg_status skg_effects_check(const skg_plan_options *options) {
     return SKG_OK;
 }
 
-int skg_effects_refuse_half(const skg_recipe *recipe) {
+int skg_effects_refuse_half(const skg_recipe *recipe, size_t size, char *names) {
+    const char *found[SKG_EFFECTS];
+    int count = 0;
     for (int e = 0; e < SKG_EFFECTS; e++)
-        if (rows[e]->refuses_half && rows[e]->refuses_half(recipe)) return 1;
-    return 0;
+        if (rows[e]->refuses_half && rows[e]->refuses_half(recipe)) found[count++] = rows[e]->name;
+    names[0] = '\0';
+    for (int k = 0; k < count; k++) {
+        const size_t length = strlen(names);
+        snprintf(names + length, size - length, "%s%s",
+                 k == 0          ? ""
+                 : k + 1 < count ? ", "
+                                 : " and ",
+                 found[k]);
+    }
+    return count;
+}
+
+skg_status skg_effects_check_gradient(const char *call, const skg_recipe *recipe, int by_view) {
+    for (int e = 0; e < SKG_EFFECTS; e++)
+        if (rows[e]->refuses_gradient) SKG_TRY(rows[e]->refuses_gradient(call, recipe, by_view));
+    return SKG_OK;
+}
+
+void skg_effects_leave_out(skg_plan_options *options) {
+    for (int e = 0; e < SKG_EFFECTS; e++)
+        if (rows[e]->leave_out && !rows[e]->predicted) rows[e]->leave_out(options);
+}
+
+skg_status skg_effect_no_gradient(const char *call, const char *what, const char *mend) {
+    return skg_fail(SKG_ERR_UNSUPPORTED, "%s: %s has no gradient; %s", call, what, mend);
+}
+
+skg_status skg_effect_no_view_gradient(const char *call, const char *what) {
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "%s: %s under source and detector has no gradient; take it of poses, vertices or densities "
+        "alone, or leave the effect out",
+        call, what);
 }
 
 /* Facts that follow from where the parts lie. */

@@ -229,18 +229,127 @@ static double cost_grid(const skg_effect_facts *f) {
            (2 * SKG_COST_RAY + model->shades.grid * (SKG_COST_LOOKED_UP + (double)model->nodes));
 }
 
-/* clang-format off */
-/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_world = {"world material", SKG_SELF_TEST_CORE,
-    NULL, NULL, has_world, find_world, cost_world};
-const skg_effect_row skg_effect_falloff = {"falloff", SKG_SELF_TEST_CORE,
-    NULL, check_falloff, NULL, find_falloff, cost_falloff};
-const skg_effect_row skg_effect_heel = {"heel effect", SKG_SELF_TEST_HEEL,
-    copy_heel, NULL, has_heel, find_heel, cost_heel};
-const skg_effect_row skg_effect_bowtie = {"bow-tie filter", SKG_SELF_TEST_SHADES,
-    copy_bowtie, NULL, has_bowtie, find_bowtie, cost_bowtie};
-const skg_effect_row skg_effect_collimation = {"collimation", SKG_SELF_TEST_SHADES,
-    copy_collimation, NULL, NULL, find_collimation, cost_collimation};
-const skg_effect_row skg_effect_grid = {"anti-scatter grid", SKG_SELF_TEST_SHADES,
-    copy_grid, NULL, has_grid, find_grid, cost_grid};
-/* clang-format on */
+static skg_status refuse_world(const char *call, const skg_recipe *recipe, int by_view) {
+    if (!by_view || !has_world(recipe)) return SKG_OK;
+    if (skg_quantity_is_ratio(&recipe->options))
+        return skg_effect_no_view_gradient(call, "a ratio to the flat field of a world");
+    return recipe->view.projection == SKG_PROJECTION_PARALLEL
+               ? skg_effect_no_view_gradient(call, "a world in a parallel beam")
+               : SKG_OK;
+}
+
+static void leave_out_world(skg_plan_options *options) {
+    options->world = NULL;
+}
+
+const skg_effect_row skg_effect_world = {
+    .name = "world material",
+    .key = "World",
+    .refuses_half = has_world,
+    .refuses_gradient = refuse_world,
+    .adjoint = "add_ray_lengths",
+    .leave_out = leave_out_world,
+    .find = find_world,
+    .cost = cost_world,
+};
+
+static void leave_out_falloff(skg_plan_options *options) {
+    options->falloff = SKG_FALLOFF_OFF;
+}
+
+const skg_effect_row skg_effect_falloff = {
+    .name = "falloff",
+    .key = "Falloff",
+    .check = check_falloff,
+    .adjoint = "add_distance",
+    .leave_out = leave_out_falloff,
+    .find = find_falloff,
+    .cost = cost_falloff,
+};
+
+static skg_status refuse_heel(const char *call, const skg_recipe *recipe, int by_view) {
+    return by_view && recipe->options.heel ? skg_effect_no_view_gradient(call, "the heel effect") : SKG_OK;
+}
+
+static void leave_out_heel(skg_plan_options *options) {
+    options->heel = NULL;
+}
+
+const skg_effect_row skg_effect_heel = {
+    .name = "heel effect",
+    .key = "Heel",
+    .self_test = SKG_SELF_TEST_HEEL,
+    .copy = copy_heel,
+    .refuses_half = has_heel,
+    .refuses_gradient = refuse_heel,
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_heel,
+    .find = find_heel,
+    .cost = cost_heel,
+};
+
+static skg_status refuse_bowtie(const char *call, const skg_recipe *recipe, int by_view) {
+    return by_view && recipe->options.bowtie ? skg_effect_no_view_gradient(call, "a bow-tie filter") : SKG_OK;
+}
+
+static void leave_out_bowtie(skg_plan_options *options) {
+    options->bowtie = NULL;
+}
+
+const skg_effect_row skg_effect_bowtie = {
+    .name = "bow-tie filter",
+    .key = "Bowtie",
+    .self_test = SKG_SELF_TEST_SHADES,
+    .copy = copy_bowtie,
+    .refuses_half = has_bowtie,
+    .refuses_gradient = refuse_bowtie,
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_bowtie,
+    .find = find_bowtie,
+    .cost = cost_bowtie,
+};
+
+static skg_status refuse_collimation(const char *call, const skg_recipe *recipe, int by_view) {
+    const int limits = skg_collimation_limits(recipe->options.collimation);
+    return by_view && limits ? skg_effect_no_view_gradient(call, "a collimator") : SKG_OK;
+}
+
+static void leave_out_collimation(skg_plan_options *options) {
+    options->collimation = NULL;
+}
+
+const skg_effect_row skg_effect_collimation = {
+    .name = "collimation",
+    .key = "Collimation",
+    .self_test = SKG_SELF_TEST_SHADES,
+    .copy = copy_collimation,
+    .refuses_gradient = refuse_collimation,
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_collimation,
+    .predicted = 1,
+    .find = find_collimation,
+    .cost = cost_collimation,
+};
+
+static skg_status refuse_grid(const char *call, const skg_recipe *recipe, int by_view) {
+    return by_view && recipe->options.grid ? skg_effect_no_view_gradient(call, "an anti-scatter grid")
+                                           : SKG_OK;
+}
+
+static void leave_out_grid(skg_plan_options *options) {
+    options->grid = NULL;
+}
+
+const skg_effect_row skg_effect_grid = {
+    .name = "anti-scatter grid",
+    .key = "Grid",
+    .self_test = SKG_SELF_TEST_SHADES,
+    .copy = copy_grid,
+    .refuses_half = has_grid,
+    .refuses_gradient = refuse_grid,
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_grid,
+    .predicted = 1,
+    .find = find_grid,
+    .cost = cost_grid,
+};

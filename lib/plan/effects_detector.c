@@ -291,24 +291,139 @@ static double cost_dqe(const skg_effect_facts *f) {
     return cost_of_layers(f, f->layers->count - 1);
 }
 
-/* clang-format off */
-/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_response = {"energy response", SKG_SELF_TEST_CORE,
-    NULL, NULL, NULL, find_response, NULL};
-const skg_effect_row skg_effect_noise = {"quantum noise", SKG_SELF_TEST_NOISE,
-    NULL, check_noise, has_noise, find_noise, cost_noise};
-const skg_effect_row skg_effect_blur = {"blur", SKG_SELF_TEST_BLUR,
-    NULL, NULL, has_blur, find_blur, cost_blur};
-const skg_effect_row skg_effect_electronic = {"electronic noise", SKG_SELF_TEST_DETECTOR,
-    NULL, check_electronic, has_electronic, find_electronic, cost_electronic};
-const skg_effect_row skg_effect_quantisation = {"quantisation", SKG_SELF_TEST_DETECTOR,
-    NULL, check_quantisation, has_steps, find_quantisation, cost_quantisation};
-const skg_effect_row skg_effect_oblique = {"oblique scintillator", SKG_SELF_TEST_SHADES,
-    NULL, check_oblique, has_oblique, find_oblique, cost_oblique};
-const skg_effect_row skg_effect_escape = {"K escape", SKG_SELF_TEST_CORE,
-    NULL, NULL, NULL, find_escape, NULL};
-const skg_effect_row skg_effect_depths = {"blur by depths", SKG_SELF_TEST_DEPTHS,
-    copy_depths, check_depths, has_blur, find_depths, cost_depths};
-const skg_effect_row skg_effect_dqe = {"noise power", SKG_SELF_TEST_APART,
-    copy_dqe, check_dqe, NULL, find_dqe, cost_dqe};
-/* clang-format on */
+static void leave_out_response(skg_plan_options *options) {
+    options->response = NULL;
+}
+
+const skg_effect_row skg_effect_response = {
+    .name = "energy response",
+    .key = "EnergyResponse",
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_response,
+    .predicted = 1,
+    .find = find_response,
+};
+
+static void leave_out_noise(skg_plan_options *options) {
+    options->noise = 0;
+}
+
+const skg_effect_row skg_effect_noise = {
+    .name = "quantum noise",
+    .key = "Noise",
+    .self_test = SKG_SELF_TEST_NOISE,
+    .check = check_noise,
+    .refuses_half = has_noise,
+    .adjoint = "undo_detection",
+    .leave_out = leave_out_noise,
+    .find = find_noise,
+    .cost = cost_noise,
+};
+
+static void leave_out_blur(skg_plan_options *options) {
+    options->blur = NULL;
+}
+
+const skg_effect_row skg_effect_blur = {
+    .name = "blur",
+    .key = "MTF",
+    .self_test = SKG_SELF_TEST_BLUR,
+    .refuses_half = has_blur,
+    .adjoint = "undo_blurs",
+    .leave_out = leave_out_blur,
+    .find = find_blur,
+    .cost = cost_blur,
+};
+
+static void leave_out_electronic(skg_plan_options *options) {
+    options->electronic_kev = 0;
+}
+
+const skg_effect_row skg_effect_electronic = {
+    .name = "electronic noise",
+    .key = "Electronic",
+    .self_test = SKG_SELF_TEST_DETECTOR,
+    .check = check_electronic,
+    .refuses_half = has_electronic,
+    .adjoint = "undo_detection",
+    .leave_out = leave_out_electronic,
+    .find = find_electronic,
+    .cost = cost_electronic,
+};
+
+static void leave_out_quantisation(skg_plan_options *options) {
+    options->quantum_step_kev = 0;
+}
+
+const skg_effect_row skg_effect_quantisation = {
+    .name = "quantisation",
+    .key = "Step",
+    .self_test = SKG_SELF_TEST_DETECTOR,
+    .check = check_quantisation,
+    .refuses_half = has_steps,
+    .adjoint = "undo_detection",
+    .leave_out = leave_out_quantisation,
+    .find = find_quantisation,
+    .cost = cost_quantisation,
+};
+
+static skg_status refuse_oblique(const char *call, const skg_recipe *recipe, int by_view) {
+    return by_view && recipe->options.oblique ? skg_effect_no_view_gradient(call, "an oblique scintillator")
+                                              : SKG_OK;
+}
+
+static void leave_out_oblique(skg_plan_options *options) {
+    options->oblique = 0;
+}
+
+const skg_effect_row skg_effect_oblique = {
+    .name = "oblique scintillator",
+    .key = "Oblique",
+    .self_test = SKG_SELF_TEST_SHADES,
+    .check = check_oblique,
+    .refuses_half = has_oblique,
+    .refuses_gradient = refuse_oblique,
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_oblique,
+    .find = find_oblique,
+    .cost = cost_oblique,
+};
+
+const skg_effect_row skg_effect_escape = {
+    .name = "K escape",
+    .key = "Escape",
+    .adjoint = "weights.cl",
+    .find = find_escape,
+};
+
+static void leave_out_depths(skg_plan_options *options) {
+    options->depth_blur = NULL;
+}
+
+const skg_effect_row skg_effect_depths = {
+    .name = "blur by depths",
+    .key = "Depths",
+    .self_test = SKG_SELF_TEST_DEPTHS,
+    .copy = copy_depths,
+    .check = check_depths,
+    .refuses_half = has_blur,
+    .adjoint = "undo_blurs",
+    .leave_out = leave_out_depths,
+    .find = find_depths,
+    .cost = cost_depths,
+};
+
+static void leave_out_dqe(skg_plan_options *options) {
+    options->dqe = NULL;
+}
+
+const skg_effect_row skg_effect_dqe = {
+    .name = "noise power",
+    .key = "DQE",
+    .self_test = SKG_SELF_TEST_APART,
+    .copy = copy_dqe,
+    .check = check_dqe,
+    .leave_out = leave_out_dqe,
+    .find = find_dqe,
+    .cost = cost_dqe,
+};

@@ -111,18 +111,71 @@ static double cost_priority(const skg_effect_facts *f) {
     return f->counts.passes * f->counts.listed * SKG_COST_LISTED;
 }
 
-/* clang-format off */
-/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_nesting = {"nesting", SKG_SELF_TEST_CORE,
-    NULL, NULL, NULL, find_nesting, NULL};
-const skg_effect_row skg_effect_leaky = {"leaky meshes", SKG_SELF_TEST_LEAKY,
-    NULL, NULL, has_leaky, find_leaky, cost_leaky};
-const skg_effect_row skg_effect_repair = {"repair", SKG_SELF_TEST_CORE,
-    NULL, check_repair, NULL, find_repair, cost_repair};
-const skg_effect_row skg_effect_source_plane = {"source plane", SKG_SELF_TEST_SOURCE_PLANE,
-    NULL, NULL, NULL, find_source_plane, NULL};
-const skg_effect_row skg_effect_overlaps = {"overlap check", SKG_SELF_TEST_CORE,
-    NULL, check_overlaps, NULL, find_overlaps, NULL};
-const skg_effect_row skg_effect_priority = {"priority", SKG_SELF_TEST_PRIORITY,
-    NULL, check_clip, has_priority, find_priority, cost_priority};
-/* clang-format on */
+const skg_effect_row skg_effect_nesting = {
+    .name = "nesting",
+    .key = "Parent",
+    .adjoint = "skg_gradient_find_surroundings",
+    .find = find_nesting,
+};
+
+static skg_status refuse_leaky(const char *call, const skg_recipe *recipe, int by_view) {
+    (void)by_view;
+    if (!has_leaky(recipe)) return SKG_OK;
+    return skg_fail(SKG_ERR_UNSUPPORTED,
+                    "%s: the mesh of part %s is not closed, and its repair has no gradient; close the mesh",
+                    call, recipe->scene->parts[recipe->leaky[0]].label);
+}
+
+const skg_effect_row skg_effect_leaky = {
+    .name = "leaky meshes",
+    .self_test = SKG_SELF_TEST_LEAKY,
+    .refuses_half = has_leaky,
+    .refuses_gradient = refuse_leaky,
+    .find = find_leaky,
+    .cost = cost_leaky,
+};
+
+const skg_effect_row skg_effect_repair = {
+    .name = "repair",
+    .key = "Repair",
+    .check = check_repair,
+    .find = find_repair,
+    .cost = cost_repair,
+};
+
+const skg_effect_row skg_effect_source_plane = {
+    .name = "source plane",
+    .self_test = SKG_SELF_TEST_SOURCE_PLANE,
+    .find = find_source_plane,
+};
+
+static void leave_out_overlaps(skg_plan_options *options) {
+    options->overlaps = 0;
+}
+
+const skg_effect_row skg_effect_overlaps = {
+    .name = "overlap check",
+    .check = check_overlaps,
+    .leave_out = leave_out_overlaps,
+    .find = find_overlaps,
+};
+
+static skg_status refuse_union(const char *call, const skg_recipe *recipe, int by_view) {
+    (void)by_view;
+    return recipe->options.unite
+               ? skg_effect_no_gradient(call, "the union of components",
+                                        "make the plan without unite, of meshes that do not overlap")
+               : SKG_OK;
+}
+
+const skg_effect_row skg_effect_priority = {
+    .name = "priority",
+    .key = "Priority",
+    .self_test = SKG_SELF_TEST_PRIORITY,
+    .check = check_clip,
+    .refuses_half = has_priority,
+    .refuses_gradient = refuse_union,
+    .adjoint = "slopes.cl",
+    .find = find_priority,
+    .cost = cost_priority,
+};

@@ -132,14 +132,54 @@ static double cost_compression(const skg_effect_facts *f) {
            skg_cost_of_attenuation(model, model->bins, model->materials);
 }
 
-/* clang-format off */
-/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_energies = {"several energies", SKG_SELF_TEST_ENERGIES,
-    copy_bands, check_bands, NULL, find_energies, cost_energies};
-const skg_effect_row skg_effect_source = {"extended source", SKG_SELF_TEST_CORE,
-    NULL, NULL, NULL, find_source, cost_source};
-const skg_effect_row skg_effect_supersampling = {"supersampling", SKG_SELF_TEST_RAYS,
-    NULL, NULL, NULL, find_supersampling, cost_supersampling};
-const skg_effect_row skg_effect_compression = {"spectral compression", SKG_SELF_TEST_CORE,
-    NULL, check_tolerance, NULL, find_compression, cost_compression};
-/* clang-format on */
+static void leave_out_energies(skg_plan_options *options) {
+    options->bands = 0, options->band_kev = NULL;
+}
+
+const skg_effect_row skg_effect_energies = {
+    .name = "several energies",
+    .key = "Beam",
+    .self_test = SKG_SELF_TEST_ENERGIES,
+    .copy = copy_bands,
+    .check = check_bands,
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_energies,
+    .find = find_energies,
+    .cost = cost_energies,
+};
+
+static void leave_out_source(skg_plan_options *options) {
+    options->spot = NULL;
+}
+
+const skg_effect_row skg_effect_source = {
+    .name = "extended source",
+    .key = "Shape",
+    .adjoint = "add_ends",
+    .leave_out = leave_out_source,
+    .find = find_source,
+    .cost = cost_source,
+};
+
+static void leave_out_supersampling(skg_plan_options *options) {
+    options->supersampling = 1;
+}
+
+const skg_effect_row skg_effect_supersampling = {
+    .name = "supersampling",
+    .key = "Oversampling",
+    .self_test = SKG_SELF_TEST_RAYS,
+    .adjoint = "weights.cl",
+    .leave_out = leave_out_supersampling,
+    .find = find_supersampling,
+    .cost = cost_supersampling,
+};
+
+const skg_effect_row skg_effect_compression = {
+    .name = "spectral compression",
+    .key = "Tolerance",
+    .check = check_tolerance,
+    .adjoint = "weights.cl",
+    .find = find_compression,
+    .cost = cost_compression,
+};

@@ -127,8 +127,24 @@ static void find_scatter(const skg_effect_facts *f, skg_effect_state *state) {
                        100 * s->tolerance);
 }
 
-/* clang-format off */
-/* Name and self-test; then copy, check, refuses_half, find, cost: the members of skg_effect_row. */
-const skg_effect_row skg_effect_scatter = {"scatter", SKG_SELF_TEST_SCATTER,
-    copy_scatter, NULL, refuses_half, find_scatter, NULL};
-/* clang-format on */
+static skg_status refuse_scatter(const char *call, const skg_recipe *recipe, int by_view) {
+    (void)by_view;
+    return recipe->options.scatter ? skg_effect_no_gradient(call, "scatter", "make the plan without it")
+                                   : SKG_OK;
+}
+
+static void leave_out_scatter(skg_plan_options *options) {
+    options->scatter = NULL;
+}
+
+const skg_effect_row skg_effect_scatter = {
+    .name = "scatter",
+    .key = "Scatter",
+    .self_test = SKG_SELF_TEST_SCATTER,
+    .copy = copy_scatter,
+    .refuses_half = refuses_half,
+    .refuses_gradient = refuse_scatter,
+    .leave_out = leave_out_scatter,
+    .predicted = 1,
+    .find = find_scatter,
+};

@@ -56,13 +56,14 @@ static skg_status find_leaky(skg_recipe *recipe) {
 /* Half precision is offered only for what the buffers of Vidal and Villard (2016) could hold. */
 static skg_status check_half(const skg_recipe *recipe) {
     if (recipe->options.precision != SKG_PRECISION_HALF) return SKG_OK;
-    if (recipe->view.projection != SKG_PROJECTION_POINT || skg_effects_refuse_half(recipe))
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "precision half is for comparison: a point source or samples of one, closed meshes without "
-            "priorities, vacuum around them, no noise, blur, heel effect, oblique scintillator, bow-tie, grid or scatter; "
-            "take single");
-    return SKG_OK;
+    char names[512];
+    if (recipe->view.projection != SKG_PROJECTION_POINT)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "precision half is for comparison: a point source or samples of one; take single");
+    return skg_effects_refuse_half(recipe, sizeof names, names)
+               ? skg_fail(SKG_ERR_UNSUPPORTED,
+                          "precision half is for comparison, and not computed with %s; take single", names)
+               : SKG_OK;
 }
 
 static skg_fine_request fine_request(const skg_recipe *recipe, int64_t accumulators) {

@@ -61,15 +61,28 @@ typedef struct {
     skg_cost_counts counts;
 } skg_effect_facts;
 
+/* A row says everything that is known of an effect but for its stage. */
 typedef struct {
-    const char *name;        /* as reported */
+    const char *name; /* as reported */
+    /* Of the scene file, in the words of docs/scene-files.md; NULL: it follows from the scene, or programs alone set it. */
+    const char *key;
     skg_self_test self_test; /* of its kernels; 0, SKG_SELF_TEST_CORE: they are those of every plan */
     /* Replaces the caller's structs in the options by checked copies of the recipe's own. NULL: the options hold none. */
     skg_status (*copy)(skg_recipe *recipe);
     /* Fails if an option cannot be used. NULL: nothing to check. */
     skg_status (*check)(const skg_plan_options *options);
-    /* Whether half precision is refused. NULL: it holds with this effect. */
+    /* Whether half precision is refused, because the plan has the effect. NULL: it holds with it. */
     int (*refuses_half)(const skg_recipe *recipe);
+    /* Fails with skg_effect_no_gradient if derivatives cannot be computed with the effect. by_view: those by source and detector. call: the
+     * public function. NULL: they can. */
+    skg_status (*refuses_gradient)(const char *call, const skg_recipe *recipe, int by_view);
+    /* What goes back through the effect: a function of lib/gradient, or a file of kernels/. NULL: derivatives are refused with it, or
+     * it has nothing that they go through. */
+    const char *adjoint;
+    /* Leaves it out of the options. NULL: it cannot be left out, or is off by itself. */
+    void (*leave_out)(skg_plan_options *options);
+    int32_t predicted; /* 1: the prediction of scatter keeps it (lib/frame/predict.c) */
+    int32_t reserved;
     /* Calls skg_effect_set. */
     void (*find)(const skg_effect_facts *facts, skg_effect_state *state);
     /* Multiply-adds per pixel of a frame, if the effect is on. NULL: part of what is done anyway, or done once for a plan. */
@@ -95,6 +108,12 @@ enum { SKG_EFFECTS = SKG_EFFECT_ROWS(SKG_EFFECT_ONE) };
 
 /* Fails if the scatter that the options ask for cannot be computed of the scene. */
 skg_status skg_scatter_check(const skg_recipe *recipe);
+
+/* Fails with SKG_ERR_UNSUPPORTED: "CALL: WHAT has no gradient; MEND". */
+skg_status skg_effect_no_gradient(const char *call, const char *what, const char *mend);
+
+/* The same of what has none under source and detector alone. */
+skg_status skg_effect_no_view_gradient(const char *call, const char *what);
 
 /* Sets whether an effect is on, and why. */
 void skg_effect_set(skg_effect_state *state, int on, const char *format, ...)
