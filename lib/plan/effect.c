@@ -1,3 +1,4 @@
+/* What rows of effects call: how one is reported, and refused. */
 #include "plan/rules.h"
 
 #include <stdarg.h>
@@ -9,4 +10,16 @@ void skg_effect_set(skg_effect_state *state, int on, const char *format, ...) {
     vsnprintf(state->reason, sizeof state->reason, format, arguments);
     va_end(arguments);
     state->on = on;
+}
+
+skg_status skg_effect_no_gradient(const char *call, const char *what, const char *mend) {
+    return skg_fail(SKG_ERR_UNSUPPORTED, "%s: %s has no gradient; %s", call, what, mend);
+}
+
+skg_status skg_effect_no_view_gradient(const char *call, const char *what) {
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "%s: %s under source and detector has no gradient; take it of poses, vertices or densities "
+        "alone, or leave the effect out",
+        call, what);
 }

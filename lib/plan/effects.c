@@ -55,18 +55,6 @@ void skg_effects_leave_out(skg_plan_options *options) {
         if (rows[e]->leave_out && !rows[e]->predicted) rows[e]->leave_out(options);
 }
 
-skg_status skg_effect_no_gradient(const char *call, const char *what, const char *mend) {
-    return skg_fail(SKG_ERR_UNSUPPORTED, "%s: %s has no gradient; %s", call, what, mend);
-}
-
-skg_status skg_effect_no_view_gradient(const char *call, const char *what) {
-    return skg_fail(
-        SKG_ERR_UNSUPPORTED,
-        "%s: %s under source and detector has no gradient; take it of poses, vertices or densities "
-        "alone, or leave the effect out",
-        call, what);
-}
-
 /* Facts that follow from where the parts lie. */
 static skg_status find_places(skg_effect_facts *facts) {
     const skg_recipe *recipe = facts->recipe;
