@@ -33,7 +33,7 @@ function(skg_room folder)
   list(TRANSFORM ROOM_SOURCES PREPEND ${folder}/ REGEX "^[^/].*")
   add_library(skg_${name} OBJECT ${ROOM_SOURCES})
   target_include_directories(skg_${name} PRIVATE
-    ${sight} ${CMAKE_CURRENT_SOURCE_DIR}/include ${skiagraph_SOURCE_DIR}/kernels)
+    ${sight} ${CMAKE_CURRENT_SOURCE_DIR}/include ${skiagraph_SOURCE_DIR}/kernels/shared)
   target_link_libraries(skg_${name} PRIVATE skg_interface ${ROOM_LINKS})
   # The objects, for the library and for tests of private code.
   target_sources(skg_objects INTERFACE $<TARGET_OBJECTS:skg_${name}>)

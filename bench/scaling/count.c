@@ -23,7 +23,7 @@ static void see(const skg_view *v, const double *point, double *seen) {
     seen[0] = r[0] / r[2], seen[1] = r[1] / r[2], seen[2] = r[2];
 }
 
-/* Vector additions that a worker draws a box with (kernels/draw.clh): four triangles of at most 2 x 2 pixels in one
+/* Vector additions that a worker draws a box with (kernels/raster/draw.clh): four triangles of at most 2 x 2 pixels in one
  * vector; blocks of four columns; whole rows; or what lies in the triangle, in pieces of a row. */
 static double vectors_of(double columns, double rows, double hits) {
     if (columns <= 2 && rows <= 2) return 4.0 / SCALING_LANES;

@@ -9,7 +9,7 @@
 
 enum { BANDS_OF_A_LIST = 8, WORKERS_MAX = 1024 };
 
-/* Operations of a lane, counted in kernels/project.cl, triangle.clh, pixel.clh and attenuate.cl; a division counts as 8. */
+/* Operations of a lane, counted in kernels/raster/project.cl, triangle.clh, pixel.clh and attenuate.cl; a division counts as 8. */
 static const double VERTEX_OPERATIONS = 45, SET_UP_OPERATIONS = 150, PIXEL_OPERATIONS = 16,
                     ADD_OPERATIONS = 6, NODE_OPERATIONS = 13, READ_OPERATIONS = 10;
 static const double LAUNCH = 5e3; /* ns, an assumption */

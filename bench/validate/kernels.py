@@ -23,7 +23,7 @@ def tokens(text):
 
 def digest(folder):
     whole = hashlib.sha256()
-    for path in sorted(pathlib.Path(folder).rglob("*")):
+    for path in sorted(pathlib.Path(folder).rglob("*"), key=lambda path: path.name):
         if path.suffix in (".cl", ".clh", ".h"):
             whole.update(" ".join([path.name, *tokens(path.read_text(encoding="utf-8"))]).encode())
     return whole.hexdigest()[:16]

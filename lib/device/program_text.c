@@ -1,13 +1,17 @@
+/* What a program is compiled from: files that are built in, or of a folder for development, and options. */
 #include "core/files.h"
 #include "device/programs.h"
 
 #include <stdio.h>
 #include <string.h>
+#include <unistd.h>
 
-static skg_status read_file(const char *dir, const char *name, char **text) {
+/* A file of the folder for kernels: there, or in the folder of its stage, as in kernels/. */
+static skg_status read_file(const char *dir, const skg_kernel_source *source, char **text) {
     char path[2048];
-    if (snprintf(path, sizeof path, "%s/%s", dir, name) >= (int)sizeof path)
-        return skg_fail(SKG_ERR_FILE, "%s/%s: the path is too long", dir, name);
+    if (snprintf(path, sizeof path, "%s/%s/%s", dir, source->folder, source->name) >= (int)sizeof path)
+        return skg_fail(SKG_ERR_FILE, "%s/%s: the path is too long", dir, source->name);
+    if (access(path, R_OK) != 0) snprintf(path, sizeof path, "%s/%s", dir, source->name);
     FILE *file = NULL;
     size_t length = 0;
     skg_status status = skg_input_open(path, SKG_INPUT_TEXT, &file, NULL);
@@ -30,13 +34,13 @@ static skg_status find_built_in(const char *name, const skg_kernel_source **sour
 static skg_status find_file(const skg_device *device, int32_t file, skg_program_text *text) {
     const char *name = text->names[file];
     const skg_kernel_source *source = NULL;
+    SKG_TRY(find_built_in(name, &source));
     if (!device->kernel_dir) {
-        SKG_TRY(find_built_in(name, &source));
         text->texts[file] = source->text;
         memcpy(text->digests[file], source->digest, SKG_DIGEST_TEXT);
         return SKG_OK;
     }
-    SKG_TRY(read_file(device->kernel_dir, name, &text->read[file]));
+    SKG_TRY(read_file(device->kernel_dir, source, &text->read[file]));
     const skg_digest digest = skg_digest_of(text->read[file], strlen(text->read[file]));
     text->texts[file] = text->read[file];
     skg_digest_text(&digest, text->digests[file]);

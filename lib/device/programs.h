@@ -8,7 +8,8 @@
 /* --- the sources of the kernels, built in --- */
 
 typedef struct {
-    const char *name; /* "raster.cl" */
+    const char *name;   /* "draw.clh" */
+    const char *folder; /* "raster": of kernels/ */
     const char *text;
     const char *digest; /* SHA-256 of the text, in hexadecimal */
 } skg_kernel_source;

@@ -1,6 +1,5 @@
-#include "frame/adapt.h"
-#include "frame/submission.h"
-#include "frame/wait.h"
+#include "frame/jobs.h"
+#include "frame/plans.h"
 #include "spectral/model.h"
 
 #include <math.h>
@@ -43,7 +42,7 @@ static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_out
     linear->samples.shifts = linear->samples.fine = 1;
     SKG_TRY_CLEANUP(
         skg_job_create("skg_plan_create", &skg_job_images, linear, machine, outcome, 1, 1, &output, &job));
-    SKG_TRY_CLEANUP(skg_submission_enqueue(&job, NULL, 1));
+    SKG_TRY_CLEANUP(skg_frames_submit(&job, NULL, 1));
     status = skg_job_complete(&job);
     if (status == SKG_RANGE) status = SKG_OK; /* the change does not depend on the verified range */
 cleanup:

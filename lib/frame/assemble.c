@@ -1,5 +1,5 @@
-#include "frame/assemble.h"
 #include "core/maths.h"
+#include "frame/plans.h"
 #include "plan/decisions.h"
 
 #include <string.h>

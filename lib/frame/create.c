@@ -1,10 +1,8 @@
 /* Makes a plan: a recipe, a machine for it, and what is known before the first frame. */
 #include "core/text.h"
 #include "device/device.h"
-#include "frame/adapt.h"
-#include "frame/assemble.h"
-#include "frame/frame.h"
-#include "frame/plan.h"
+#include "frame/frames.h"
+#include "frame/plans.h"
 #include "plan/decisions.h"
 
 #include <skiagraph/plan.h>

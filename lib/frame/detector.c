@@ -1,4 +1,4 @@
-#include "frame/detector.h"
+#include "frame/frames.h"
 
 #include "spectral/model.h"
 

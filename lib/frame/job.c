@@ -1,5 +1,5 @@
 /* A job: what a submission holds until it is waited for, and its references. */
-#include "frame/job.h"
+#include "frame/jobs.h"
 
 #include <inttypes.h>
 

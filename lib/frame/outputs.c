@@ -1,6 +1,6 @@
-#include "frame/outputs.h"
+#include "frame/work.h"
 
-#include "frame/caller.h"
+#include "frame/given.h"
 #include "spectral/model.h"
 
 #include <inttypes.h>

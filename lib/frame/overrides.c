@@ -1,4 +1,4 @@
-#include "frame/overrides.h"
+#include "frame/given.h"
 
 #include <inttypes.h>
 #include <string.h>

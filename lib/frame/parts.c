@@ -1,5 +1,5 @@
-#include "frame/parts.h"
-#include "frame/overrides.h"
+#include "frame/frames.h"
+#include "frame/given.h"
 #include "geometry/optics.h"
 
 #include <math.h>
@@ -12,9 +12,9 @@ static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *wor
     SKG_TRY(skg_alloc(scene->count + 1, sizeof *pass->own_first, "parts of a frame", &pass->own_first));
     int64_t count = 0;
     for (int64_t p = 0; p < scene->count; p++) {
-        const int is_child = work->kind == SKG_LENGTHS_NET && scene->parts[p].inside == work->lengths_of;
+        const int is_child = work->kind == SKG_LENGTHS_NET && scene->parts[p].inside == work->part;
         pass->own_first[p] = count;
-        if (p == work->lengths_of || is_child)
+        if (p == work->part || is_child)
             pass->own_contributions[count++] = (skg_contribution){.weight = is_child ? -1 : 1};
     }
     pass->own_first[scene->count] = count;
@@ -22,7 +22,7 @@ static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *wor
 }
 
 static skg_status list_contributions(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
-    const int is_length = work->lengths_of >= 0;
+    const int is_length = work->shows == SKG_OUTPUT_LENGTHS;
     pass->planes = is_length ? 1 : recipe->model.planes;
     if (is_length)
         SKG_TRY(list_lengths(recipe->scene, work, pass));
@@ -35,7 +35,7 @@ static skg_status list_contributions(const skg_recipe *recipe, const skg_frame_w
 
 /* Parts that contribute alike share an accumulator, if that pays and there are not more kinds than planned. */
 static skg_status mix_planes(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
-    if (work->lengths_of >= 0 || !recipe->mixed) return SKG_OK;
+    if (work->shows == SKG_OUTPUT_LENGTHS || !recipe->mixed) return SKG_OK;
     SKG_TRY(skg_mix_find(recipe->scene->count, recipe->model.planes, pass->contributions, pass->first,
                          recipe->mixed, &pass->mix));
     if (!pass->mix.sums) return SKG_OK; /* the overrides of this frame make more kinds of parts */
@@ -169,7 +169,8 @@ static int competitors_contribute(const skg_pass *pass) {
 /* Which parts compete for intervals in this frame. The lengths of a mesh's surface do not depend on other parts. */
 static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
     pass->rules = skg_priority_rules(recipe->options.clip, recipe->options.unite);
-    if (!recipe->priority_possible || (work->lengths_of >= 0 && work->kind == SKG_LENGTHS_SURFACE))
+    if (!recipe->priority_possible ||
+        (work->shows == SKG_OUTPUT_LENGTHS && work->kind == SKG_LENGTHS_SURFACE))
         return SKG_OK;
     SKG_TRY(skg_priority_find(recipe->scene, pass->rules, &pass->camera, pass->extents, &pass->priority));
     if (!competitors_contribute(pass)) skg_priority_release(&pass->priority);
@@ -182,7 +183,7 @@ static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work
 static skg_status find_window(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
     const skg_collimation *collimation = recipe->options.collimation;
     skg_field field;
-    if (work->lengths_of >= 0 || !skg_collimation_limits(collimation)) return SKG_OK;
+    if (work->shows == SKG_OUTPUT_LENGTHS || !skg_collimation_limits(collimation)) return SKG_OK;
     SKG_TRY(skg_field_make(collimation, work->view, &field));
     return skg_field_window(&field, &pass->camera, pass->window);
 }

@@ -1,8 +1,7 @@
 /* A plan after it was made: references, another view, and a scene that has changed. */
-#include "frame/plan.h"
+#include "frame/plans.h"
 
 #include "core/text.h"
-#include "frame/assemble.h"
 #include "frame/quiet.h"
 #include "plan/decisions.h"
 

@@ -1,7 +1,7 @@
 #include "core/text.h"
 #include "device/self_tests.h"
-#include "frame/caller.h"
-#include "frame/submission.h"
+#include "frame/given.h"
+#include "frame/jobs.h"
 
 #include <skiagraph/opencl.h>
 

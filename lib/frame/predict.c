@@ -1,7 +1,7 @@
 /* The scatter of a plan's images from few histories, on a coarse detector, by a plan of its own. */
 #include "core/clock.h"
 #include "core/text.h"
-#include "frame/plan.h"
+#include "frame/plans.h"
 #include "plan/decisions.h"
 #include "plan/rules.h"
 

@@ -1,6 +1,6 @@
 /* What a plan answers about itself. */
 #include "core/text.h"
-#include "frame/plan.h"
+#include "frame/plans.h"
 #include "plan/decisions.h"
 
 #include <inttypes.h>

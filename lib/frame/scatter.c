@@ -1,6 +1,6 @@
-#include "frame/scatter.h"
+#include "frame/frames.h"
 
-#include "frame/overrides.h"
+#include "frame/given.h"
 
 #include <inttypes.h>
 

@@ -1,5 +1,5 @@
 #include "device/self_tests.h"
-#include "frame/plan.h"
+#include "frame/plans.h"
 #include "plan/decisions.h"
 
 /* The self-tests of the kernels that a plan uses. */

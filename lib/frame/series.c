@@ -1,9 +1,9 @@
 /* Scatter of a series of frames: the public calls. */
 #include "core/text.h"
 #include "device/device.h"
-#include "frame/held.h"
-#include "frame/plan.h"
-#include "frame/scatter.h"
+#include "frame/frames.h"
+#include "frame/given.h"
+#include "frame/plans.h"
 
 #include <inttypes.h>
 #include <stdatomic.h>

@@ -1,8 +1,8 @@
 /* Frames of jobs: given to the device, all at once or one after another, long ones in steps. */
-#include "frame/submission.h"
+#include "frame/jobs.h"
 
-#include "frame/frame.h"
-#include "frame/held.h"
+#include "frame/frames.h"
+#include "frame/given.h"
 #include "plan/decisions.h"
 
 #include <inttypes.h>
@@ -10,22 +10,22 @@
 
 /* --- one frame */
 
-skg_status skg_frame_enqueue_output(skg_job *job, const skg_frame_output *output, int64_t index,
-                                    skg_frame_work *work) {
+skg_status skg_frame_render_output(skg_job *job, const skg_frame_output *output, int64_t index,
+                                   skg_frame_work *work) {
     const int is_length = output->to.kind == SKG_OUTPUT_LENGTHS;
     const skg_view *view = &job->recipe->view;
-    work->lengths_of = is_length ? output->to.part : -1;
+    work->part = output->to.part;
     work->kind = is_length ? output->to.lengths : output->to.component;
     work->shows = output->to.kind;
     work->reuses = output->to.kind == SKG_OUTPUT_MEAN || output->to.kind == SKG_OUTPUT_VARIANCE;
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
-    SKG_TRY(skg_frame_enqueue(job, work));
+    SKG_TRY(skg_frame_render(job, work));
     if (work->step + 1 < skg_frame_steps(job->recipe, output->to.kind, work->each)) return SKG_OK;
     return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log);
 }
 
 /* Enqueues a step of a frame, or all its outputs. What is reported of a frame is that of its last output: images come last. */
-static skg_status enqueue_outputs(skg_job *job, int64_t index, int64_t step, skg_frame_work *work) {
+static skg_status render_frame(skg_job *job, int64_t index, int64_t step, skg_frame_work *work) {
     work->each = job->each;
     for (int images = 0; images < 2; images++)
         for (int64_t o = 0; o < job->output_count; o++) {
@@ -34,7 +34,7 @@ static skg_status enqueue_outputs(skg_job *job, int64_t index, int64_t step, skg
             const int64_t steps = skg_frame_steps(job->recipe, kind, job->each);
             work->step = job->each ? step : 0;
             if (!job->each || (step >= 0 && step < steps))
-                SKG_TRY(skg_frame_enqueue_output(job, &job->outputs[o], index, work));
+                SKG_TRY(skg_frame_render_output(job, &job->outputs[o], index, work));
             step -= steps;
         }
     return SKG_OK;
@@ -47,9 +47,9 @@ static skg_status fail_cancelled(const skg_job *job) {
                     job->enqueued / job->steps, job->count);
 }
 
-const skg_job_kind skg_job_images = {.step = enqueue_outputs, .cancelled = fail_cancelled};
+const skg_job_kind skg_job_images = {.step = render_frame, .cancelled = fail_cancelled};
 
-static skg_status enqueue_step(skg_job *job, const skg_frame *frames, const double **poses) {
+static skg_status submit_step(skg_job *job, const skg_frame *frames, const double **poses) {
     skg_machine *machine = job->machine;
     const int64_t index = job->enqueued / job->steps, step = job->enqueued % job->steps;
     int32_t *bad_vertex = job->results.bad_vertex + index;
@@ -70,7 +70,7 @@ static skg_status enqueue_step(skg_job *job, const skg_frame *frames, const doub
 }
 
 /* Enqueues steps until number `end`. */
-static skg_status enqueue_until(skg_job *job, const skg_frame *frames, int64_t end) {
+static skg_status submit_steps(skg_job *job, const skg_frame *frames, int64_t end) {
     const double **poses = NULL;
     skg_status status = SKG_OK;
     if (job->enqueued >= end) return SKG_OK;
@@ -80,7 +80,7 @@ static skg_status enqueue_until(skg_job *job, const skg_frame *frames, int64_t e
                         "were given to the device; wait for the job first");
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
     while (status == SKG_OK && job->enqueued < end && !atomic_load(&job->cancelled))
-        status = enqueue_step(job, frames, poses);
+        status = submit_step(job, frames, poses);
     skg_free(&poses);
     return status;
 }
@@ -198,32 +198,32 @@ static skg_status begin(skg_job *job, const skg_frame *frames) {
     return status;
 }
 
-static skg_status start(skg_job *job, const skg_frame *frames, int at_once) {
-    skg_context *context = job->machine->context;
+skg_status skg_frames_submit(skg_job **made, const skg_frame *frames, int at_once) {
+    skg_job *job = *made;
+    skg_status status = SKG_OK;
     const int begins = job->kind->begin != NULL, is_whole = !begins && (at_once || !is_for_later(job));
     if (begins)
-        SKG_TRY(begin(job, frames));
+        SKG_TRY_CLEANUP(begin(job, frames));
     else if (!is_whole)
-        SKG_TRY(divide(job));
+        SKG_TRY_CLEANUP(divide(job));
     const int64_t all = skg_job_steps(job), ahead = is_whole ? all : begins ? 0 : steps_ahead(job);
-    SKG_TRY(clear_counters(job->machine));
-    SKG_TRY(enqueue_until(job, frames, ahead < all ? ahead : all));
-    if (job->enqueued == all) return skg_submission_finish(job);
-    SKG_TRY(skg_held_frames_copy(job, frames));
-    SKG_TRY(skg_queue_flush(context));
-    context->held = job;
-    return SKG_OK;
-}
-
-skg_status skg_submission_enqueue(skg_job **job, const skg_frame *frames, int at_once) {
-    const skg_status status = start(*job, frames, at_once);
-    if (status != SKG_OK) skg_job_end(job);
+    SKG_TRY_CLEANUP(clear_counters(job->machine));
+    SKG_TRY_CLEANUP(submit_steps(job, frames, ahead < all ? ahead : all));
+    if (job->enqueued == all) {
+        status = skg_submission_finish(job);
+        goto cleanup;
+    }
+    SKG_TRY_CLEANUP(skg_held_frames_copy(job, frames));
+    SKG_TRY_CLEANUP(skg_queue_flush(job->machine->context));
+    job->machine->context->held = job;
+cleanup:
+    if (status != SKG_OK) skg_job_end(made);
     return status;
 }
 
-static skg_status enqueue_held(skg_job *job, int64_t end) {
+static skg_status submit_held(skg_job *job, int64_t end) {
     const int64_t all = skg_job_steps(job);
-    SKG_TRY(enqueue_until(job, job->then.frames, end < all ? end : all));
+    SKG_TRY(submit_steps(job, job->then.frames, end < all ? end : all));
     if (job->enqueued == all) return skg_submission_finish(job);
     return skg_queue_flush(job->machine->context);
 }
@@ -231,7 +231,7 @@ static skg_status enqueue_held(skg_job *job, int64_t end) {
 /* Enqueues steps that were held back, up to number `end`. Their failure is that of the job. */
 static void hand_over(skg_job *job, int64_t end) {
     if (job->last || job->failure != SKG_OK || atomic_load(&job->cancelled)) return;
-    job->failure = enqueue_held(job, end);
+    job->failure = submit_held(job, end);
     if (job->failure != SKG_OK) (void)skg_copy_text(skg_last_error(), &job->sentence);
 }
 

@@ -1,7 +1,7 @@
 #include "core/text.h"
 #include "device/self_tests.h"
-#include "frame/caller.h"
-#include "frame/submission.h"
+#include "frame/given.h"
+#include "frame/jobs.h"
 
 #include <skiagraph/opencl.h>
 
@@ -46,7 +46,7 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
         if (status != SKG_OK) skg_job_end(&made);
         SKG_TRY(status);
     }
-    SKG_TRY(skg_submission_enqueue(&made, frames, events != NULL));
+    SKG_TRY(skg_frames_submit(&made, frames, events != NULL));
     skg_ref(&plan->refs);
     made->plan = plan;
     *job = made;

@@ -1,9 +1,8 @@
 /* Jobs are asked, cancelled and waited for. */
-#include "frame/wait.h"
+#include "frame/jobs.h"
 
 #include "core/text.h"
 #include "driver/driver.h"
-#include "frame/submission.h"
 
 /* Waits until every frame that will be made is, and gives the device those that were held back. */
 static cl_int wait_for_frames(skg_job *job) {

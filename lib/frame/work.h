@@ -1,23 +1,54 @@
-/* What a frame is to show. Private. */
+/* What a frame is to show, and where that goes. Private. */
 #ifndef SKG_WORK_H
 #define SKG_WORK_H
 
+#include "plan/recipe.h"
 #include "stage/attenuate.h"
+#include "stage/machine.h"
+#include "stage/staging.h"
+
+/* --- What a frame is to show */
 
 typedef struct {
     const skg_view *view;
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
     const skg_mesh *meshes;     /* [meshes] of the recipe, as the device has them; NULL: the scene's */
     const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
-    int64_t lengths_of;         /* a part whose lengths are wanted, or -1: an image */
-    int32_t
-        kind; /* of lengths: SKG_LENGTHS_NET or SKG_LENGTHS_SURFACE; of a component of the scatter: which */
-    int32_t shows; /* enum skg_output_kind */
-    int32_t
-        reuses; /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
+    int32_t shows;              /* enum skg_output_kind */
+    int32_t kind;               /* of lengths: SKG_LENGTHS_...; of a component of the scatter: which */
+    int64_t part;               /* whose lengths are shown */
+    /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
+    int32_t reuses;
     int64_t step, each;   /* of an image: which step is made, of so many passes; each: 0: all its passes */
     skg_noise_args noise; /* its key */
     skg_image_place place;
 } skg_frame_work;
+
+/* --- The outputs of a submission: what is computed, and where it goes */
+
+typedef struct {
+    skg_output to; /* checked; strides filled in */
+    int64_t channels;
+    int64_t first; /* element of to.buffer where the first frame begins */
+} skg_frame_output;
+
+/* Checks output `index` of a list and fills in the rest. call: the name of the public function. frames: their number. */
+skg_status skg_frame_output_read(const char *call, const skg_recipe *recipe, const skg_machine *machine,
+                                 int64_t frames, const skg_output *outputs, int64_t index,
+                                 skg_frame_output *output);
+
+/* Whether a kind of output shows the scatter alone. */
+static inline int skg_output_is_scatter(int32_t kind) {
+    return kind == SKG_OUTPUT_SCATTER || kind == SKG_OUTPUT_SCATTER_SIGMA ||
+           kind == SKG_OUTPUT_SCATTER_COMPONENT;
+}
+
+/* Where the device puts the output of a frame: the caller's buffer, or device memory from which it is read back. */
+skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view *view, skg_machine *machine,
+                                  int64_t frame, skg_image_place *place);
+
+/* Enqueues the read of an output into the caller's host memory. Does nothing if it stays on the device. */
+skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_view *view,
+                                      const skg_machine *machine, int64_t frame, skg_stage_log *log);
 
 #endif

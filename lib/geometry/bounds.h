@@ -97,7 +97,7 @@ void skg_touching_join(skg_touching_group *group, const double columns[2], const
                        double noise);
 void skg_touching_measure(const skg_camera *camera, skg_touching_group *group);
 
-/* The pixels by which kernels move the edges of a group for coverage (kernels/triangle.clh). */
+/* The pixels by which kernels move the edges of a group for coverage (kernels/raster/triangle.clh). */
 double skg_touching_shift(const skg_touching_group *group, int32_t is_double);
 
 /* The pixels that rounding the positions of a mesh to doubles moves them. at: its extent. */

@@ -1,4 +1,4 @@
-/* The method is that of the kernel for the plane of the source (kernels/source_plane.cl). A row of pixels and
+/* The method is that of the kernel for the plane of the source (kernels/raster/source_plane.cl). A row of pixels and
  * the source span a plane, which cuts two edges of a triangle; a ray hits the triangle if it passes the two cuts
  * on different sides. Each cut is computed from the ends of its edge in one order, so that neighbouring
  * triangles agree and the signed hits of a closed mesh cancel. */

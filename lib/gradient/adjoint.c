@@ -1,6 +1,6 @@
 #include "gradient/adjoint.h"
 
-#include "frame/caller.h"
+#include "frame/given.h"
 #include "plan/decisions.h"
 #include "spectral/model.h"
 

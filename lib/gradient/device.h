@@ -1,6 +1,6 @@
 /* Stage `gradient`: the derivatives of a loss by the faces of all parts, from those by the sums of a raster. Private.
  *
- * Four integers a face are gathered by one kernel (kernels/gradient.cl), whatever strategy has drawn the faces; the same
+ * Four integers a face are gathered by one kernel (kernels/gradient/gradient.cl), whatever strategy has drawn the faces; the same
  * coverage gives the same hits. */
 #ifndef SKG_GRADIENT_STAGE_H
 #define SKG_GRADIENT_STAGE_H

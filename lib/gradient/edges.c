@@ -103,7 +103,7 @@ static int is_in(const uint32_t *set, int64_t slot) {
     return (int)(set[slot / 32] >> slot % 32 & 1);
 }
 
-/* Whether an active slot loses, as skg_loses of kernels/hits.cl says. */
+/* Whether an active slot loses, as skg_loses of kernels/raster/hits.cl says. */
 static int loses(const place_state *s, int64_t slot) {
     const int32_t *entry = s->all->table + slot * skg_priority_entry(&s->all->pass->priority);
     int lost = entry[1] >= 0 && !is_in(s->active, entry[1]);

@@ -2,7 +2,7 @@
  *
  * Where parts compete by priority, it depends on depth. A face of part a separates places inside a from places outside. With T(in) and
  * T(out) for what the parts that lose there take off, for a unit of length, the worth is that of a's own length - T(in) + T(out).
- * The lists of hits (kernels/hits.cl) do not suffice: they lack the background where no winner is hit. So the host traces the ray
+ * The lists of hits (kernels/raster/hits.cl) do not suffice: they lack the background where no winner is hit. So the host traces the ray
  * to the middle of what the pixel sees of the face through all that compete. */
 #ifndef SKG_GRADIENT_EDGES_H
 #define SKG_GRADIENT_EDGES_H

@@ -1,4 +1,4 @@
-/* Derivatives of a loss by what moves, from the moments of faces (kernels/gradient.cl). Private.
+/* Derivatives of a loss by what moves, from the moments of faces (kernels/gradient/gradient.cl). Private.
  *
  * The derivative by corner k of a face is a vector F_k along the face's normal, as a force would be. A part's twist gets the sum of
  * F_k and of x_k x F_k. A ray that moves by v at x changes the loss by -F . v, and what moves a ray is affine in x, so that the

@@ -2,9 +2,9 @@
  * is waited for, because device and host alternate. */
 #include "gradient/kind.h"
 
-#include "frame/frame.h"
-#include "frame/held.h"
-#include "frame/submission.h"
+#include "frame/frames.h"
+#include "frame/given.h"
+#include "frame/jobs.h"
 #include "gradient/adjoint.h"
 #include "gradient/density.h"
 #include "gradient/direction_pass.h"
@@ -22,15 +22,14 @@ static skg_status begin(skg_job *job, const skg_frame *frames, const double **po
     skg_machine *machine = job->machine;
     skg_frame frame;
     skg_pass pass;
-    skg_frame_work work = {
-        .view = &gradient->of_frame, .poses = poses, .frame = &frame, .lengths_of = -1, .reuses = 1};
+    skg_frame_work work = {.view = &gradient->of_frame, .poses = poses, .frame = &frame, .reuses = 1};
     SKG_TRY(skg_held_frame_read(job, frames, 0, &frame, &gradient->of_frame, poses, &work.noise));
     if (gradient->image) {
         SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
-        SKG_TRY(skg_frame_enqueue_output(job, &gradient->shown, 0, &work));
+        SKG_TRY(skg_frame_render_output(job, &gradient->shown, 0, &work));
     } else {
         SKG_TRY(skg_geometry_continue(machine->context, &machine->geometry));
-        const skg_status status = skg_frame_draw_pass(job, &work, skg_frame_first_pass(job->recipe), &pass);
+        const skg_status status = skg_frame_draw_sums(job, &work, skg_frame_first_pass(job->recipe), &pass);
         skg_pass_release(&pass);
         SKG_TRY(status);
     }
@@ -97,7 +96,7 @@ static skg_status add_pass(skg_job *job, const skg_frame_work *work, int64_t num
     skg_pass pass;
     skg_sums sums;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_frame_draw_pass(job, work, number, &pass));
+    SKG_TRY_CLEANUP(skg_frame_draw_sums(job, work, number, &pass));
     SKG_TRY_CLEANUP(skg_frame_sums(job, &pass, 0, &sums));
     status = add(job, work, number, &pass, &sums, skg_frame_factor(job->recipe, work, &pass));
 cleanup:
@@ -107,7 +106,6 @@ cleanup:
 
 /* Returns the number of the pass that a step is. */
 static int64_t find_pass(const skg_job *job, int64_t step, skg_frame_work *work) {
-    work->lengths_of = -1;
     work->reuses = 1;
     return skg_frame_first_pass(job->recipe) + step;
 }

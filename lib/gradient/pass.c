@@ -46,7 +46,7 @@ static void add_parallel(const skg_view *view, const skg_camera *camera, const s
 }
 
 /* The lengths of the rays change, too: those of all paths as |D|, and with the falloff the intensities as 1 / |D|^3. sums: over rays
- * (kernels/weights.cl) */
+ * (kernels/gradient/weights.cl) */
 static void add_ray_lengths(const skg_camera *camera, const double sums[SKG_RAY_SUMS], ends *e) {
     double all[3], turn[3];
     for (int k = 0; k < 3; k++)

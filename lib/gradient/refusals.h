@@ -2,7 +2,7 @@
 #ifndef SKG_GRADIENT_REFUSALS_H
 #define SKG_GRADIENT_REFUSALS_H
 
-#include "frame/plan.h"
+#include "frame/plans.h"
 
 #include <skiagraph/gradient.h>
 

@@ -65,7 +65,7 @@ static double larger(double a, double b) {
     return a >= b ? a : b;
 }
 
-/* Whether the device surely sees a face as a line (kernels/gradient.cl): what is half as wide as that is so after any rounding. */
+/* Whether the device surely sees a face as a line (kernels/gradient/gradient.cl): what is half as wide as that is so after any rounding. */
 static int is_line(const double *a, const double *b, const double *c, const int32_t *from, double rounding) {
     double longest = 0, far = 0;
     for (int k = 0; k < 2; k++) {

@@ -2,7 +2,7 @@
  *
  * With di dj = h / (t^3 det) db, where db is the area in barycentric coordinates and det the determinant of the camera, the
  * integral over a pixel of the derivative of a hit, (t / h) b_k n . dv_k, stays finite when h = n . (v - source) goes to 0:
- * n . dv_k / det times the integral of b_k / t^2 db over the part of the face that the pixel sees. kernels/gradient.cl finds the
+ * n . dv_k / det times the integral of b_k / t^2 db over the part of the face that the pixel sees. kernels/gradient/gradient.cl finds the
  * faces. */
 #ifndef SKG_STEEP_H
 #define SKG_STEEP_H

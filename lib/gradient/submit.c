@@ -2,7 +2,7 @@
 #include "gradient/submit.h"
 
 #include "device/self_tests.h"
-#include "frame/submission.h"
+#include "frame/jobs.h"
 #include "gradient/adjoint.h"
 
 /* Memory for the image, where it has to be known. */
@@ -47,7 +47,7 @@ skg_status skg_gradient_begin(const char *call, skg_plan *plan, skg_job **job, s
 }
 
 skg_status skg_gradient_start(skg_plan *plan, const skg_frame *frame, skg_job **made, skg_job **job) {
-    SKG_TRY(skg_submission_enqueue(made, frame, 0));
+    SKG_TRY(skg_frames_submit(made, frame, 0));
     skg_ref(&plan->refs);
     (*made)->plan = plan;
     *job = *made;

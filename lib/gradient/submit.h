@@ -2,7 +2,7 @@
 #ifndef SKG_GRADIENT_SUBMIT_H
 #define SKG_GRADIENT_SUBMIT_H
 
-#include "frame/plan.h"
+#include "frame/plans.h"
 #include "gradient/kind.h"
 
 /* What every submission begins with: the plan as the scene is now, and work that release ends. *job becomes NULL. */

@@ -1,4 +1,4 @@
-/* The derivatives of a loss by the sums of a pass: what hits are worth (kernels/weights.cl). */
+/* The derivatives of a loss by the sums of a pass: what hits are worth (kernels/gradient/weights.cl). */
 #include "gradient/gather.h"
 
 #include <skiagraph/plan.h>

@@ -2,7 +2,7 @@
 #ifndef SKG_GRADIENT_WORK_H
 #define SKG_GRADIENT_WORK_H
 
-#include "frame/job.h"
+#include "frame/jobs.h"
 #include "gradient/device.h"
 
 #include <skiagraph/gradient.h>

@@ -152,7 +152,7 @@ static void cross_edge(const double *a, const double *b, double row, double cros
     crossing[1] = a[2] + share * (b[2] - a[2]);
 }
 
-/* The hits of the columns of a row. They balance, as those of rays do (kernels/triangle.clh). */
+/* The hits of the columns of a row. They balance, as those of rays do (kernels/raster/triangle.clh). */
 static skg_status add_row(column_search *s, double corner[3][3], int parity, int32_t row) {
     double a[2], b[2];
     cross_edge(corner[0], corner[2], row, a);
@@ -261,7 +261,7 @@ static skg_status sample_winding(const skg_mesh *mesh, int64_t *most) {
 }
 
 /* Columns take much longer than moving the vertices of a mesh of one component. What they would have shown is said by the frames that it
- * concerns (kernels/planes.clh). */
+ * concerns (kernels/attenuation/planes.clh). */
 static int is_due(const skg_mesh *mesh) {
     enum { FIRST = 4, EVERY = 64 };
     return mesh->version <= FIRST || mesh->version % EVERY == 0;

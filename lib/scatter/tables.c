@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* Columns of the table by energy, as kernels/scatter.clh has them. */
+/* Columns of the table by energy, as kernels/scatter/scatter.clh has them. */
 enum { TOTAL, COMPTON, RAYLEIGH, COMPTON_SHAPE, RAYLEIGH_SHAPE, SIGNAL };
 
 /* Of the table of layers: a share times the cosine bends where the layer is as long as the path that is free, and is linear between

@@ -16,10 +16,10 @@ typedef struct {
         [4]; /* [bins] keV, share of the photons that are followed up to here, weight, 1/mm of a bow-tie filter */
     int64_t bins;
     skg_beam_profile profile;
-    float *profiles; /* [profile_count] as kernels/profile.clh has them; NULL: none */
+    float *profiles; /* [profile_count] as kernels/scatter/profile.clh has them; NULL: none */
     int64_t profile_count;
     float *
-        detector; /* [detector_count] as kernels/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
+        detector; /* [detector_count] as kernels/scatter/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
     int64_t detector_count;
     int32_t bands, layers, cosines, oblique; /* images of a frame; of the table of layers: 0: none */
     double photons;                          /* of the spectrum, those that leave towards the field */

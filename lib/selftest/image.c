@@ -1,5 +1,5 @@
 #include "core/clock.h"
-#include "frame/plan.h"
+#include "frame/plans.h"
 #include "geometry/optics.h"
 #include "selftest/selftest.h"
 

@@ -1,4 +1,4 @@
-#include "frame/plan.h"
+#include "frame/plans.h"
 #include "selftest/selftest.h"
 
 #include <skiagraph/mesh.h>

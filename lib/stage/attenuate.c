@@ -72,7 +72,7 @@ static int32_t shades_of(const skg_attenuation *attenuation) {
     return attenuation->shades ? attenuation->shades->count : 0;
 }
 
-/* Whether a general program is needed (kernels/planes.clh), and the planes that a program has memory for. */
+/* Whether a general program is needed (kernels/attenuation/planes.clh), and the planes that a program has memory for. */
 static int is_general(const skg_attenuation *attenuation) {
     return attenuation->planes > SKG_FEW_PLANES || shades_of(attenuation) > 0 || attenuation->noise;
 }

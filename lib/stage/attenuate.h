@@ -123,7 +123,7 @@ typedef struct {
     cl_mem of_rays; /* [SKG_RAY_SUMS][items] with SKG_RAYS_SUMS; else it may be any buffer */
 } skg_transposition;
 
-/* Enqueues the transpose of skg_attenuate: from the derivative of a loss by the image to those by the sums (kernels/weights.cl).
+/* Enqueues the transpose of skg_attenuate: from the derivative of a loss by the image to those by the sums (kernels/gradient/weights.cl).
  * Noise is left out. */
 skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
                                    const skg_attenuation *attenuation, const skg_transposition *asked,

@@ -52,7 +52,7 @@ int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *
  * because a driver reads its own header for each. */
 skg_status skg_kernels_get_first(skg_context *context, cl_program *program);
 
-/* One argument of a kernel: its position, by the name that kernels/arguments.h gives it, and its value. */
+/* One argument of a kernel: its position, by the name that kernels/shared/arguments.h gives it, and its value. */
 typedef struct {
     cl_uint position;
     size_t size;

@@ -81,7 +81,7 @@ typedef struct {
     int32_t bad_stands;  /* 1: `bad` is of the frame before, and is reset by the next projection */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
-    skg_buffer projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/fine.clh) */
+    skg_buffer projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/raster/fine.clh) */
     /* int: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
     skg_buffer bad;
 } skg_geometry;

@@ -48,7 +48,7 @@ END {
             else if (from[i] ~ /^bench\// && ("bench/" path) in known) to = "bench/" path
             else if (from[i] ~ /^(cli|bench)\// && ("cli/" path) in known) to = "cli/" path
             else if (path in known) to = path
-            else if (("kernels/" path) in known) to = "kernels/" path
+            else if (("kernels/shared/" path) in known) to = "kernels/shared/" path
         }
         if (to != "" && stem(to) != stem(from[i])) print stem(from[i]), stem(to), "includes", path
     }

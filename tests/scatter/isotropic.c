@@ -1,6 +1,6 @@
 #include "isotropic.h"
 
-#include "frame/plan.h"
+#include "frame/plans.h"
 
 #include <math.h>
 

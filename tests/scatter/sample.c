@@ -1,7 +1,7 @@
 #include "sample.h"
 
 #include "device/programs.h"
-#include "frame/plan.h"
+#include "frame/plans.h"
 
 #include <stdio.h>
 #include <string.h>

@@ -1,6 +1,6 @@
 #include "sums.h"
 
-#include "frame/plan.h"
+#include "frame/plans.h"
 
 _Static_assert((int)SUMS_BATCHES == (int)SKG_SCATTER_BATCHES && SUMS_KINDS == SKG_SCATTER_KINDS &&
                    SUMS_PLANES == SKG_SCATTER_PLANES,

@@ -118,7 +118,7 @@ static void copy_kernels(const char *name, const char *old, const char *new) {
     char line[512];
     snprintf(kernels, sizeof kernels, "/tmp/skg-kernels-XXXXXX");
     ck_assert_ptr_nonnull(mkdtemp(kernels));
-    snprintf(line, sizeof line, "cp %s/kernels/* %s", SKG_SOURCE, kernels);
+    snprintf(line, sizeof line, "cp %s/kernels/*/* %s", SKG_SOURCE, kernels);
     ck_assert_int_eq(system(line), 0);
     snprintf(line, sizeof line, "%s/%s", kernels, name);
     FILE *file = fopen(line, "r");

@@ -1,4 +1,4 @@
-/* The names of the kernels' arguments (kernels/arguments.h) are those that the OpenCL compiler finds, in this order. */
+/* The names of the kernels' arguments (kernels/shared/arguments.h) are those that the OpenCL compiler finds, in this order. */
 #include "stage/kernels.h"
 #include "suite.h"
 
@@ -74,7 +74,7 @@ static const struct {
 static const kernel_list *list_of(const char *function) {
     for (int k = 0; k < KERNELS; k++)
         if (strcmp(lists[k].function, function) == 0) return &lists[k];
-    ck_abort_msg("kernel %s is not in kernels/arguments.h", function);
+    ck_abort_msg("kernel %s is not in kernels/shared/arguments.h", function);
     return NULL;
 }
 

@@ -60,7 +60,8 @@ typedef struct skg_context skg_context;
  *                              without it work is divided for the CPUs that the process may run on (see
  *                              Start); if the driver has made 8 or more threads for each of these, the log
  *                              has a warning that names the driver's environment variable
- *                 kernels=DIR  read the kernels from DIR instead of those built in, for development
+ *                 kernels=DIR  read the kernels from DIR, or its folders as in kernels/, instead of those
+ *                              built in, for development
  *               A value that holds blanks stands in double quotes: driver="/opt/my drivers/libpocl.so"
  *     context   result; the caller releases it
  *     errors    SKG_ERR_ARGUMENT (a word), SKG_ERR_NO_DEVICE (also: PATH is no driver), SKG_ERR_DEVICE,

@@ -1,13 +1,14 @@
-/* Work under way: what it is made with, what must stay until the device is done with it, and what is reported then.
- * Private. */
-#ifndef SKG_JOB_H
-#define SKG_JOB_H
+/* Jobs: made of a submission, given to the device in steps, asked, waited for. Private. */
+#ifndef SKG_JOBS_H
+#define SKG_JOBS_H
 
-#include "frame/outputs.h"
-#include "frame/plan.h"
+#include "frame/plans.h"
+#include "frame/work.h"
 #include "plan/results.h"
 
 #include <stdatomic.h>
+
+/* --- Work under way: what it is made with, what must stay until the device is done with it, and what is reported then. */
 
 /* The scene at the time of a submission, for frames that are enqueued later. All NULL: every frame was enqueued at once. */
 typedef struct {
@@ -79,5 +80,33 @@ void skg_job_end(skg_job **job);
 
 /* The same without giving up a reference. */
 void skg_job_empty(skg_job *job);
+
+/* --- Frames of a job: checked and enqueued, all at once or one after another */
+
+/* Checks the frames and enqueues them. Of frames that keep the device busy for long, only the first ones are enqueued, so that a
+ * job can be cancelled; the others follow while it is asked or waited for. frames: [job->count] the caller's; NULL: each as
+ * plan and scene stand. at_once: 1: all are enqueued. After a failure nothing is under way, and the job is released. */
+skg_status skg_frames_submit(skg_job **job, const skg_frame *frames, int at_once);
+
+/* The kind of job whose frames are images, and other outputs. */
+extern const skg_job_kind skg_job_images;
+
+/* Enqueues a step of one output of a frame; of an undivided job all of it. index: of the frame */
+skg_status skg_frame_render_output(skg_job *job, const skg_frame_output *output, int64_t index,
+                                   skg_frame_work *work);
+
+/* Enqueues frames that the device can be given by now, unless the job was cancelled. A failure is reported by skg_job_wait. */
+void skg_submission_continue(skg_job *job);
+
+/* Enqueues what is left of a context's earlier job, so that its jobs run in order. */
+void skg_submission_flush(const skg_context *context);
+
+/* Enqueues the reads of what is reported, and the marker that is waited for, if that was not done. */
+skg_status skg_submission_finish(skg_job *job);
+
+/* --- Waiting for a job, and giving the device its frames meanwhile */
+
+/* Waits, reports and releases. */
+skg_status skg_job_complete(skg_job **job);
 
 #endif

@@ -1,4 +1,4 @@
-#include "frame/caller.h"
+#include "frame/given.h"
 
 #include <inttypes.h>
 

@@ -1,8 +1,5 @@
 /* The passes of a frame: each from the vertices to its share of the image. */
-#include "frame/frame.h"
-#include "frame/detector.h"
-#include "frame/parts.h"
-#include "frame/scatter.h"
+#include "frame/frames.h"
 #include "plan/decisions.h"
 #include "spectral/model.h"
 #include "spectral/verification.h"
@@ -64,7 +61,7 @@ static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, int
 
 /* The first pass of an image of the recipe's view. */
 static skg_status fill_first(const skg_recipe *recipe, const skg_machine *machine, skg_pass *pass) {
-    const skg_frame_work work = {.view = &recipe->view, .lengths_of = -1};
+    const skg_frame_work work = {.view = &recipe->view};
     return skg_pass_fill(recipe, &work, skg_frame_first_pass(recipe), &machine->pass, pass);
 }
 
@@ -109,11 +106,11 @@ static skg_status update_meshes(skg_job *job) {
 }
 
 /* Enqueues the raster of all parts, and what priorities and leaky parts change in its sums. */
-static skg_status enqueue_sums(skg_job *job, const skg_frame_work *work, const skg_pass *pass) {
+static skg_status draw_sums(skg_job *job, const skg_frame_work *work, const skg_pass *pass) {
     skg_machine *machine = job->machine;
     const skg_recipe *recipe = job->recipe;
     skg_stage_log *log = &job->staging.log;
-    const int is_image = work->lengths_of < 0;
+    const int is_image = work->shows != SKG_OUTPUT_LENGTHS;
     const skg_leaky_parts leaky = {.count = recipe->leaky_count,
                                    .parts = recipe->leaky,
                                    .repair = recipe->options.repair,
@@ -184,11 +181,11 @@ static double least_of(const skg_recipe *recipe, const skg_pass *pass, int lengt
 }
 
 /* Enqueues the image of one pass from the sums. */
-static skg_status enqueue_image(skg_job *job, const skg_frame_work *work, int64_t number,
-                                const skg_pass *pass, int32_t place_of_pass) {
+static skg_status attenuate_pass(skg_job *job, const skg_frame_work *work, int64_t number,
+                                 const skg_pass *pass, int32_t place_of_pass) {
     const skg_recipe *recipe = job->recipe;
     skg_machine *machine = job->machine;
-    const int lengths = work->lengths_of >= 0;
+    const int lengths = work->shows == SKG_OUTPUT_LENGTHS;
     const double share = 1 / (double)skg_samples_count(&recipe->samples);
     const double factor = lengths ? 1 : skg_frame_factor(recipe, work, pass);
     const double least = least_of(recipe, pass, lengths);
@@ -222,7 +219,7 @@ typedef struct {
 } gathered;
 
 /* Enqueues the passes that wait, from the vertices to their shares of the image. */
-static skg_status enqueue_gathered(skg_job *job, const skg_frame_work *work, gathered *g) {
+static skg_status draw_gathered(skg_job *job, const skg_frame_work *work, gathered *g) {
     skg_machine *machine = job->machine;
     skg_status status = SKG_OK;
     if (g->count) status = skg_geometry_send_passes(machine->context, &machine->geometry, &g->tables);
@@ -230,7 +227,7 @@ static skg_status enqueue_gathered(skg_job *job, const skg_frame_work *work, gat
         status =
             skg_raster_run_passes(g->passes->main.raster, &machine->geometry, g->count, &job->staging.log);
     for (int32_t p = 0; p < g->count; p++) {
-        if (status == SKG_OK) status = enqueue_image(job, work, g->first + p, &g->passes[p], p);
+        if (status == SKG_OK) status = attenuate_pass(job, work, g->first + p, &g->passes[p], p);
         skg_pass_release(&g->passes[p]);
     }
     g->count = 0;
@@ -258,7 +255,7 @@ static skg_status gather(skg_job *job, const skg_pass *pass, int64_t number, gat
 }
 
 /* One pass: from the vertices to its share of the image, or to those that wait. */
-static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t number, gathered *g) {
+static skg_status draw_pass(skg_job *job, const skg_frame_work *work, int64_t number, gathered *g) {
     skg_machine *machine = job->machine;
     skg_pass pass;
     skg_status status = SKG_OK;
@@ -267,47 +264,48 @@ static skg_status enqueue_pass(skg_job *job, const skg_frame_work *work, int64_t
     skg_raster_pin_copy(&pass.main, &job->main);
     skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, job->outcome);
     if (g->count && (g->count == g->room || g->passes->main.raster != pass.main.raster))
-        SKG_TRY_CLEANUP(enqueue_gathered(job, work, g));
+        SKG_TRY_CLEANUP(draw_gathered(job, work, g));
     if (skg_raster_passes(pass.main.raster) > 1) {
         SKG_TRY_CLEANUP(gather(job, &pass, number, g));
         return SKG_OK;
     }
-    SKG_TRY_CLEANUP(enqueue_sums(job, work, &pass));
-    status = enqueue_image(job, work, number, &pass, 0);
+    SKG_TRY_CLEANUP(draw_sums(job, work, &pass));
+    status = attenuate_pass(job, work, number, &pass, 0);
 cleanup:
     skg_pass_release(&pass);
     return status;
 }
 
-skg_status skg_frame_enqueue_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end) {
+skg_status skg_frame_draw_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end) {
     gathered g = {0};
     skg_status status = SKG_OK;
-    for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(enqueue_pass(job, work, p, &g));
-    status = enqueue_gathered(job, work, &g);
+    for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(draw_pass(job, work, p, &g));
+    status = draw_gathered(job, work, &g);
 cleanup:
     for (int32_t p = 0; p < g.count; p++) skg_pass_release(&g.passes[p]);
     skg_free(&g.passes);
     return status;
 }
 
-skg_status skg_frame_draw_pass(skg_job *job, const skg_frame_work *work, int64_t number, skg_pass *pass) {
+skg_status skg_frame_draw_sums(skg_job *job, const skg_frame_work *work, int64_t number, skg_pass *pass) {
     SKG_TRY(skg_pass_fill(job->recipe, work, number, &job->machine->pass, pass));
     SKG_TRY(pin_raster(job->recipe, job->machine, number, pass, 1, job->outcome));
     skg_raster_pin_copy(&pass->main, &job->main);
     skg_warn_unseen(job->machine->context, pass->scene, &pass->camera, pass->extents, pass->fine,
                     job->outcome);
-    return enqueue_sums(job, work, pass);
+    return draw_sums(job, work, pass);
 }
 
 skg_status skg_frame_draw_lengths(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
                                   skg_buffer *lengths, skg_pass *pass) {
     skg_machine *machine = job->machine;
     skg_frame_work of_part = *work;
-    of_part.lengths_of = part;
+    of_part.shows = SKG_OUTPUT_LENGTHS;
+    of_part.part = part;
     of_part.kind = SKG_LENGTHS_NET;
     SKG_TRY(skg_pass_fill(job->recipe, &of_part, number, &machine->pass, pass));
     SKG_TRY(pin_raster(job->recipe, machine, number, pass, 1, job->outcome));
-    SKG_TRY(enqueue_sums(job, &of_part, pass));
+    SKG_TRY(draw_sums(job, &of_part, pass));
     const int is_double = pass->kernels.precision == SKG_PRECISION_DOUBLE;
     const int64_t columns = pass->camera.columns, rows = pass->camera.rows;
     SKG_TRY(skg_buffer_reserve(machine->context, lengths,
@@ -318,5 +316,5 @@ skg_status skg_frame_draw_lengths(skg_job *job, const skg_frame_work *work, int6
                                       .row_stride = columns,
                                       .channel_stride = rows * columns};
     pass->fine = 1; /* every ray is shown */
-    return enqueue_image(job, &of_part, 0, pass, 0);
+    return attenuate_pass(job, &of_part, 0, pass, 0);
 }

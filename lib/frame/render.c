@@ -1,7 +1,5 @@
 /* What a frame shows: its passes, in one step or in several, and what follows the last one. */
-#include "frame/detector.h"
-#include "frame/frame.h"
-#include "frame/scatter.h"
+#include "frame/frames.h"
 #include "plan/decisions.h"
 
 /* The steps of the passes of an image. */
@@ -20,7 +18,7 @@ static int is_last_step(const skg_job *job, const skg_frame_work *work) {
 }
 
 /* Enqueues a step of what arrives at the detector, primary and, with the last, scattered; layers: result: where it is put. */
-static skg_status enqueue_layers(skg_job *job, const skg_frame_work *work, skg_image_place *layers) {
+static skg_status render_layers(skg_job *job, const skg_frame_work *work, skg_image_place *layers) {
     const skg_recipe *recipe = job->recipe;
     const int64_t first = skg_frame_first_pass(recipe);
     skg_frame_work layered = *work;
@@ -31,20 +29,20 @@ static skg_status enqueue_layers(skg_job *job, const skg_frame_work *work, skg_i
     const int64_t passes = first < 0 ? 0 : skg_samples_passes(&recipe->samples),
                   begin = work->step * work->each;
     const int is_last = is_last_step(job, work);
-    SKG_TRY(skg_frame_enqueue_passes(job, &layered, first < 0 ? first : begin,
-                                     is_last ? passes : begin + work->each));
+    SKG_TRY(skg_frame_draw_passes(job, &layered, first < 0 ? first : begin,
+                                  is_last ? passes : begin + work->each));
     return is_last && skg_frame_scatters(job) ? skg_frame_add_scatter(job, work, layers) : SKG_OK;
 }
 
 /* Enqueues a step of what is shown, before its logarithm. */
-static skg_status enqueue_values(skg_job *job, const skg_frame_work *work) {
+static skg_status render_values(skg_job *job, const skg_frame_work *work) {
     skg_image_place layers;
-    SKG_TRY(enqueue_layers(job, work, &layers));
+    SKG_TRY(render_layers(job, work, &layers));
     return is_last_step(job, work) ? skg_frame_detect(job, work, &layers) : SKG_OK;
 }
 
 /* The variance of a logarithm needs the mean of its argument. */
-static skg_status enqueue_mean(skg_job *job, const skg_frame_work *work, cl_mem *mean) {
+static skg_status render_mean(skg_job *job, const skg_frame_work *work, cl_mem *mean) {
     const skg_recipe *recipe = job->recipe;
     skg_machine *machine = job->machine;
     const int64_t size = recipe->view.rows * recipe->view.columns;
@@ -60,33 +58,33 @@ static skg_status enqueue_mean(skg_job *job, const skg_frame_work *work, cl_mem 
                                     .output_double = work->place.output_double,
                                     .row_stride = recipe->view.columns,
                                     .channel_stride = size};
-    return enqueue_values(job, &other);
+    return render_values(job, &other);
 }
 
 /* With steps, those of the mean come first. */
-static skg_status enqueue_variance(skg_job *job, const skg_frame_work *work) {
+static skg_status render_variance(skg_job *job, const skg_frame_work *work) {
     skg_image_place layers;
     skg_frame_work own = *work;
     cl_mem mean = NULL;
     if (skg_decide_late_logarithm(job->recipe)) {
         const int64_t steps = work->each ? steps_of(job->recipe, work->each) : 0;
-        if (work->step < steps) return enqueue_mean(job, work, &mean);
+        if (work->step < steps) return render_mean(job, work, &mean);
         if (steps)
             mean = job->machine->mean.memory;
         else
-            SKG_TRY(enqueue_mean(job, work, &mean));
+            SKG_TRY(render_mean(job, work, &mean));
         own.step -= steps;
     }
-    SKG_TRY(enqueue_layers(job, &own, &layers));
+    SKG_TRY(render_layers(job, &own, &layers));
     return is_last_step(job, &own) ? skg_frame_detect_variance(job, &own, &layers, mean) : SKG_OK;
 }
 
-skg_status skg_frame_enqueue(skg_job *job, const skg_frame_work *work) {
+skg_status skg_frame_render(skg_job *job, const skg_frame_work *work) {
     const skg_recipe *recipe = job->recipe;
-    if (work->lengths_of >= 0) return skg_frame_enqueue_passes(job, work, -1, 0);
+    if (work->shows == SKG_OUTPUT_LENGTHS) return skg_frame_draw_passes(job, work, -1, 0);
     if (skg_output_is_scatter(work->shows)) return skg_frame_show_scatter(job, work);
-    if (work->shows == SKG_OUTPUT_VARIANCE) return enqueue_variance(job, work);
-    SKG_TRY(enqueue_values(job, work));
+    if (work->shows == SKG_OUTPUT_VARIANCE) return render_variance(job, work);
+    SKG_TRY(render_values(job, work));
     return is_last_step(job, work) && skg_decide_late_logarithm(recipe) ? skg_frame_take_logarithm(job, work)
                                                                         : SKG_OK;
 }

@@ -144,7 +144,7 @@ typedef struct {
     SKG_INT stride, plane, planes, reserved;
 } skg_gradient_args;
 
-/* The first moment of a face that is seen as a line (kernels/gradient.cl). */
+/* The first moment of a face that is seen as a line (kernels/gradient/gradient.cl). */
 #define SKG_EDGE_ON ((SKG_LONG)1 << 62)
 
 /* Faces that are narrower in the picture are seen as lines, in pixels. */

@@ -1,7 +1,6 @@
 /* Frames of the caller, read and copied, so that they may be enqueued later. */
-#include "frame/held.h"
+#include "frame/given.h"
 
-#include "frame/overrides.h"
 #include "plan/decisions.h"
 
 #include <inttypes.h>

@@ -1,0 +1,101 @@
+/* What a frame goes through: passes and their parts, scatter, the detector. Private. */
+#ifndef SKG_FRAMES_H
+#define SKG_FRAMES_H
+
+#include "frame/jobs.h"
+#include "frame/work.h"
+#include "plan/recipe.h"
+#include "stage/pass.h"
+
+/* --- One frame: everything from vertices to pixels, enqueued stage by stage */
+
+/* Prefetches the programs of images of the recipe's view (skg_prefetch_begin), as far as they are known before a frame. What fails
+ * here fails again, and is reported, where it is needed. */
+void skg_frame_prefetch(const skg_recipe *recipe, const skg_machine *machine);
+
+/* Compiles and allocates for images of the recipe's view. */
+skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome);
+
+/* Fills a pass and draws its sums, by itself; release it with skg_pass_release, also after a failure. number: of the pass, below 0:
+ * the only one */
+skg_status skg_frame_draw_sums(skg_job *job, const skg_frame_work *work, int64_t number, skg_pass *pass);
+
+/* The sums of a pass that was drawn, as the attenuation reads them, with what it reads beside them. place: of the pass among those of
+ * its raster */
+skg_status skg_frame_sums(skg_job *job, const skg_pass *pass, int32_t place, skg_sums *sums);
+
+/* What the intensities of a pass are multiplied by. */
+double skg_frame_factor(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass *pass);
+
+/* Draws the path lengths through a part along every ray of a pass into a buffer, [rows][columns] of the pass's precision. The pass is
+ * made for it alone; release it with skg_pass_release, also after a failure. */
+skg_status skg_frame_draw_lengths(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
+                                  skg_buffer *lengths, skg_pass *pass);
+
+/* The number of the first pass of an image; -1: its only one, which is averaged with none. */
+static inline int64_t skg_frame_first_pass(const skg_recipe *recipe) {
+    return skg_recipe_averages(recipe) ? 0 : -1;
+}
+
+/* Enqueues the passes from number `first` on, before `end`. */
+skg_status skg_frame_draw_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end);
+
+/* The steps of an output (enum skg_output_kind) of which an image's have `each` passes; 0: all. */
+int64_t skg_frame_steps(const skg_recipe *recipe, int32_t shows, int64_t each);
+
+/* Enqueues a step of a frame. When the device is done with the last one the result is in its place. */
+skg_status skg_frame_render(skg_job *job, const skg_frame_work *work);
+
+/* --- What the parts of one pass contribute and where they lie */
+
+/* Fills a pass, but for its raster. number: of the passes that samples of source and pixel need; below 0: the point source and
+ * the pixels' centres. The pass borrows memory; release it with skg_pass_release, also after a failure. */
+skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, int64_t number,
+                         const skg_pass_memory *memory, skg_pass *pass);
+
+/* Widens the extents of the raster's planes, [planes][4], all 0 before, to what those of their parts cover. */
+void skg_pass_extents(const skg_pass *pass, cl_int *extents);
+
+/* --- Scattered photons of a frame */
+
+/* Whether images of the job hold scattered photons. */
+int skg_frame_scatters(const skg_job *job);
+
+/* Densities of all parts in a frame, and behind them the shares that are there; NULL: those of the materials. The caller frees
+ * them. */
+skg_status skg_frame_matter(const skg_recipe *recipe, const skg_frame *frame, double **matter);
+
+/* Refuses positions that are on the device alone, which are not known here. */
+skg_status skg_frame_check_places(const skg_recipe *recipe, const skg_machine *machine);
+
+/* Computes the scatter of the frame, waits for it, and enqueues what adds it to the intensities. image: where these are. */
+skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image);
+
+/* The same of an output that shows the scatter, its standard error or a component, alone. */
+skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work);
+
+/* --- What the detector makes of a frame's intensities, of their means and of their variances */
+
+/* Whether a frame shows what photons are expected, without noise, or how much noise varies. */
+static inline int skg_frame_is_expected(const skg_recipe *recipe, const skg_frame_work *work) {
+    return recipe->linear || work->shows == SKG_OUTPUT_MEAN || work->shows == SKG_OUTPUT_VARIANCE;
+}
+
+/* What the weights of the model are multiplied by for a view: those of a ratio hold for any. */
+double skg_frame_exposure(const skg_recipe *recipe, const skg_view *view);
+
+/* How many layers the stage `attenuate` writes; expected intensities have none of noise. */
+int32_t skg_frame_layers(const skg_job *job, const skg_frame_work *work);
+
+/* Enqueues what the detector makes of intensities: blur, electronic noise, steps. layers: where these are. */
+skg_status skg_frame_detect(skg_job *job, const skg_frame_work *work, const skg_image_place *layers);
+
+/* Enqueues what the detector makes of the variances of intensities. mean: [channels][rows][columns] of the transmission, if
+ * variances are those of its -ln; else NULL. */
+skg_status skg_frame_detect_variance(skg_job *job, const skg_frame_work *work, const skg_image_place *layers,
+                                     cl_mem mean);
+
+/* Enqueues -ln of a finished mean. */
+skg_status skg_frame_take_logarithm(skg_job *job, const skg_frame_work *work);
+
+#endif
