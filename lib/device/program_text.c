@@ -6,12 +6,19 @@
 #include <string.h>
 #include <unistd.h>
 
-/* A file of the folder for kernels: there, or in the folder of its stage, as in kernels/. */
-static skg_status read_file(const char *dir, const skg_kernel_source *source, char **text) {
+static const skg_kernel_source *find_built_in(const char *name) {
+    for (int i = 0; i < skg_kernel_source_count; i++)
+        if (strcmp(skg_kernel_sources[i].name, name) == 0) return &skg_kernel_sources[i];
+    return NULL;
+}
+
+/* A file of the folder for kernels: in the folder of its stage, as in kernels/, or else there. */
+static skg_status read_file(const char *dir, const char *name, char **text) {
+    const skg_kernel_source *source = find_built_in(name);
     char path[2048];
-    if (snprintf(path, sizeof path, "%s/%s/%s", dir, source->folder, source->name) >= (int)sizeof path)
-        return skg_fail(SKG_ERR_FILE, "%s/%s: the path is too long", dir, source->name);
-    if (access(path, R_OK) != 0) snprintf(path, sizeof path, "%s/%s", dir, source->name);
+    if (snprintf(path, sizeof path, "%s/%s/%s", dir, source ? source->folder : ".", name) >= (int)sizeof path)
+        return skg_fail(SKG_ERR_FILE, "%s/%s: the path is too long", dir, name);
+    if (access(path, R_OK) != 0) snprintf(path, sizeof path, "%s/%s", dir, name);
     FILE *file = NULL;
     size_t length = 0;
     skg_status status = skg_input_open(path, SKG_INPUT_TEXT, &file, NULL);
@@ -22,25 +29,16 @@ static skg_status read_file(const char *dir, const skg_kernel_source *source, ch
     return status;
 }
 
-static skg_status find_built_in(const char *name, const skg_kernel_source **source) {
-    for (int i = 0; i < skg_kernel_source_count; i++)
-        if (strcmp(skg_kernel_sources[i].name, name) == 0) {
-            *source = &skg_kernel_sources[i];
-            return SKG_OK;
-        }
-    return skg_fail(SKG_ERR_INTERNAL, "no kernel file %s is built in", name);
-}
-
 static skg_status find_file(const skg_device *device, int32_t file, skg_program_text *text) {
     const char *name = text->names[file];
-    const skg_kernel_source *source = NULL;
-    SKG_TRY(find_built_in(name, &source));
     if (!device->kernel_dir) {
+        const skg_kernel_source *source = find_built_in(name);
+        if (!source) return skg_fail(SKG_ERR_INTERNAL, "no kernel file %s is built in", name);
         text->texts[file] = source->text;
         memcpy(text->digests[file], source->digest, SKG_DIGEST_TEXT);
         return SKG_OK;
     }
-    SKG_TRY(read_file(device->kernel_dir, source, &text->read[file]));
+    SKG_TRY(read_file(device->kernel_dir, name, &text->read[file]));
     const skg_digest digest = skg_digest_of(text->read[file], strlen(text->read[file]));
     text->texts[file] = text->read[file];
     skg_digest_text(&digest, text->digests[file]);

@@ -1,10 +1,10 @@
 # cmake -DKERNELS=... -DLAUNCHES=... -P simulated_all.cmake: fails unless the kernels that ran under Oclgrind are those
 # of the files that kernels/CMakeLists.txt lists, all of them.
 file(STRINGS ${KERNELS}/CMakeLists.txt lines REGEX "\\.cl[h)]?")
-string(REGEX MATCHALL "[a-z_]+\\.cl[ \n)h;]" sources "${lines};")
+string(REGEX MATCHALL "[a-z_]+/[a-z_]+\\.cl[ \n)h;]" sources "${lines};")
 set(known "")
 foreach(source ${sources})
-  string(REGEX MATCH "^[a-z_]+\\.clh?" source "${source}")
+  string(REGEX MATCH "^[a-z_]+/[a-z_]+\\.clh?" source "${source}")
   file(READ ${KERNELS}/${source} text)
   # Each __kernel of a file: its name is what the parenthesis of its arguments follows, or a macro SKG_..._KERNEL that
   # this file or another defines.
