@@ -1,3 +1,4 @@
+/* The contender of bench_gradient that a volume has: sums of values along rays, and their derivative by six numbers. */
 #include "gradient_volume.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Natural cubic splines. */
 #include "spline.h"
 
 /* Fewer points do not determine a curvature. */

@@ -1,3 +1,4 @@
+/* The program that turns the tables of this folder into one C file, whose types are in rows.h. */
 #include "tables.h"
 
 #include <ctype.h>

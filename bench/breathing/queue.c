@@ -1,3 +1,4 @@
+/* Chain Mail by a queue, as published: the rival of the exact solver. */
 #include "breathing/queue.h"
 
 #include "common/bench.h"

@@ -1,3 +1,4 @@
+/* What all benchmarks share: clock, samples, options, errors. */
 #include "bench.h"
 
 #include <errno.h>

@@ -1,3 +1,4 @@
+/* Leaky meshes: copies of closed ones that lack triangles. */
 #include "holes.h"
 
 #include <stdlib.h>

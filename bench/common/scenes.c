@@ -1,3 +1,4 @@
+/* Whole scenes to image. */
 #include "scenes.h"
 
 #include "shapes.h"

@@ -1,3 +1,4 @@
+/* Closed meshes with any number of triangles. */
 #include "shapes.h"
 
 #include "bench.h"

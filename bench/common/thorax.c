@@ -1,3 +1,4 @@
+/* The generated thorax in front of a detector, as a scene and as a body. */
 #include "thorax.h"
 
 #include "holes.h"

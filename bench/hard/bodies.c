@@ -1,3 +1,4 @@
+/* Adversarial bodies: corners on the rays of pixels give or take some ulps, faces nearly along the rays, slivers. */
 #include "hard/bodies.h"
 
 #include "support/random.h"

@@ -1,3 +1,4 @@
+/* The interval of lengths that rays around a pixel have. */
 #include "hard/interval.h"
 
 #include "support/caster.h"

@@ -1,3 +1,4 @@
+/* Judges the lengths in single precision of every pixel of a picture. */
 #include "hard/judge.h"
 
 #include "hard/interval.h"

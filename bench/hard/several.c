@@ -1,3 +1,4 @@
+/* Scenes of several parts against the ray caster: the source on faces, and the bound of the precision. */
 #include "hard/several.h"
 
 #include "common/bench.h"

@@ -1,3 +1,4 @@
+/* Reference images: MetaImage headers (.mhd) with raw float32, little endian. */
 #include "mc/reference.h"
 
 #include "common/bench.h"

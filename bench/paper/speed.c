@@ -1,3 +1,4 @@
+/* Frames a second of the paper's scene, by strategy. */
 #include "paper/speed.h"
 #include "common/thorax.h"
 

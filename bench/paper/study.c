@@ -1,3 +1,4 @@
+/* The settings that the parts of the paper's study share, and their CSV file. */
 #include "paper/study.h"
 
 #include <inttypes.h>

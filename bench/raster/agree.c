@@ -1,3 +1,4 @@
+/* Whether two images of path lengths differ by rounding only. */
 #include "agree.h"
 
 #include <math.h>

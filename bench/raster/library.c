@@ -1,3 +1,4 @@
+/* Path lengths by the library, the subject of the race. */
 #include "contenders.h"
 
 #include <stdlib.h>

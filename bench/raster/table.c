@@ -1,3 +1,4 @@
+/* The results as a table in Markdown, as CSV, and compared with the targets. */
 #include "table.h"
 
 #include "common/shapes.h"

@@ -1,3 +1,4 @@
+/* The error that is stated against the error that is found. */
 #include "scatter/calibrate.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Images of scatter against those of a Monte Carlo program. */
 #include "scatter/compare.h"
 
 #include "../tests/scatter/sums.h"

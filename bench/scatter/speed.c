@@ -1,3 +1,4 @@
+/* How long scatter takes to an error. */
 #include "scatter/speed.h"
 
 #include "../tests/scatter/sums.h"

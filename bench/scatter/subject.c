@@ -1,3 +1,4 @@
+/* Scenes that scatter, their frames, and what is counted before it is smoothed. */
 #include "scatter/subject.h"
 
 #include "../tests/scatter/sums.h"

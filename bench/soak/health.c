@@ -1,3 +1,4 @@
+/* What a process holds: memory, files, folders, over a soak. */
 #define _GNU_SOURCE /* malloc_trim, nftw */
 #include "soak.h"
 

@@ -1,3 +1,4 @@
+/* What runs each verb. */
 #include "verb_table.h"
 
 #include "verbs/verbs.h"

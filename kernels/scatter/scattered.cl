@@ -1,3 +1,4 @@
+/* Adds scatter, given on a coarse grid, to the intensities of an image. */
 typedef skg_floatv skg_loose_floatv __attribute__((aligned(sizeof(float))));
 
 /* The noise of one channel: photons that arrive by different ways are independent. pixel: the first one's number. */

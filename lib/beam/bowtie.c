@@ -1,3 +1,4 @@
+/* Bow-tie filters. */
 #include "beam/bowtie.h"
 
 #include <inttypes.h>

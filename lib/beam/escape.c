@@ -1,3 +1,4 @@
+/* K fluorescence that leaves a layer. */
 #include "beam/escape.h"
 #include "core/maths.h"
 #include "material/material.h"

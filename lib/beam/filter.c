@@ -1,3 +1,4 @@
+/* Filters: what a layer takes off a spectrum. */
 #include "beam/spectrum.h"
 #include "core/text.h"
 

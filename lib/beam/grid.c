@@ -1,3 +1,4 @@
+/* The primary transmission of an anti-scatter grid. */
 #include "beam/grid.h"
 #include "core/text.h"
 

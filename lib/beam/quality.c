@@ -1,3 +1,4 @@
+/* The quality of a beam: half-value layers and mean energy. */
 #include "beam/spectrum.h"
 #include "core/text.h"
 

@@ -1,3 +1,4 @@
+/* The inside of spectra and responses. */
 #include "beam/spectrum.h"
 #include "core/text.h"
 #include "material/material.h"

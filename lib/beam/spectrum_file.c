@@ -1,3 +1,4 @@
+/* Reads spectra from text files. */
 #include "beam/spectrum.h"
 #include "core/files.h"
 #include "core/text.h"

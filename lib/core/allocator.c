@@ -1,3 +1,4 @@
+/* Host memory from the allocator of the process. */
 #include "core/allocator.h"
 #include "core/core.h"
 

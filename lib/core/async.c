@@ -1,3 +1,4 @@
+/* A function that runs in a thread of its own until it is waited for. */
 #include "core/text.h"
 #include "core/threads.h"
 

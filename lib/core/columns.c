@@ -1,3 +1,4 @@
+/* Reads tables of numbers, a row a line. */
 #include "core/files.h"
 
 #include <ctype.h>

@@ -1,3 +1,4 @@
+/* The part of a context that every room may use: its life, its log, and its device by name only. */
 #include "core/context.h"
 
 #include <stdarg.h>

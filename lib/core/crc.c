@@ -1,3 +1,4 @@
+/* CRC-32C, the checksum of Castagnoli (RFC 3720, section 12.1): it finds damage, not intent. */
 #include "core/crc.h"
 
 #include <string.h>

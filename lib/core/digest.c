@@ -1,3 +1,4 @@
+/* SHA-256 (FIPS 180-4), which names and checks what the library keeps on disk. */
 #include "core/digest.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* The last error of each thread, and its sentence. */
 #include "core/core.h"
 
 #include <stdarg.h>

@@ -1,3 +1,4 @@
+/* Opens and reads files of the user: text without a mark, lines of any end. */
 #include "core/files.h"
 
 #include "core/text.h"

@@ -1,3 +1,4 @@
+/* A value that one process leaves for another of the same program. */
 #include "core/log.h"
 
 #include <inttypes.h>

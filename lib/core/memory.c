@@ -1,3 +1,4 @@
+/* Memory of the host: allocated with a sentence if there is none. */
 #include "core/allocator.h"
 #include "core/core.h"
 

@@ -1,3 +1,4 @@
+/* The nearest name to one that is unknown, for messages. */
 #include "core/text.h"
 
 #include <ctype.h>

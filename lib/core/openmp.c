@@ -1,3 +1,4 @@
+/* OpenMP after a fork, where its threads are gone. */
 #include "core/threads.h"
 
 #include <omp.h>

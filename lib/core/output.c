@@ -1,3 +1,4 @@
+/* Files that appear whole or not at all. */
 #include "core/files.h"
 
 #include "core/text.h"

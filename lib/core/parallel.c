@@ -1,3 +1,4 @@
+/* Divides items among threads that end with the call. */
 #define _GNU_SOURCE /* sched_getaffinity, CPU_COUNT */
 #include "core/text.h"
 #include "core/threads.h"

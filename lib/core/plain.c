@@ -1,3 +1,4 @@
+/* The state of floating point that the library computes in, whatever the caller's is. */
 #include "core/text.h"
 
 void skg_plain_enter(skg_plain *plain) {

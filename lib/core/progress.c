@@ -1,3 +1,4 @@
+/* How far a long computation is, as its caller is told. */
 #include "core/log.h"
 
 #include "core/core.h"

@@ -1,3 +1,4 @@
+/* Units of length and what they are in mm. */
 #include "core/text.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The version of the library. */
 #include <skiagraph/version.h>
 
 int32_t skg_version_number(void) {

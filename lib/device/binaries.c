@@ -1,3 +1,4 @@
+/* Compiled programs in the user's folder: taken from there, and kept there. */
 #include "device/cache.h"
 #include "device/programs.h"
 

@@ -1,3 +1,4 @@
+/* Memory of a device, reserved ahead and given back. */
 #include "device/device.h"
 #include "driver/driver.h"
 

@@ -1,3 +1,4 @@
+/* Opens a device, and what its driver has said meanwhile. */
 #include "core/text.h"
 #include "device/choice.h"
 #include "device/device.h"

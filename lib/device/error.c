@@ -1,3 +1,4 @@
+/* Failures of OpenCL as statuses, with the name of the code. */
 #include "device/device.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Drivers that are opened by their path. */
 #include "device/choice.h"
 
 #include "device/device.h"

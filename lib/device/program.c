@@ -1,3 +1,4 @@
+/* The programs of a context: built, shared, released. */
 #include "device/programs.h"
 #include "driver/driver.h"
 

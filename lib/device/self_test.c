@@ -1,3 +1,4 @@
+/* Runs the self-tests of a device that a call needs, and remembers verdicts. */
 #include "device/choice.h"
 #include "device/device.h"
 #include "device/self_tests.h"

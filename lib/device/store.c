@@ -1,3 +1,4 @@
+/* Files in the user's folder, each whole or absent. */
 #include "core/core.h"
 #include "core/text.h"
 #include "device/cache.h"

@@ -1,3 +1,4 @@
+/* Keeps the user's folder below its size: what was not used for longest goes. */
 #include "core/core.h"
 #include "device/cache.h"
 

@@ -1,3 +1,4 @@
+/* Platforms whose devices may be asked more than their name. */
 #include "device/choice.h"
 #include "device/self_tests.h"
 

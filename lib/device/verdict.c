@@ -1,3 +1,4 @@
+/* Verdicts of self-tests in the user's folder. */
 #include "core/core.h"
 #include "device/cache.h"
 #include "device/programs.h"

@@ -1,3 +1,4 @@
+/* The CPUs that a thread may run on. */
 #define _GNU_SOURCE /* sched_getaffinity, CPU_COUNT_S */
 #include "driver/driver.h"
 

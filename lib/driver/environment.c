@@ -1,3 +1,4 @@
+/* What drivers read from the environment. */
 #include "driver/driver.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Drivers that are known to fail on this machine, and how. */
 #include "driver/driver.h"
 
 #include <stdio.h>

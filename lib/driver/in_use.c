@@ -1,3 +1,4 @@
+/* Counts work under way, because some calls of drivers must not meet any. */
 #include "driver/driver.h"
 
 #include <pthread.h>

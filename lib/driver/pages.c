@@ -1,3 +1,4 @@
+/* Writes to pages of memory ahead, so that the first kernel need not wait for them. */
 #define _GNU_SOURCE /* MAP_ANONYMOUS */
 #include "driver/driver.h"
 

@@ -1,3 +1,4 @@
+/* The platforms that are known, and what each needs. */
 #include "driver/driver.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* Keeps the caller's signal handlers where a driver would replace them. */
 #define _GNU_SOURCE /* NSIG */
 #include "driver/driver.h"
 

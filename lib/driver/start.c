@@ -1,3 +1,4 @@
+/* Calls of OpenCL that start a driver, which not every one does safely. */
 #include "core/threads.h"
 #include "driver/driver.h"
 

@@ -1,3 +1,4 @@
+/* Parts of a device, made once and kept. */
 #include "driver/driver.h"
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+/* Watches calls of drivers that may hang, and says so. */
 #include "driver/driver.h"
 
 #include <errno.h>

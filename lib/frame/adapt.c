@@ -1,3 +1,4 @@
+/* Adaptive sampling of an extended source: doubles the samples until the image stays. */
 #include "frame/jobs.h"
 #include "frame/plans.h"
 #include "spectral/model.h"

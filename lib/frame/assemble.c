@@ -1,3 +1,4 @@
+/* Makes the machine of a recipe: buffers, kernels, and what does not move. */
 #include "core/maths.h"
 #include "frame/plans.h"
 #include "plan/decisions.h"

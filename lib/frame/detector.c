@@ -1,3 +1,4 @@
+/* What the detector makes of a frame's intensities. */
 #include "frame/frames.h"
 
 #include "spectral/model.h"

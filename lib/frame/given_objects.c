@@ -1,3 +1,4 @@
+/* OpenCL objects of the caller: events and buffers, checked. */
 #include "frame/given.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* The outputs of a submission: checked, placed, read back. */
 #include "frame/work.h"
 
 #include "frame/given.h"

@@ -1,3 +1,4 @@
+/* Densities and fill fractions of parts in single frames. */
 #include "frame/given.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* Fills a pass: what parts contribute, where they lie, and the scale of the sums. */
 #include "frame/frames.h"
 #include "frame/given.h"
 #include "geometry/optics.h"

@@ -1,3 +1,4 @@
+/* Takes positions of vertices from the caller's device memory. */
 #include "core/text.h"
 #include "device/self_tests.h"
 #include "frame/given.h"

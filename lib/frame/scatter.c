@@ -1,3 +1,4 @@
+/* Scattered photons of a frame. */
 #include "frame/frames.h"
 
 #include "frame/given.h"

@@ -1,3 +1,4 @@
+/* The self-tests that a plan needs. */
 #include "device/self_tests.h"
 #include "frame/plans.h"
 #include "plan/decisions.h"

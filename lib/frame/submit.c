@@ -1,3 +1,4 @@
+/* The public calls that submit frames. */
 #include "core/text.h"
 #include "device/self_tests.h"
 #include "frame/given.h"

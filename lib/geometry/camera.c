@@ -1,3 +1,4 @@
+/* Where points and parts are seen, from a view and a sample of the source. */
 #include "geometry/optics.h"
 
 #include "core/maths.h"

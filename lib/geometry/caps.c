@@ -1,3 +1,4 @@
+/* The open ends of meshes that are not closed. */
 #include "geometry/retrace.h"
 
 #include <stdlib.h>

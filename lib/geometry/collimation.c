@@ -1,3 +1,4 @@
+/* The field that jaws leave. */
 #include "geometry/optics.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Columns through meshes along an axis, and what they meet. */
 #include "geometry/overlaps.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Solid angles of pixels, and the photons that reach them. */
 #include "beam/spectrum.h"
 #include "core/maths.h"
 #include "core/text.h"

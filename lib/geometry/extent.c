@@ -1,3 +1,4 @@
+/* The pixels and depths that a part covers. */
 #include "geometry/bounds.h"
 
 #include "core/maths.h"

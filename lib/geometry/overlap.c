@@ -1,3 +1,4 @@
+/* Finds parts that overlap, by columns through all of them. */
 #include "geometry/overlaps.h"
 
 #include "core/threads.h"

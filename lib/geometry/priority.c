@@ -1,3 +1,4 @@
+/* Priority resolution: which part an interval of a ray belongs to if parts overlap, and children that are clipped to their parents. */
 #include "geometry/priority.h"
 
 #include "skg_shared.h"

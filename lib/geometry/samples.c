@@ -1,3 +1,4 @@
+/* The samples of an extended source and of pixels. */
 #include "geometry/optics.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The power of two by which lengths become integers. */
 #include "geometry/bounds.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* A mesh with its pose, as geometry reads it. */
 #include "geometry/overlaps.h"
 
 #include "core/maths.h"

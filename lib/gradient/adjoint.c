@@ -1,3 +1,4 @@
+/* From d loss / d image to d loss / d intensities: the transpose of what the detector does. */
 #include "gradient/adjoint.h"
 
 #include "frame/given.h"

@@ -1,3 +1,4 @@
+/* Where a ray crosses the surface of a part, traced in double on the host. */
 #include "gradient/crossings.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The derivative of an image along a direction in which densities or attenuation coefficients change. */
 #include "gradient/direction_density.h"
 
 #include "gradient/density.h"

@@ -1,3 +1,4 @@
+/* How fast the planes and exponents of rays change along a direction, by densities and attenuation coefficients. */
 #include "gradient/direction_rates.h"
 
 void skg_derivative_clear_rates(skg_job *job) {

@@ -1,3 +1,4 @@
+/* What faces that rays contain are worth: d loss / d t at a pixel, from the weights of a pass. */
 #include "gradient/edges.h"
 
 #include "core/threads.h"

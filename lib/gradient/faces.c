@@ -1,3 +1,4 @@
+/* The faces of a pass's parts, from the moments that the device has gathered to sums for each part. */
 #include "gradient/faces.h"
 
 #include "gradient/edges.h"

@@ -1,3 +1,4 @@
+/* Derivatives of a loss by what moves, from the moments of faces (kernels/gradient/gradient.cl). */
 #include "gradient/forces.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Derivatives by the attenuation coefficients of parts at the energies of a plan. */
 #include "gradient/nodes.h"
 
 #include "core/threads.h"

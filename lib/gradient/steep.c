@@ -1,3 +1,4 @@
+/* Faces that contain rays: seen edge-on, they are hit by no ray, but the mean length over a pixel changes when they move. */
 #include "gradient/steep.h"
 
 #include <math.h>

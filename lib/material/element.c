@@ -1,3 +1,4 @@
+/* Cross sections of the elements at any energy. */
 #include "core/text.h"
 #include "material/material.h"
 #include "materials/spline.h"

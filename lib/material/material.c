@@ -1,3 +1,4 @@
+/* The inside of a material. */
 #include "material/material.h"
 #include "core/text.h"
 

@@ -1,3 +1,4 @@
+/* The mixtures of the tables, by name. */
 #include "material/mixture.h"
 
 #include "core/text.h"

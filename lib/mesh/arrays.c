@@ -1,3 +1,4 @@
+/* Vertices and triangles of a mesh while it is read or made. */
 #include "mesh/arrays.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* How Assimp opens files: by our opener, also those that a file refers to. */
 #include "mesh/assimp_files.h"
 
 #include "core/files.h"

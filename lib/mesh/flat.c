@@ -1,3 +1,4 @@
+/* Faces without area, found. */
 #include "core/maths.h"
 #include "mesh/mesh.h"
 

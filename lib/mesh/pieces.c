@@ -1,3 +1,4 @@
+/* Pieces of which bodies are made: they append vertices and triangles to arrays that have room for them. */
 #include "mesh/pieces.h"
 #include "core/maths.h"
 

@@ -1,3 +1,4 @@
+/* The relationships of a package (ECMA-376, part 2), of which 3MF is one. */
 #include "mesh/relations.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Parts of a ZIP archive. */
 #include "mesh/unpack.h"
 
 #include <string.h>

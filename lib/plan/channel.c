@@ -1,3 +1,4 @@
+/* The names, units and flat fields of an image's channels. */
 #include "geometry/optics.h"
 #include "plan/inputs.h"
 

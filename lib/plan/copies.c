@@ -1,3 +1,4 @@
+/* Copies of what the caller's options point to. */
 #include "plan/inputs.h"
 
 #include <string.h>

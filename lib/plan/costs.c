@@ -1,3 +1,4 @@
+/* Counts operations, from which the costs of effects are estimated. */
 #include "plan/decisions.h"
 #include "plan/rules.h"
 #include "spectral/compression.h"

@@ -1,3 +1,4 @@
+/* Warns of scenes that are probably not meant: sizes, places, units. */
 #include "beam/spectrum.h"
 #include "core/maths.h"
 #include "mesh/mesh.h"

@@ -1,3 +1,4 @@
+/* The meshes of a plan's scene, each once, and warnings about them. */
 #include "plan/inputs.h"
 
 #include "core/context.h"

@@ -1,3 +1,4 @@
+/* The options of a plan: defaults and checks. */
 #include "plan/decisions.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* Overlaps of parts as a plan reports them. */
 #include "geometry/overlaps.h"
 #include "core/context.h"
 #include "core/text.h"

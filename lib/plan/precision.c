@@ -1,3 +1,4 @@
+/* The bound of what rounding may change in an image. */
 #include "core/text.h"
 #include "geometry/bounds.h"
 #include "plan/decisions.h"

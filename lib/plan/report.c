@@ -1,3 +1,4 @@
+/* What a finished job reports: times, counts, warnings. */
 #include "core/text.h"
 #include "plan/results.h"
 

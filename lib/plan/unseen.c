@@ -1,3 +1,4 @@
+/* Warns if nothing falls on the detector. */
 #include "plan/decisions.h"
 
 #include <math.h>

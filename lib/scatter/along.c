@@ -1,3 +1,4 @@
+/* Positions along a series of frames, by orthonormal functions. */
 #include "scatter/smoothing.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Tables from which directions of scattered photons are drawn. */
 #include "scatter/interactions.h"
 
 #include "material/scattering.h"

@@ -1,3 +1,4 @@
+/* With what share a photon leaves the tube in a direction. */
 #include "scatter/beams.h"
 
 #include "beam/spectrum.h"

@@ -1,3 +1,4 @@
+/* Attenuation by the energies of the tables. */
 #include "scatter/voxels.h"
 
 #include "material/scattering.h"

@@ -1,3 +1,4 @@
+/* Fits the scatter of a series of frames jointly. */
 #include "scatter/smoothing.h"
 
 #include <math.h>

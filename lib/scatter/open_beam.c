@@ -1,3 +1,4 @@
+/* The open beam on the coarse detector, which ratios are over. */
 #include "scatter/beams.h"
 
 #include "beam/grid.h"

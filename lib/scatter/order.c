@@ -1,3 +1,4 @@
+/* The order in which places of the detector are taken. */
 #include "scatter/smoothing.h"
 
 #include <math.h>

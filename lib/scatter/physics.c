@@ -1,3 +1,4 @@
+/* Frees the tables of what photons may meet in materials. */
 #include "scatter/interactions.h"
 
 void skg_scatter_physics_free(skg_scatter_physics *physics) {

@@ -1,3 +1,4 @@
+/* What photons may meet in each material: cross sections and angles by energy. */
 #include "scatter/interactions.h"
 #include "scatter/voxels.h"
 

@@ -1,3 +1,4 @@
+/* Describes many materials by few. */
 #include "scatter/interactions.h"
 
 #include "core/maths.h"

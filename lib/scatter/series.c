@@ -1,3 +1,4 @@
+/* Scatter of a series of frames, computed for a few of them. */
 #include "scatter/tracing.h"
 
 #include "core/clock.h"

@@ -1,3 +1,4 @@
+/* The shapes of scattering by free electrons: Klein-Nishina, Thomson. */
 #include "scatter/interactions.h"
 
 #include "material/scattering.h"

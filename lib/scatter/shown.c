@@ -1,3 +1,4 @@
+/* Scatter in the units of the image, sent to the device. */
 #include "scatter/tracing.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The directions in which the detector is seen from the object. */
 #include "scatter/beams.h"
 
 #include "beam/grid.h"

@@ -1,3 +1,4 @@
+/* Smooths what has arrived, by as much as its noise says. */
 #include "scatter/smoothing.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The tables of a scene that the kernel of histories reads. */
 #include "scatter/interactions.h"
 #include "scatter/tracing.h"
 

@@ -1,3 +1,4 @@
+/* Runs histories of photons on the device. */
 #include "scatter/tracing.h"
 
 #include "core/clock.h"

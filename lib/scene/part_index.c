@@ -1,3 +1,4 @@
+/* An index of parts by a hash, because a scene may have a million of them. */
 #include "scene/part_index.h"
 
 uint64_t skg_hash_bytes(uint64_t hash, const void *bytes, size_t count) {

@@ -1,3 +1,4 @@
+/* The inside of a scene. */
 #include "scene/scene.h"
 
 #include "core/context.h"

@@ -1,3 +1,4 @@
+/* Views: source, detector and projection, checked. */
 #include "core/core.h"
 #include "core/maths.h"
 

@@ -1,3 +1,4 @@
+/* The self-test of blurs and of the power of noise. */
 #include "core/maths.h"
 #include "selftest/selftest.h"
 

@@ -1,3 +1,4 @@
+/* Boxes with formulas for their path lengths. */
 #include "selftest/selftest.h"
 
 #include <math.h>

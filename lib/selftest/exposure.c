@@ -1,3 +1,4 @@
+/* The self-test of filters, heel effect and detectors. */
 #include "beam/spectrum.h"
 #include "core/maths.h"
 #include "selftest/selftest.h"

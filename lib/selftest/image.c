@@ -1,3 +1,4 @@
+/* Renders the self-tests of images and path lengths, and compares. */
 #include "core/clock.h"
 #include "frame/plans.h"
 #include "geometry/optics.h"

@@ -1,3 +1,4 @@
+/* The self-test of the 3D view: two boxes. */
 #include "selftest/selftest.h"
 
 #include <skiagraph/scene_picture.h>

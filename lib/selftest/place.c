@@ -1,3 +1,4 @@
+/* The self-test of positions on the device. */
 #include "frame/plans.h"
 #include "selftest/selftest.h"
 

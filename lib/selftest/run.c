@@ -1,3 +1,4 @@
+/* The table of self-tests, which the device calls through a hook. */
 #include "selftest/selftest.h"
 
 static skg_status run(skg_context *context, skg_self_test number, skg_verdict *verdict) {

@@ -1,3 +1,4 @@
+/* The self-test of scatter. */
 #include "core/core.h"
 #include "material/scattering.h"
 #include "scatter/interactions.h"

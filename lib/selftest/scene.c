@@ -1,3 +1,4 @@
+/* The scenes of the self-tests. */
 #include "selftest/selftest.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* The eye of a 3D view, and the corners of detector and beam. */
 #include "show/drawing.h"
 
 #include "core/maths.h"

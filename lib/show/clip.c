@@ -1,3 +1,4 @@
+/* Clips triangles by planes. */
 #include "show/drawing.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Draws a model by the kernels of the 3D view. */
 #include "show/drawing.h"
 
 #include "show_shared.h"

@@ -1,3 +1,4 @@
+/* Source, beam, detector and axes as triangles. */
 #include "show/drawing.h"
 
 #include "core/maths.h"

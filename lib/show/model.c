@@ -1,3 +1,4 @@
+/* The triangles that a 3D view draws. */
 #include "show/drawing.h"
 
 #include <inttypes.h>

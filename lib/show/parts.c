@@ -1,3 +1,4 @@
+/* The parts of a scene as triangles of a model. */
 #include "show/drawing.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The public call of the 3D view. */
 #include "core/context.h"
 #include "core/maths.h"
 #include "core/text.h"

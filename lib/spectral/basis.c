@@ -1,3 +1,4 @@
+/* A basis of attenuation curves, in which materials have few coefficients. */
 #include "spectral/compression.h"
 
 #include "core/maths.h"

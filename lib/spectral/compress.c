@@ -1,3 +1,4 @@
+/* Finds few energies that stand for a spectrum, within a tolerance. */
 #include "spectral/compression.h"
 
 #include "core/threads.h"

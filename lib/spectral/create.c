@@ -1,3 +1,4 @@
+/* Makes the model of a plan: planes, nodes, weights. */
 #include "spectral/model.h"
 
 #include "beam/spectrum.h"

@@ -1,3 +1,4 @@
+/* Polynomials over directions, to which shades are fitted. */
 #include "spectral/shading.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The shades of the heel effect. */
 #include "spectral/shading.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Mixes planes, so that fewer sums are drawn. */
 #include "spectral/model.h"
 
 #include <math.h>

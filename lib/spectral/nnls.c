@@ -1,3 +1,4 @@
+/* Least squares with weights that are not negative (Lawson and Hanson 1974). */
 #include "spectral/compression.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The energies of a model, chosen by least squares. */
 #include "spectral/compression.h"
 
 #include <math.h>

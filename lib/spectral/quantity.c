@@ -1,3 +1,4 @@
+/* What quantities are: ratios, counts, absolute. */
 #include "spectral/model.h"
 
 int skg_quantity_is_absolute(const skg_plan_options *options) {

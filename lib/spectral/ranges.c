@@ -1,3 +1,4 @@
+/* The path lengths that a view can have, within which a model is verified. */
 #include "spectral/verification.h"
 
 #include "core/maths.h"

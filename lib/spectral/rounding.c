@@ -1,3 +1,4 @@
+/* What rounding of planes makes of exponents. */
 #include "spectral/verification.h"
 
 #include "core/maths.h"

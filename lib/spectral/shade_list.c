@@ -1,3 +1,4 @@
+/* The shades of a view, listed: directions, axes, extents. */
 #include "spectral/shading.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Shades: factors of energies that differ from ray to ray. */
 #include "spectral/shading.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* What a photon is worth in a detector, and the variance of that. */
 #include "spectral/model.h"
 
 #include "core/core.h"

@@ -1,3 +1,4 @@
+/* Verifies a model against the whole spectrum, and bounds its error. */
 #include "spectral/verification.h"
 
 #include "core/maths.h"

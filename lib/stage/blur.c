@@ -1,3 +1,4 @@
+/* Stage `blur`: the point spread function, as sums of exponentials and Gaussians. */
 #include "core/maths.h"
 #include "stage/readout.h"
 

@@ -1,3 +1,4 @@
+/* Stage `detect`: electronic noise, steps, ratios, logarithms. */
 #include "stage/readout.h"
 
 #include <math.h>

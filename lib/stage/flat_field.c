@@ -1,3 +1,4 @@
+/* The flat field of a view, by the stages of an image. */
 #include "stage/readout.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* Stage `hits`: what priorities and clipping take off the sums of closed parts. */
 #include "stage/hits.h"
 
 #include "core/maths.h"

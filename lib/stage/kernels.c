@@ -1,3 +1,4 @@
+/* Programs and kernels for the stages: the one place that writes -D options, sets arguments and enqueues. */
 #include "stage/kernels.h"
 
 #include "core/maths.h"

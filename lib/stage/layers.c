@@ -1,3 +1,4 @@
+/* Layers of intensities, each with its blur. */
 #include "stage/readout.h"
 
 #include "beam/line_spread.h"

@@ -1,3 +1,4 @@
+/* Stage `leaky`: the sums of parts whose meshes are not closed. */
 #include "stage/leaks.h"
 #include "stage/raster_private.h"
 

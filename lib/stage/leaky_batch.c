@@ -1,3 +1,4 @@
+/* Memory and programs of leaky parts, several of which are drawn together. */
 #include "stage/leaks.h"
 #include "stage/raster_private.h"
 

@@ -1,3 +1,4 @@
+/* The lists by which planes are mixed, on the device. */
 #include "stage/tables.h"
 
 #include "stage/kernels.h"

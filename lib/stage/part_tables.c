@@ -1,3 +1,4 @@
+/* The tables of the parts of a pass, on the device. */
 #include "stage/tables.h"
 
 #include <float.h>

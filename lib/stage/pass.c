@@ -1,3 +1,4 @@
+/* One pass of a frame. */
 #include "stage/pass.h"
 
 skg_status skg_pass_memory_create(int64_t parts, int64_t columns, int64_t rows, skg_pass_memory *memory) {

@@ -1,3 +1,4 @@
+/* Positions of vertices that come from the caller's device memory. */
 #include "stage/place.h"
 
 #include <skiagraph/plan.h>

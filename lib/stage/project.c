@@ -1,3 +1,4 @@
+/* Stage `project`: the meshes of a scene on the device, the tables of its parts, and the projected vertices of a frame. */
 #include "stage/project.h"
 
 #include <skiagraph/plan.h>

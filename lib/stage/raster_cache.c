@@ -1,3 +1,4 @@
+/* Rasters that a plan keeps, pinned while they are in use. */
 #include "stage/raster_private.h"
 
 #include <string.h>

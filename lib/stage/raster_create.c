@@ -1,3 +1,4 @@
+/* Creates rasters: layout, memory, programs, by their strategy. */
 #include "core/maths.h"
 #include "stage/raster_private.h"
 

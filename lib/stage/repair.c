@@ -1,3 +1,4 @@
+/* Repairs the bad pixels of leaky parts. */
 #include "core/maths.h"
 #include "geometry/retrace.h"
 #include "stage/leaks.h"

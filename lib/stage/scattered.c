@@ -1,3 +1,4 @@
+/* Stage `scattered`: adds the scatter to intensities. */
 #include "stage/readout.h"
 
 static skg_status get_kernel(skg_context *context, skg_scattered *stage, int is_double, cl_kernel *kernel) {

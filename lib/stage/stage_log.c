@@ -1,3 +1,4 @@
+/* The events of what was enqueued, by stage, kept when stages are timed. */
 #include "stage/stage_log.h"
 
 void skg_stage_log_clear(skg_stage_log *log) {

@@ -1,3 +1,4 @@
+/* The scene of the tests of noise: a slab in a parallel beam, its photons by formulas, and what is checked of images. */
 #include "analytic/noise_scene.h"
 
 #include <math.h>

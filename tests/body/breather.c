@@ -1,3 +1,4 @@
+/* A generated thorax that breathes. */
 #include "breather.h"
 
 #include "suite.h"

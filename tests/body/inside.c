@@ -1,3 +1,4 @@
+/* Whether points lie in a closed mesh, and how deep: for tests only. */
 #include "body/inside.h"
 
 #include "suite.h"

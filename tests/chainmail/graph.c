@@ -1,3 +1,4 @@
+/* Random graphs of links for the tests of Chain Mail, with an oracle that shares nothing with the library. */
 #include "chainmail/graph.h"
 
 #include "suite.h"

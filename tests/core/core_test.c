@@ -1,3 +1,4 @@
+/* Errors, statuses and memory. */
 #include "core/core.h"
 #include "core/files.h"
 #include "core/log.h"

@@ -1,3 +1,4 @@
+/* Digests, by the examples of their standards. */
 #include "core/crc.h"
 #include "core/digest.h"
 #include "suite.h"

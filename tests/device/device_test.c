@@ -1,3 +1,4 @@
+/* Contexts, programs and buffers on a device. */
 #include "device/device.h"
 #include "driver/driver.h"
 #include "suite.h"

@@ -1,3 +1,4 @@
+/* Files in the user's folder: kept, damaged, removed. */
 #include "device/cache.h"
 #include "device/cache_folder.h"
 #include "suite.h"

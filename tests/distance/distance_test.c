@@ -1,3 +1,4 @@
+/* Distances of surfaces against brute force and formulas. */
 #define _GNU_SOURCE /* memmem, mkstemps */
 /* Distances between surfaces: closed forms, and brute force that shares no code with the library. */
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* A caller with OpenCL objects of its own, and a cube of 20 mm with a ball inside. */
 #include "caller.h"
 #include "suite.h"
 

@@ -1,3 +1,4 @@
+/* Spheres whose triangles may be changed, and their path lengths and attenuations. */
 #include "frame/soup.h"
 
 #include <math.h>

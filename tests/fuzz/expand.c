@@ -1,3 +1,4 @@
+/* Texts by a grammar: each byte of the input of a fuzz target chooses an alternative. */
 #include "fuzz/expand.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* What the targets of scene files share. */
 #include "fuzz/read_scene.h"
 
 #include "fuzz/fuzz.h"

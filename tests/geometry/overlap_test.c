@@ -1,3 +1,4 @@
+/* Overlaps of solids whose overlap is known. */
 #include "geometry/overlaps.h"
 #include "suite.h"
 #include "support/random.h"

@@ -1,3 +1,4 @@
+/* Scales of integers against their bounds. */
 #include "geometry/bounds.h"
 #include "suite.h"
 

@@ -1,3 +1,4 @@
+/* How many pixels the library finds unbalanced. */
 #include "hard/balance.h"
 
 #include "suite.h"

@@ -1,3 +1,4 @@
+/* The catalogue of hard cases: each a small scene, the reason why it is hard, and its bar. */
 #include "hard/catalogue.h"
 
 #include "hard/scenes.h"

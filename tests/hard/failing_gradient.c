@@ -1,3 +1,4 @@
+/* Derivatives for failing_test: of everything, and along a direction. */
 #include "hard/failing_gradient.h"
 
 #include <stddef.h>

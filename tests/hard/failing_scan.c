@@ -1,3 +1,4 @@
+/* A scan for failing_test: run, files, packed copy, reading back. */
 #include "hard/failing_scan.h"
 
 #include <skiagraph/scan_reader.h>

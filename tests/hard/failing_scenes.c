@@ -1,3 +1,4 @@
+/* The scenes of failing_test, and the effects of its runs. */
 #include "hard/failing_scenes.h"
 #include "suite.h"
 

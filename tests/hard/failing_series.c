@@ -1,3 +1,4 @@
+/* Scatter for failing_test: predicted, of a series of frames, and its orders apart; and the variance of noise. */
 #include "hard/failing_series.h"
 
 #include <string.h>

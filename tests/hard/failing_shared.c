@@ -1,3 +1,4 @@
+/* OpenCL objects of a caller who shares them with the library. */
 #include "hard/failing_shared.h"
 
 #include <stdlib.h>

@@ -1,3 +1,4 @@
+/* Drawn scenes for derivatives: 1 to 9 parts, nested, touching, at one place, of any priority, in any view. */
 #include "hard/gradients_drawn.h"
 
 #include "suite.h"

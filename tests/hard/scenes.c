@@ -1,3 +1,4 @@
+/* Solids and views at which coverage by rounded arithmetic goes wrong, with the truth about each. */
 #include "hard/scenes.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* What tests of the kernels share: meshes as plain arrays, one frame from them, and a slow referee. */
 #include "kernels/picture.h"
 
 #include "core/maths.h"

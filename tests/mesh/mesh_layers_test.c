@@ -1,3 +1,4 @@
+/* How often a mesh lies over itself. */
 #include "mesh/mesh.h"
 #include "suite.h"
 #include "support/shapes.h"

@@ -1,3 +1,4 @@
+"""What the tests of Python share."""
 import shutil
 
 import numpy as np

@@ -1,3 +1,4 @@
+/* Photons one by one, as nature has them: neither forced nor weighted nor smoothed. */
 #include "analogue.h"
 
 #include "material/scattering.h"

@@ -1,3 +1,4 @@
+/* The histories of a plan's view with cross sections of our own: photons that scatter alike in all directions and keep their energy. */
 #include "isotropic.h"
 
 #include "frame/plans.h"

@@ -1,3 +1,4 @@
+/* Single interactions as the kernel samples them. */
 #include "sample.h"
 
 #include "device/programs.h"

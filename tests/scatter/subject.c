@@ -1,3 +1,4 @@
+/* Scenes that scatter, and their frames. */
 #include "subject.h"
 
 #include "suite.h"

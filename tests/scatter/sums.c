@@ -1,3 +1,4 @@
+/* What arrived in the last frame before it is smoothed: sums by batch, kind and place. */
 #include "sums.h"
 
 #include "frame/plans.h"

@@ -1,3 +1,4 @@
+/* Scenes: parts, nesting, poses, and what is refused. */
 #include "core/context.h"
 #include "scene/scene.h"
 #include "suite.h"

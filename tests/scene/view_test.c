@@ -1,3 +1,4 @@
+/* Views and cameras against each other. */
 #include "core/maths.h"
 #include "geometry/optics.h"
 #include "suite.h"

@@ -1,3 +1,4 @@
+/* Scene files: what is read and what is refused. */
 #include "core/maths.h"
 #include "setup/setup_files.h"
 

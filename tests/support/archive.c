@@ -1,3 +1,4 @@
+/* ZIP archives of a few texts that are stored, not compressed, written without the library. */
 #include "support/archive.h"
 
 #include <string.h>

@@ -1,3 +1,4 @@
+/* A slow ray caster in long double: every ray against every triangle. */
 #include "support/caster.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Blocks that are cut into pieces, and shells nested within each other with faces in common: together they have to give the picture of the whole, however rounding decides on rays that lie in the plane of a cut. */
 #include "support/cuts.h"
 
 #include "support/random.h"

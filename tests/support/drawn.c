@@ -1,3 +1,4 @@
+/* Drawn scenes of one to three parts, thin and thick, for the bound of the precision. */
 #include "support/drawn.h"
 
 #include "support/caster.h"

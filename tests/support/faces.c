@@ -1,3 +1,4 @@
+/* Scenes whose source, start plane or detector lies on, at or inside a face, an edge or a corner of a part, with another part in the beam and one around everything. */
 #include "support/faces.h"
 
 #include "support/caster.h"

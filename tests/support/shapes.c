@@ -1,3 +1,4 @@
+/* Solids as plain arrays: closed, outward, unless said otherwise. */
 #include "support/shapes.h"
 
 #include "support/angles.h"

@@ -1,3 +1,4 @@
+/* Axes of organs: ribs by their bones, others by their inertia. */
 #include "body/bones.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Organs that are carried by others: how each follows its carriers. */
 #include "body/build.h"
 
 #include "body/links.h"

@@ -1,3 +1,4 @@
+/* Chains of points between a moving and a resting organ, which share the motion. */
 #include "body/build.h"
 
 #include "body/links.h"

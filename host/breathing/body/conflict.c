@@ -1,3 +1,4 @@
+/* Finds points that links pull two ways at once, and warns of them. */
 #include "body/posed.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Takes the common rotation out of a motion before Chain Mail, and puts it back. */
 #include "body/posed.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The motion of a diaphragm's dome. */
 #include "body/shares.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Where a linked vertex goes with the organ that it follows. */
 #include "body/links.h"
 
 #include "body/shares.h"

@@ -1,3 +1,4 @@
+/* Links between organs: found by their labels and places. */
 #include "body/build.h"
 
 #include "body/bones.h"

@@ -1,3 +1,4 @@
+/* The liver's motion below the diaphragm: course, shear and growth. */
 #include "body/shares.h"
 
 #include "body/links.h"

@@ -1,3 +1,4 @@
+/* Measures of a body: lung volume and density, depth of the needle. */
 #include "body/posed.h"
 
 #include "body/types.h"

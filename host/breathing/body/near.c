@@ -1,3 +1,4 @@
+/* The organ surface that is nearest to a point. */
 #include "body/links.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Adds organs to a body, and checks what the caller says of them. */
 #include "body/build.h"
 
 #include "body/bones.h"

@@ -1,3 +1,4 @@
+/* The parameters of a body that can be fitted: names, units and ranges. */
 #include "body/parameters.h"
 
 #include "core/core.h"

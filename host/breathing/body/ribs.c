@@ -1,3 +1,4 @@
+/* How ribs turn about their axes with the breath. */
 #include "body/bones.h"
 
 #include "core/maths.h"

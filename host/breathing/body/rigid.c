@@ -1,3 +1,4 @@
+/* Rotations and rigid fits. */
 #include "body/rigid.h"
 
 #include "core/maths.h"

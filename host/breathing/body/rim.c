@@ -1,3 +1,4 @@
+/* The rim of the diaphragm, which stays with the wall. */
 #include "body/shares.h"
 
 #include "body/links.h"

@@ -1,3 +1,4 @@
+/* What an organ does in the breath, by its label and tissue. */
 #include "body/types.h"
 
 #include "core/text.h"

@@ -1,3 +1,4 @@
+/* The rules by which the links of two organs are chosen. */
 #include "body/links.h"
 
 #include "body/shares.h"

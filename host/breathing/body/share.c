@@ -1,3 +1,4 @@
+/* How much of a carrier's motion each vertex of an organ takes. */
 #include "body/shares.h"
 
 #include "body/bones.h"

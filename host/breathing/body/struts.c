@@ -1,3 +1,4 @@
+/* Struts across thin organs, so that their sides keep their distance. */
 #include "body/links.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The motion of a surface from that of some of its vertices, smooth in between. */
 #include "body/shares.h"
 
 #include "core/maths.h"

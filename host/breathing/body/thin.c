@@ -1,3 +1,4 @@
+/* Where an organ is so thin that its two sides are close. */
 #include "body/shares.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Ties that the caller gives between organs, checked and made. */
 #include "body/links.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The wall of the chest follows its bones. */
 #include "body/bones.h"
 
 #include "body/links.h"

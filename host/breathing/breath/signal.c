@@ -1,3 +1,4 @@
+/* A recorded signal: amplitudes over time. */
 #include "breath/signal.h"
 
 #include "core/core.h"

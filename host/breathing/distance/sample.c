@@ -1,3 +1,4 @@
+/* Points of a surface and the areas that they stand for. */
 #include "distance/sample.h"
 
 #include "core/core.h"

@@ -1,3 +1,4 @@
+/* A tree of boxes over triangles, and the nearest of them to a point. */
 #include "distance/nearest.h"
 
 #include "core/maths.h"

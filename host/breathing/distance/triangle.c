@@ -1,3 +1,4 @@
+/* The nearest point of a triangle. */
 #include "distance/nearest.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Random numbers that depend on what they are for and on nothing else. */
 #include "evolution/draw.h"
 
 #include "core/maths.h"

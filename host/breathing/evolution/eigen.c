@@ -1,3 +1,4 @@
+/* Eigenvalues, by LAPACK.. */
 #include "evolution/eigen.h"
 
 #include "evolution/methods.h"

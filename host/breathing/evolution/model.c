@@ -1,3 +1,4 @@
+/* A quadratic model of values seen so far, and its minimum. */
 #include "evolution/methods.h"
 
 #include "evolution/eigen.h"

@@ -1,3 +1,4 @@
+/* Minimizing a function of up to 64 numbers between 0 and 1 by a population. */
 #include "evolution/search.h"
 
 #include "evolution/eigen.h"

@@ -1,3 +1,4 @@
+/* The body that a fit moves, from a scene file. */
 #include "fit/types.h"
 
 #include "body/links.h"

@@ -1,3 +1,4 @@
+/* The parameters of a fit: read from a body, and set in it. */
 #include "fit/types.h"
 
 #include "body/build.h"

@@ -1,3 +1,4 @@
+/* Writes the fitted parameters into the scene. */
 #define _XOPEN_SOURCE 700 /* realpath */
 /* The fitted scene as a file. */
 #include "scene/scene.h"

@@ -1,3 +1,4 @@
+/* Trachea and bronchi of the generated thorax. */
 #include "phantom/anatomy.h"
 
 #include "core/maths.h"

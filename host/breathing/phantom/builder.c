@@ -1,3 +1,4 @@
+/* Adds a part to the generated thorax, fitted to its number of triangles. */
 #include "phantom/makers.h"
 
 #include "phantom/contacts.h"

@@ -1,3 +1,4 @@
+/* The rib cage as a surface, on which ribs and wall lie. */
 #include "phantom/anatomy.h"
 
 #include "core/maths.h"

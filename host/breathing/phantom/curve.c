@@ -1,3 +1,4 @@
+/* Curves through points. */
 #include "phantom/shapes.h"
 
 #include "core/maths.h"

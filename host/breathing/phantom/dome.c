@@ -1,3 +1,4 @@
+/* The domes of the diaphragm. */
 #include "phantom/anatomy.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Ellipsoids. */
 #include "phantom/shapes.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Finds where a surface passes through itself, and smooths it until it does not. */
 #include "phantom/contacts.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* A grid of triangles, by which those near each other are found. */
 #include "phantom/contacts.h"
 
 #include "core/maths.h"

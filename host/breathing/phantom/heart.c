@@ -1,3 +1,4 @@
+/* The shape of the heart. */
 #include "phantom/anatomy.h"
 
 #include "phantom/shapes.h"

@@ -1,3 +1,4 @@
+/* The measures of the generated thorax, from its options. */
 #include "phantom/anatomy.h"
 
 #include <math.h>

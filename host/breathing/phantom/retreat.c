@@ -1,3 +1,4 @@
+/* Moves a surface back from another one that it meets. */
 #include "phantom/contacts.h"
 
 #include "core/maths.h"

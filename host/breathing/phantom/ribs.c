@@ -1,3 +1,4 @@
+/* The courses of the ribs. */
 #include "phantom/anatomy.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Surfaces from rings of points. */
 #include "phantom/shapes.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* Surfaces seen from one point: each direction leaves them once. */
 #include "phantom/shapes.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Surfaces of branching tubes. */
 #include "phantom/shapes.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Surfaces of tubes along curves. */
 #include "phantom/shapes.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* The great vessels and those of the lungs. */
 #include "phantom/anatomy.h"
 
 #include "core/maths.h"

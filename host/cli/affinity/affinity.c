@@ -1,3 +1,4 @@
+/* The number of PoCL's threads, and the cores on which they run. */
 #define _GNU_SOURCE /* sched_getaffinity */
 #include "affinity/affinity.h"
 

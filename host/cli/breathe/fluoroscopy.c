@@ -1,3 +1,4 @@
+/* Images of a scene that moves. */
 #include "breathe/fluoroscopy.h"
 
 #include "common/say.h"

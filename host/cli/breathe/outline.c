@@ -1,3 +1,4 @@
+/* Finds the outline of a part in an image, such as a dome of the diaphragm. */
 #include "breathe/outputs.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* Poses of the parts along a sequence. */
 #include "breathe/outputs.h"
 
 #include "common/say.h"

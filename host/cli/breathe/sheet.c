@@ -1,3 +1,4 @@
+/* Frames of a breath side by side in one picture. */
 #include "breathe/outputs.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* Frames of a breath as a film. */
 #include "breathe/outputs.h"
 
 #include "common/progress.h"

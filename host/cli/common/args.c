@@ -1,3 +1,4 @@
+/* The command line: flags by table, values by kind. */
 #include "common/args.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* Bytes as text, by base64 (RFC 4648). */
 #include "common/encode.h"
 
 #include <stdlib.h>

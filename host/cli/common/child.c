@@ -1,3 +1,4 @@
+/* Processes that this one starts, one at a time. */
 #include "common/child.h"
 
 #include "common/interrupt.h"

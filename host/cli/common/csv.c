@@ -1,3 +1,4 @@
+/* Texts as fields of CSV (RFC 4180). */
 #include "common/encode.h"
 
 #include <string.h>

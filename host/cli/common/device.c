@@ -1,3 +1,4 @@
+/* Opens the device that a verb computes on. */
 #include "common/values.h"
 
 #include "common/environment.h"

@@ -1,3 +1,4 @@
+/* What PoCL reads from the environment. */
 #define _XOPEN_SOURCE 700 /* nftw */
 #include "common/environment.h"
 

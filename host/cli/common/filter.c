@@ -1,3 +1,4 @@
+/* Reads filters and lengths of the command line. */
 #include "common/values.h"
 
 #include "common/say.h"

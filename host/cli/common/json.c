@@ -1,3 +1,4 @@
+/* Writes JSON: numbers, texts, objects, and what a page can hold. */
 #include "common/encode.h"
 
 #include "common/say.h"

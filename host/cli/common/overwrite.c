@@ -1,3 +1,4 @@
+/* Refuses outputs that would replace inputs or each other. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "common/values.h"
 

@@ -1,3 +1,4 @@
+/* Drivers of OpenCL in child processes. */
 #define _GNU_SOURCE /* strsignal */
 #include "common/probe.h"
 

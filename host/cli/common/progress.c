@@ -1,3 +1,4 @@
+/* Time, and the line that shows how far a long computation is. */
 #include "common/progress.h"
 
 #include "common/say.h"

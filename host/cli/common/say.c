@@ -1,3 +1,4 @@
+/* Sentences on standard error, and the exit status that goes with each. */
 #include "common/say.h"
 
 #include <pthread.h>

@@ -1,3 +1,4 @@
+/* The unit of meshes that the command line names. */
 #include "common/values.h"
 
 #include "common/say.h"

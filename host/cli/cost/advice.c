@@ -1,3 +1,4 @@
+/* Which dial to turn, and what that costs. */
 #include "cost/findings.h"
 
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+/* Points with fewer source samples and coarser meshes together. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

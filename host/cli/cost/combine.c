@@ -1,3 +1,4 @@
+/* Combines the best of each dial, and looks for cheaper points. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

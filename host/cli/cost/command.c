@@ -1,3 +1,4 @@
+/* The command line that makes the image of a point. */
 #include "cost/output.h"
 
 #include <stdio.h>

@@ -1,3 +1,4 @@
+/* The error of a point against the reference. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

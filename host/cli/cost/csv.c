@@ -1,3 +1,4 @@
+/* The points of a study as CSV. */
 #include "cost/output.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* The points of a study as JSON, for --json and for the page. */
 #include "cost/output.h"
 
 #include "common/encode.h"

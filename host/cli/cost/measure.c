@@ -1,3 +1,4 @@
+/* Times a point, with the patience that its frames need. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

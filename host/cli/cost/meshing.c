@@ -1,3 +1,4 @@
+/* Coarser and finer meshes of a scene's parts, for the dial of triangles. */
 #include "cost/dials.h"
 
 #include "common/say.h"

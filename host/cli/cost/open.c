@@ -1,3 +1,4 @@
+/* Opens the scene of a study, and its end. */
 #include "cost/dials.h"
 #include "cost/measuring.h"
 

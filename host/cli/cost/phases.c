@@ -1,3 +1,4 @@
+/* The study of a scene that moves: what the worst phase needs. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

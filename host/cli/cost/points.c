@@ -1,3 +1,4 @@
+/* Makes points, and the reference that they are compared with. */
 #include "cost/measuring.h"
 
 #include "common/say.h"

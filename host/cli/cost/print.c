@@ -1,3 +1,4 @@
+/* The study as text on the terminal. */
 #include "cost/output.h"
 
 #include "cost/findings.h"

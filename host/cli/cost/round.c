@@ -1,3 +1,4 @@
+/* The dial of parts that can have any number of triangles. */
 #include "cost/dials.h"
 
 #include <inttypes.h>

@@ -1,3 +1,4 @@
+/* What scatter adds to the study's scene, and what it costs. */
 #include "cost/findings.h"
 #include "cost/measuring.h"
 #include "cost/output.h"

@@ -1,3 +1,4 @@
+/* The settings that a study tries. */
 #include "cost/dials.h"
 
 #include "cost/measuring.h"

@@ -1,3 +1,4 @@
+/* Sources of error that are dials, and why one is absent. */
 #include "cost/findings.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* What a study found, in a few sentences. */
 #include "cost/findings.h"
 
 #include <math.h>

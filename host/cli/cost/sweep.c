@@ -1,3 +1,4 @@
+/* Sweeps the dials one after another, with a forecast of the time. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+/* The generated thorax as the scene of a study, with any number of triangles. */
 #include "cost/dials.h"
 
 #include <math.h>

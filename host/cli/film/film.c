@@ -1,3 +1,4 @@
+/* Films: a sequence of frames in one file, .gif by giflib, .mp4 and .webm by the program ffmpeg. */
 #include "film/film.h"
 
 #include "common/say.h"

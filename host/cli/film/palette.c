@@ -1,3 +1,4 @@
+/* The 256 colours that come nearest to those of a film. */
 #include "film/palette.h"
 
 #include <math.h>

@@ -1,3 +1,4 @@
+/* A picture of errors before and after a fit. */
 #include "fit/work.h"
 
 #include "common/file.h"

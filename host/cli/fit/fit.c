@@ -1,3 +1,4 @@
+/* The verb `fit`: fits a breathing body to surfaces that were observed. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

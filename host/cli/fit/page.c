@@ -1,3 +1,4 @@
+/* The page that shows what a fit found. */
 #include "fit/work.h"
 
 #include "common/encode.h"

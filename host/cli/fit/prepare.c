@@ -1,3 +1,4 @@
+/* Reads what a fit needs: scene, surfaces, flags. */
 #include "fit/work.h"
 
 #include "common/file.h"

@@ -1,3 +1,4 @@
+/* The scene file that a live page began with, and whether it has changed. */
 #include "live/scene.h"
 
 #include "common/values.h"

@@ -1,3 +1,4 @@
+/* What pages are told of a scene and its frames. */
 #include "live/describe.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* Between the thread that computes and the pages: what pages ask for goes in, frames and sentences go out. */
 #include "live/hub.h"
 
 #include "common/encode.h"

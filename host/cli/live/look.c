@@ -1,3 +1,4 @@
+/* How a page looks at the scene: the eye, and what differs from `skiagraph view`. */
 #include "live/look.h"
 
 #include <stddef.h>

@@ -1,3 +1,4 @@
+/* What waits to be sent to a page. */
 #include "live/mail.h"
 
 #include <stdlib.h>

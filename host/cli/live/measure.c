@@ -1,3 +1,4 @@
+/* Answers a page that measures in the image. */
 #include "live/ask.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* What stands for the server where CivetWeb is missing: a sentence. */
 #include "live/server.h"
 
 #include "common/say.h"

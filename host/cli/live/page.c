@@ -1,3 +1,4 @@
+/* The page: HTML with the surfaces of the scene, and what it draws of source and detector. */
 #include "live/page.h"
 
 #include "common/say.h"

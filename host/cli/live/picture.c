@@ -1,3 +1,4 @@
+/* The 3D view as the server draws it, for pages whose browser draws slowly. */
 #include "live/picture.h"
 
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+/* Answers a page that asks what lies along the ray of a pixel. */
 #include "live/ask.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* The scene as the last wish has it, ready for frames. */
 #include "live/scene.h"
 
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+/* Saves what a page shows: scene, picture, values. */
 #include "live/ask.h"
 
 #include "live/frame.h"

@@ -1,3 +1,4 @@
+/* What a page asks for: one JSON object a message. */
 #include "live/wish.h"
 
 #include "common/encode.h"

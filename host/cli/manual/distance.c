@@ -1,3 +1,4 @@
+/* The manual of `distance`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
 const cli_flag cli_flag_distance_map = {"--map", "FILE.ply",

@@ -1,3 +1,4 @@
+/* Prints manuals, and the overview of all verbs. */
 #include "manual/manual.h"
 
 #include <string.h>

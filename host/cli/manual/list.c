@@ -1,3 +1,4 @@
+/* The list of manuals, and those of `help` and `version`. */
 #include "manual/manual.h"
 
 const cli_manual *const cli_manuals[] = {&cli_manual_image, &cli_manual_lbuffer,     &cli_manual_plan,

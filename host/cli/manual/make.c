@@ -1,3 +1,4 @@
+/* The manual of `make`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
 const cli_flag cli_flag_make_output = {"-o", "FILE", "The mesh to write, .ply or .stl. Required.", NULL,

@@ -1,3 +1,4 @@
+/* The manual of `mesh`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
 /* In the order of the lengths in common/unit.c. */

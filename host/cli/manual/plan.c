@@ -1,3 +1,4 @@
+/* The manual of `plan`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
 static const char *const text[] = {

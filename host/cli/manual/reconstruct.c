@@ -1,3 +1,4 @@
+/* The manual of `reconstruct`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
 const cli_flag cli_flag_reconstruct_output = {"-o", "FILE", "The volume to write, a .mha. Required.", NULL,

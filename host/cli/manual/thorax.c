@@ -1,3 +1,4 @@
+/* The manual of `thorax`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
 const cli_flag cli_flag_thorax_output = {

@@ -1,3 +1,4 @@
+/* Pictures of maps: surfaces in the colours of their distances, from in front and from behind. */
 #include "map/map.h"
 
 #include "common/say.h"

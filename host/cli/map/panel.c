@@ -1,3 +1,4 @@
+/* One view of a map, drawn into pixels. */
 #include "map/panel.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* PNG files in memory, by Cairo. */
 #include "map/surface_png.h"
 
 #include "common/say.h"

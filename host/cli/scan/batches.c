@@ -1,3 +1,4 @@
+/* Runs a scan in batches, each written while the next is computed. */
 #include "scan/steps.h"
 
 #include "common/progress.h"

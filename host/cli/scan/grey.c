@@ -1,3 +1,4 @@
+/* Grey values of projections: their range, type and records. */
 #include "scan/steps.h"
 
 #include "common/file.h"

@@ -1,3 +1,4 @@
+/* What stands beside projections: geometry, spectrum, units, as JSON. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "scan/steps.h"

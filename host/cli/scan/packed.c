@@ -1,3 +1,4 @@
+/* Packs a scan that was written into one file of another format. */
 #include "scan/steps.h"
 
 #include "common/file.h"

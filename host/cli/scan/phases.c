@@ -1,3 +1,4 @@
+/* Projections sorted by phases of the breath. */
 #include "scan/steps.h"
 
 #include "common/say.h"

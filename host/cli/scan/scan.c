@@ -1,3 +1,4 @@
+/* The verb `scan`: projections of a scene from all around. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

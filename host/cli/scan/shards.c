@@ -1,3 +1,4 @@
+/* A scan divided among processes: who makes what, and how shards are joined. */
 #include "scan/steps.h"
 
 #include "common/say.h"

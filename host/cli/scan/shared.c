@@ -1,3 +1,4 @@
+/* A scan by the ranks of MPI, which write one file. */
 #include "scan/steps.h"
 
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+/* Checks files of a scan against their checksums. */
 #include "scan/steps.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* Pictures beside an image, each by a flag with the name of its file: what was scattered, its error, the mean, and the variance of the noise. */
 #include "session/beside.h"
 
 #include "common/interrupt.h"

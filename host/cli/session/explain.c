@@ -1,3 +1,4 @@
+/* What a plan decided, as text and as JSON. */
 #include "session/explain.h"
 
 #include "common/encode.h"

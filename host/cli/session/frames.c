@@ -1,3 +1,4 @@
+/* Timed frames: the first one, and then the warm ones that --repeat asks for. */
 #include "session/frames.h"
 
 #include "common/encode.h"

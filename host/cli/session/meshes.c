@@ -1,3 +1,4 @@
+/* Meshes instead of a scene file: the scene that the flags describe. */
 #include "session/meshes.h"
 
 #include "common/encode.h"

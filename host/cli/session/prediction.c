@@ -1,3 +1,4 @@
+/* What scatter would add to a plan's images, from few histories, and whether the scene calls for it. */
 #include "session/prediction.h"
 
 #include "common/encode.h"

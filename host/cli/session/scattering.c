@@ -1,3 +1,4 @@
+/* Scattered photons of an image: the flags that ask for them, and what is reported of them. */
 #include "session/scattering.h"
 
 #include "common/encode.h"

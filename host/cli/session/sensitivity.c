@@ -1,3 +1,4 @@
+/* How much the image changes when each part moves. */
 #include "session/sensitivity.h"
 
 #include "common/encode.h"

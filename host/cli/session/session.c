@@ -1,3 +1,4 @@
+/* A device and the scene that was read for it. */
 #include "session/session.h"
 
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+/* The verb `beam`: a spectrum, its mean energy, layers and kerma. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

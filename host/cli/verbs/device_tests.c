@@ -1,3 +1,4 @@
+/* Prints the self-tests of devices, for `devices --test`. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

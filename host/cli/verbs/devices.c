@@ -1,3 +1,4 @@
+/* The verb `devices`: the OpenCL devices, and what each can do. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* The verb `distance`: how far two surfaces are apart. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* The verb `image`: an X-ray image of a scene. */
 #include "verbs/verbs.h"
 
 #include "common/say.h"

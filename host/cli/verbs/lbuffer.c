@@ -1,3 +1,4 @@
+/* The verb `lbuffer`: path lengths through a part. */
 #include "verbs/verbs.h"
 
 #include "common/say.h"

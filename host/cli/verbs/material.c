@@ -1,3 +1,4 @@
+/* The verb `material`: coefficients of a material. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

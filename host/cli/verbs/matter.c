@@ -1,3 +1,4 @@
+/* The table that `skiagraph material` prints: a material at several energies. */
 #include "verbs/matter.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* The verb `mesh`: the health of a mesh, and its repair. */
 #include "verbs/mesh_groups.h"
 #include "verbs/verbs.h"
 

@@ -1,3 +1,4 @@
+/* The verb `plan`: what a scene calls for, and why. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

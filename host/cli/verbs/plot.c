@@ -1,3 +1,4 @@
+/* The files that `material` and `beam` write: curves against energy as .png or .svg, tables as .csv. */
 #include "verbs/plot.h"
 
 #include "common/file.h"

@@ -1,3 +1,4 @@
+/* The verb `thorax`: writes a generated thorax with its scene. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

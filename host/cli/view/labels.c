@@ -1,3 +1,4 @@
+/* Names of parts beside the 3D view, with their lines. */
 #include "view/picture.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* Pages and films of a scene that moves. */
 #include "view/pages.h"
 
 #include "common/progress.h"

@@ -1,3 +1,4 @@
+/* Chooses the parts that are named in a view. */
 #include "view/picture.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* The page in which a scene can be turned. */
 #include "view/pages.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* Where parts, source and detector stand in a view, and how far apart. */
 #include "view/picture.h"
 
 #include "common/say.h"

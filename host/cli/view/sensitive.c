@@ -1,3 +1,4 @@
+/* Colours parts by how much the image changes when they move. */
 #include "view/picture.h"
 
 #include "common/progress.h"

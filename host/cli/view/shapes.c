@@ -1,3 +1,4 @@
+/* The surfaces of parts as a page holds them. */
 #include "view/surfaces.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* The sign of coordinates in a corner of a view. */
 #include "view/picture.h"
 
 #include "common/say.h"

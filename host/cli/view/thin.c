@@ -1,3 +1,4 @@
+/* Fewer triangles of a part, for pages. */
 #include "view/surfaces.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* The verb `view`: a scene in the room, as a picture, a film or a page. */
 #include "verbs/verbs.h"
 
 #include "common/encode.h"

@@ -1,3 +1,4 @@
+/* What the files of the verb `view` share: flags, scene, views. */
 #include "view/picture.h"
 
 #include "common/say.h"

@@ -1,3 +1,4 @@
+/* One frame of a CTSimU scenario: where everything stands. */
 #include "ctsimu/parts.h"
 
 #include "core/maths.h"

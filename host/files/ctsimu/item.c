@@ -1,3 +1,4 @@
+/* Values of a CTSimU scenario with units, drifts and deviations. */
 #include "ctsimu/parts.h"
 
 #include "core/files.h"

@@ -1,3 +1,4 @@
+/* Reading JSON with errors that name the place: file, line where the text has it, and path ("Samples[3].Material"). */
 #include "json/json.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* A JSON file, its values, the lines where they stand, and settings that change it. */
 #include "json/json_file.h"
 #include "core/files.h"
 

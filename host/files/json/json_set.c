@@ -1,3 +1,4 @@
+/* Settings that change a JSON value by its path. */
 #include "json/json_file.h"
 
 #include "json/json.h"

@@ -1,3 +1,4 @@
+/* The organs of a breathing body, from a scene file. */
 #include "setup/types.h"
 
 #include "core/maths.h"

@@ -1,3 +1,4 @@
+/* Shapes of a scene file that are made and not read. */
 #include "core/context.h"
 #include "core/maths.h"
 #include "setup/sections.h"

@@ -1,3 +1,4 @@
+/* The filter of a row of pixels. */
 #include "reconstruct/fourier.h"
 
 #include "core/maths.h"

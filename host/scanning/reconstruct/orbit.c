@@ -1,3 +1,4 @@
+/* How the views of a scan go about its axis, and how much each ray counts. */
 #include "reconstruct/orbit.h"
 
 #include "core/maths.h"

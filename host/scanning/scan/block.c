@@ -1,3 +1,4 @@
+/* Memory that a disk fetches by itself. */
 #define _GNU_SOURCE /* madvise */
 #include "scan/block.h"
 

@@ -1,3 +1,4 @@
+/* A batch of projections in flight. */
 #include "scan/slot.h"
 
 #include "core/core.h"
