@@ -28,7 +28,7 @@ static skg_status add_lengths(const skg_model *model, int64_t rays, int64_t part
         double **rates = &of->node_changes;
         if (!*rates) SKG_TRY(skg_alloc(model->nodes * rays, sizeof **rates, "derivative", rates));
         for (int64_t n = 0; n < model->nodes; n++)
-            add_scaled(rays, direction->attenuations[part * model->nodes + n], lengths, *rates + n * rays);
+            add_scaled(rays, SKG_PER_MM * direction->attenuations[part * model->nodes + n], lengths, *rates + n * rays);
     }
     return SKG_OK;
 }

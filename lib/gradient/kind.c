@@ -146,9 +146,8 @@ static skg_status finish_gradient(skg_job *job) {
     if (wanted->poses) memcpy(wanted->poses, work->poses, 6 * (size_t)scene->count * sizeof *work->poses);
     if (wanted->densities)
         memcpy(wanted->densities, work->densities, (size_t)scene->count * sizeof *work->densities);
-    if (wanted->attenuations)
-        memcpy(wanted->attenuations, work->attenuations,
-               (size_t)(scene->count * work->node_count) * sizeof *work->attenuations);
+    for (int64_t i = 0; wanted->attenuations && i < scene->count * work->node_count; i++)
+        wanted->attenuations[i] = SKG_PER_MM * work->attenuations[i];
     if (wanted->source) memcpy(wanted->source, work->view, 3 * sizeof *work->view);
     if (wanted->detector) memcpy(wanted->detector, work->view + 3, 6 * sizeof *work->view);
     for (int64_t p = 0; wanted->vertices && p < scene->count; p++)

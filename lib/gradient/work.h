@@ -7,6 +7,9 @@
 
 #include <skiagraph/gradient.h>
 
+/* The interface has attenuation coefficients in 1/cm, lengths are in mm. */
+static const double SKG_PER_MM = 0.1; /* of 1 / cm */
+
 /* The derivative of an image along a direction. */
 typedef struct {
     skg_direction direction; /* its arrays are the job's */

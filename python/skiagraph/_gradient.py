@@ -33,7 +33,7 @@ class Differentiable:
 
         Returns a dictionary with these keys. "poses": {label: twist}, "source": [3], "detector": twist, "vertices": {label:
         [n, 3]} in the axes of the mesh, "density": {label: number} by the density over the present one, "mu": {label: [energies]} by the attenuation coefficient in
-        1/mm at each of plan()["energies"], for the price of an image for each part. A twist is (tx, ty,
+        1/cm at each of plan()["energies"], for the price of an image for each part. A twist is (tx, ty,
         tz in mm, rx, ry, rz in rad) in world axes about the world's origin; the image counts as if pose' = exp(twist) pose.
         docs/derivatives.md says what is exact, what counts as constant and what is refused.
 

@@ -23,19 +23,19 @@ static const setting settings[] = {
     {.name = "world", .world = 1, .colours = 1},
 };
 
-/* 1/mm of a part at an energy */
+/* 1/cm of a part at an energy */
 static double mu_of(int64_t part, int energy) {
-    return 0.012 * (double)(1 + part) / (1 + 0.4 * energy);
+    return 0.12 * (double)(1 + part) / (1 + 0.4 * energy);
 }
 
 /* Gives every part its table, with one coefficient larger by a step. */
 static void set_materials(int64_t part, int energy, double step) {
     const double kev[ENERGIES + 2] = {30, 40, 60, 90, 120};
     for (int64_t p = 0; p < parts; p++) {
-        double per_cm[ENERGIES + 2] = {10 * mu_of(p, 0), 0, 0, 0, 10 * mu_of(p, ENERGIES - 1)};
+        double per_cm[ENERGIES + 2] = {mu_of(p, 0), 0, 0, 0, mu_of(p, ENERGIES - 1)};
         skg_material *material = NULL;
         for (int e = 0; e < ENERGIES; e++)
-            per_cm[e + 1] = 10 * (mu_of(p, e) + (p == part && e == energy ? step : 0));
+            per_cm[e + 1] = mu_of(p, e) + (p == part && e == energy ? step : 0);
         ck_skg(skg_material_create_table("table", ENERGIES + 2, kev, per_cm, &material));
         ck_skg(skg_scene_part_material_set(scene, p, material));
         skg_material_release(&material);
@@ -58,7 +58,7 @@ static double slope_of(const setting *set, const skg_view *view, int64_t part, i
     double slopes[2] = {0, 0};
     *size = 0;
     for (int s = 0; s < 2; s++) {
-        const double step = s ? 5e-4 : 1e-3;
+        const double step = s ? 5e-3 : 1e-2;
         set_materials(part, energy, step);
         make_image(set, view, ahead);
         set_materials(part, energy, -step);

@@ -33,4 +33,15 @@ if grep -rniE 'gradient|derivative' "$root/lib/frame"; then
     echo "lib/frame names derivatives, which are lib/gradient's"
     status=1
 fi
+# A source begins with a sentence that says what it does.
+cd "$root"
+for file in $(find lib host kernels tests bench materials examples python -name '*.c' -o -name '*.cl' -o -name '*.clh' -o -name '*.py' | grep -v '/build/\|/venv/'); do
+    case $file in *.py) begins='^("""|r"""|# [A-Za-z`])' ;; *) begins='^/\* *[A-Za-z0-9`$-]' ;; esac
+    sed -n '/^#!/d;/./{p;q;}' "$file" | grep -qE "$begins" || { echo "$file begins without a sentence"; status=1; }
+done
+# Structs of at most 40 members; more have a reason in structs.txt.
+# shellcheck disable=SC2013,SC2046 # a word a file and a line
+for struct in $(awk -v most=40 -f tests/house/structs.awk $(find lib host kernels bench tests -name '*.[ch]') | awk '{ print $2 }'); do
+    grep -q "^$struct " tests/house/structs.txt || { echo "$struct has more than 40 members, and no reason in tests/house/structs.txt"; status=1; }
+done
 exit $status

@@ -73,7 +73,7 @@ typedef struct {
      * their own, and for parts that compete by priority it costs an image of path lengths a part. */
     double *densities;
     /** [parts][nodes] by the attenuation coefficient of the material of each part at each energy of the plan (skg_plan_node_count,
-     * skg_plan_node_get), per 1/mm; NULL: not wanted. It costs an image of path lengths a part, and for each energy a pass over the
+     * skg_plan_node_get), per 1/cm; NULL: not wanted. It costs an image of path lengths a part, and for each energy a pass over the
      * image and 8 bytes for each of its rays. A pixel of an attenuation above 87, in precision double above 700, counts as
      * constant if the plan has several energies. */
     double *attenuations;
@@ -130,7 +130,7 @@ typedef struct {
     /** [parts] of the density of each part over that of its material; NULL: none changes. It costs an image of path lengths for each
      * part whose number is not 0. */
     const double *densities;
-    /** [parts][nodes] of the attenuation coefficient of the material of each part at each energy of the plan, 1/mm; NULL: none
+    /** [parts][nodes] of the attenuation coefficient of the material of each part at each energy of the plan, 1/cm; NULL: none
      * changes. Likewise, and for each energy a pass over the image and 16 bytes for each of its rays. */
     const double *attenuations;
     /** Number of energies of `attenuations`: that of the plan (skg_plan_node_count). */
