@@ -53,6 +53,9 @@ wheel)
         grep -vE '^[[:space:]]*(libc|libm|libpthread|libresolv|libdl|librt|libgcc_s|libstdc\+\+|libz)\.so'; then
         exit 1
     fi
+    echo "the package holds the command:"
+    env -i PATH=/usr/bin:/bin "$stage/venv/bin/skiagraph" version
+    env -i HOME="$stage" "$python" -c "import skiagraph._command as c; assert c.path().startswith('$package'), c.path()"
     run_tests "$python" "$package"
     ;;
 esac

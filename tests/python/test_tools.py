@@ -54,3 +54,11 @@ def test_a_fit(command, tmp_path):
         sk.fit(other, {"liver": target}, tmp_path / "x.json")
     with pytest.raises(sk.SceneError, match="save"):
         sk.fit(scene, {"liver": target}, tmp_path / "x.json", phase=0)
+
+
+def test_a_thorax_is_a_scene_in_one_call():
+    """Its files stay for the methods that run the command, until Python ends."""
+    with sk.thorax(triangles=10000, simple=True) as scene:
+        assert "liver" in scene
+        image = scene.image(quantity="transmission")
+            assert image.min() < 0.5 < image.max()
