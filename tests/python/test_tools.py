@@ -61,4 +61,4 @@ def test_a_thorax_is_a_scene_in_one_call():
     with sk.thorax(triangles=10000, simple=True) as scene:
         assert "liver" in scene
         image = scene.image(quantity="transmission")
-            assert image.min() < 0.5 < image.max()
+        assert image.min() < 0.5 < image.max()
