@@ -6,7 +6,8 @@
  * Carlo rendering, SIGGRAPH 1995), so that contributions stay finite however near the detector is. */
 typedef struct {
     const skg_scatter_args *args;
-    __global const float4 *cells, *energies, *momenta;
+    skg_object object;
+    __global const float4 *energies, *momenta;
     __global const float *detector;
     __global uint *sums; /* of the batch */
 } skg_scattering;
@@ -22,9 +23,9 @@ typedef struct {
     skg_intv alive, changed; /* -1 or 0; changed: a Compton scattering was among the interactions */
 } skg_photons;
 
-/* An interaction: what stands in its cell. In 1/mm, and what normalises the shapes. */
+/* An interaction: what stands where it is. In 1/mm, and what normalises the shapes. */
 typedef struct {
-    skg_mixtures cell;
+    skg_mixtures medium;
     skg_fv total, compton, rayleigh, compton_shape, rayleigh_shape;
 } skg_interaction;
 
@@ -89,8 +90,8 @@ static void skg_likely(const skg_scattering *s, const skg_interaction *i, skg_fv
                              (skg_fv)((float)s->args->momenta - 1.001f));
     const skg_fv klein = (skg_fv)(0.5f) * ratio * ratio * (ratio + one / ratio - less * (one + cosine));
     const skg_fv thomson = (skg_fv)(0.5f) * fma(cosine, cosine, one);
-    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->cell),
-                 f_of = skg_value(s->momenta, 2, 1, place, &i->cell);
+    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->medium),
+                 f_of = skg_value(s->momenta, 2, 1, place, &i->medium);
     const skg_fv tiny = (skg_fv)(1e-30f);
     *compton = i->compton * klein * s_of / max(i->compton_shape * i->total, tiny);
     *rayleigh = i->rayleigh * thomson * f_of / max(i->rayleigh_shape * i->total, tiny);
@@ -105,7 +106,7 @@ static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, skg_
 
 /* Contributions of an interaction to places of the detector, one in each of SKG_SCATTER_SIDE^2 equal pieces. */
 static void skg_contribute(const skg_scattering *s, const skg_photons *p, const skg_sight *sight,
-                           const skg_interaction *i, skg_fv across, skg_fv down, skg_fv jitter) {
+                           const skg_interaction *i, skg_fv across, skg_fv down) {
     const float side = 1.0f / SKG_SCATTER_SIDE;
     for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
         const skg_fv u = (across + (skg_fv)((float)(k % SKG_SCATTER_SIDE))) * side;
@@ -118,8 +119,9 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_place3 way = skg_sight_way(s->args, sight, x, y, distance);
         const skg_intv seen = p->alive & sight->ahead;
         const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
-        const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
-        skg_march(s->args, s->cells, p->at, way, enter, length, jitter, &sums);
+        const skg_fv within = skg_within(s->args, p->at, way, distance, &enter);
+        const skg_fv length = seen ? within : (skg_fv)(0.0f);
+        skg_march(s->args, &s->object, p->at, way, enter, length, &sums);
         if (s->args->world_around) skg_add_world(s->args, distance - length, &sums);
         skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
@@ -272,7 +274,6 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     skg_interaction i;
     skg_sight sight;
     skg_fv enter;
-    int met[SKG_WIDE];
     skg_words(s->args, p->history, p->order, batch, 0, a);
     skg_words(s->args, p->history, p->order, batch, 1, b);
     const skg_intv first = p->order == (skg_uv)(0), second = p->order == (skg_uv)(1);
@@ -280,9 +281,9 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                         \
      : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                        \
               : skg_uniform(word))
-    const skg_fv length = skg_within(s->args, p->at, p->way, p->reach, &enter);
-    const skg_fv jitter = skg_uniform(a[0]);
-    skg_march(s->args, s->cells, p->at, p->way, enter, length, jitter, &sums);
+    const skg_fv within = skg_within(s->args, p->at, p->way, p->reach, &enter);
+    const skg_fv length = p->alive ? within : (skg_fv)(0.0f);
+    skg_march(s->args, &s->object, p->at, p->way, enter, length, &sums);
     const skg_fv place = skg_energy_place(s->args, p->kev);
     const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
     const skg_fv passed = skg_exp(-depth);
@@ -307,19 +308,18 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv fall = skg_exp(-until);
     p->weight *= fall / (share / max(depth, (skg_fv)(1e-7f)) +
                          ((skg_fv)(1.0f) - share) * fall / max((skg_fv)(1.0f) - passed, (skg_fv)(1e-7f)));
-    const skg_fv on =
-        skg_collide(s->args, s->cells, p->at, p->way, enter, length, jitter, &mu, min(until, depth), met);
+    const skg_fv still = p->alive ? length : (skg_fv)(0.0f);
+    const skg_fv on = skg_collide(s->args, &s->object, p->at, p->way, enter, still, &mu, min(until, depth), &i.medium);
     p->at = skg_on(p->at, p->way, enter + on);
     p->order += 1;
-    for (int l = 0; l < SKG_WIDE; l++) i.cell.of[l] = s->cells[met[l]];
-    i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.cell);
-    i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.cell);
-    i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.cell);
-    i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.cell);
-    i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.cell);
+    i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.medium);
+    i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.medium);
+    i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.medium);
+    i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.medium);
+    i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.medium);
     p->alive &= i.total > (skg_fv)(0.0f);
     skg_see(s->args, p->at, &sight);
-    skg_contribute(s, p, &sight, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11), skg_uniform(b[3]));
+    skg_contribute(s, p, &sight, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11));
     const skg_fv angle = first ? skg_lattice(s, lattice, batch, p->history, 6) : skg_uniform(b[0]);
     const skg_fv turn = first ? skg_lattice(s, lattice, batch, p->history, 7) : skg_uniform(b[1]);
     const skg_fv process = first ? skg_lattice(s, lattice, batch, p->history, 8) : skg_uniform(b[2]);
@@ -328,7 +328,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     skg_roulette(s->args, p, skg_uniform(a[0]));
 }
 
-/* cells     [cells] coefficients of their mixtures
+/* media, tree, faces   the object (walk.clh)
  * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy; momenta: [momenta][2] S and F^2
  * angles    [rows][SKG_SCATTER_ANGLES + 1] cosines between which scattering is equally likely
  * beam      [bins] energy, share of the bins up to this one, weight, 1/mm of a bow-tie filter
@@ -338,7 +338,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
  * detector  [args.edges] edges of the bands, keV; then with args.cosines what layers record (arrive.clh); else NULL
  * sums      [batches][args.layers][bands][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
  * Work-items: those of a batch, then batches. */
-__kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
+__kernel void skg_scatter(skg_scatter_args args, __global const float4 *media, __global const uint *tree, __global const float4 *faces,
                           __global const float4 *energies, __global const float4 *momenta,
                           __global const float *angles, __global const float4 *beam,
                           __global const float *profiles, __global const float4 *spots, __constant const uint *lattice, __global const float *detector,
@@ -347,7 +347,7 @@ __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
     uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
     const uint end = min(next + (uint)args.each, (uint)args.end);
     const int images = args.layers * args.bands * SKG_SCATTER_PLANES * args.rows * args.columns;
-    const skg_scattering s = {&args, cells, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images};
+    const skg_scattering s = {&args, {media, tree, faces}, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images};
     skg_photons p = {
         .alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};
     uint numbers[SKG_WIDE];

@@ -270,8 +270,6 @@ typedef struct {
     skg_image_args image;
 
 /* Scattered photons (scatter.cl). */
-#define SKG_SCATTER_STEPS                                                                                    \
-    32 /* of a path through the object: 64 take half as long again; the thorax has 0.2 % too much with 32, 0.1 % with 64 */
 #define SKG_SCATTER_SIDE                                                                                     \
     2 /* an interaction contributes to a place in each of side x side pieces of the detector */
 #define SKG_SCATTER_ANGLES 256    /* equally likely ranges of the angle of scattering */
@@ -284,6 +282,18 @@ typedef struct {
 #define SKG_SCATTER_EVEN 0.5f  /* share of interactions whose place is even in the optical depth */
 #define SKG_SCATTER_LEAST 0.2f /* weights below this play roulette */
 #define SKG_SCATTER_FAR 1e6f   /* mm */
+
+/* Words of cells (walk.clh): a kind, and from bit 0 on a medium with its leap above, or the place of a brick or of a list of faces. */
+#define SKG_CELL_MEDIUM 0u
+#define SKG_CELL_FACES 1u
+#define SKG_CELL_BRICK 2u
+#define SKG_CELL_KIND(word) ((word) >> 30)
+#define SKG_CELL_PLACE(word) ((word)&0x3fffffffu)
+#define SKG_CELL_MEDIUM_OF(word) ((word)&0xffffffu)
+#define SKG_CELL_LEAP_MAX 63
+#define SKG_LIST_HEAD 5       /* of a list of faces: a medium, how many faces, a place with this medium; then their numbers */
+#define SKG_CELL_NUDGE 2e-5f  /* coarse cells: a line is looked up so far behind a boundary */
+#define SKG_CELL_MARGIN 4e-5f /* a face that is so near a boundary and along it is on it */
 
 /* Of skg_scatter. Places and vectors are in mm from the lowest corner of the cells. */
 typedef struct {

@@ -41,7 +41,7 @@ enum { SKG_SCATTER_BATCHES = 32 };
 
 /* All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer cells, energies, momenta, angles, beam, profiles, spots, lattice, detector, sums;
+    skg_buffer media, tree, faces, energies, momenta, angles, beam, profiles, spots, lattice, detector, sums;
     skg_scatter_args args; /* `end`: so many histories of each batch were followed */
     int32_t parallel, reserved;
     int64_t sums_count;
