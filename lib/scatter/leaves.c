@@ -1,6 +1,8 @@
 /* Cells as photons read them: a medium as far as it goes, a brick of finer cells, or the faces of parts in a cell. */
 #include "scatter/media.h"
 
+#include "core/maths.h"
+#include "core/threads.h"
 #include "skg_shared.h"
 
 #include <math.h>
@@ -8,7 +10,7 @@
 
 /* A cell with more faces gets a brick of finer cells: so many along each side that one of them has about FACES, as surfaces have n^2 of
  * n^3 cells, and no more than ROOM finer cells for each face, which bounds the memory. */
-enum { FACES = 8, ROOM = 8, FINEST = 16 };
+enum { FACES = 12, ROOM = 8, FINEST = 16 };
 static const double PER_FINE = 3;
 
 typedef struct {
@@ -61,41 +63,62 @@ static skg_status find_faces(planting *p) {
     return SKG_OK;
 }
 
-/* Calls `of` for each cell that a face has a piece in. */
-static void visit(planting *p, int64_t face, void (*of)(planting *, int64_t cell, int64_t face)) {
+/* Adds each cell that a face has a piece in, and the face, to `pairs`. */
+static skg_status visit(planting *p, int64_t face, skg_words *pairs) {
     const int64_t *count = p->cells->count;
     const double margin = -(double)SKG_CELL_MARGIN;
-    int64_t first[3], last[3];
+    int64_t first[3], last[3], place = 0;
     skg_face_cells(p->corners[face], count, margin, first, last);
+    const int alone = first[0] == last[0] && first[1] == last[1] && first[2] == last[2];
     for (int64_t z = first[2]; z <= last[2]; z++)
         for (int64_t y = first[1]; y <= last[1]; y++)
             for (int64_t x = first[0]; x <= last[0]; x++) {
                 const double low[3] = {(double)x, (double)y, (double)z};
-                if (skg_face_in_cell(p->corners[face], low, margin))
-                    of(p, (z * count[1] + y) * count[0] + x, face);
+                if (!alone && !skg_face_in_cell(p->corners[face], low, margin)) continue;
+                SKG_TRY(skg_words_grow(pairs, 2, &place));
+                pairs->of[place] = (uint32_t)((z * count[1] + y) * count[0] + x);
+                pairs->of[place + 1] = (uint32_t)face;
             }
+    return SKG_OK;
 }
 
-static void count_face(planting *p, int64_t cell, int64_t face) {
-    (void)face;
-    p->first[cell + 1]++;
+/* Faces in shares of all, each share by one thread. */
+enum { SHARES = 16 };
+typedef struct {
+    planting *p;
+    skg_words pairs[SHARES];
+} visits;
+
+static skg_status visit_share(void *user, int64_t share) {
+    visits *v = user;
+    const int64_t count = v->p->cells->face_count;
+    for (int64_t f = share * count / SHARES; f < (share + 1) * count / SHARES; f++)
+        SKG_TRY(visit(v->p, f, &v->pairs[share]));
+    return SKG_OK;
 }
 
-static void take_face(planting *p, int64_t cell, int64_t face) {
-    p->faces_of[p->first[cell]++] = (uint32_t)face;
+static skg_status sort_pairs(planting *p, const visits *v) {
+    const int64_t total = cells_of(p->cells);
+    SKG_TRY(skg_alloc(total + 1, sizeof *p->first, "cells", &p->first));
+    for (int s = 0; s < SHARES; s++)
+        for (int64_t i = 0; i < v->pairs[s].count; i += 2) p->first[v->pairs[s].of[i] + 1]++;
+    for (int64_t c = 0; c < total; c++) p->first[c + 1] += p->first[c];
+    SKG_TRY(skg_alloc(p->first[total] + 1, sizeof *p->faces_of, "cells", &p->faces_of));
+    for (int s = 0; s < SHARES; s++)
+        for (int64_t i = 0; i < v->pairs[s].count; i += 2)
+            p->faces_of[p->first[v->pairs[s].of[i]]++] = v->pairs[s].of[i + 1];
+    memmove(p->first + 1, p->first, (size_t)total * sizeof *p->first);
+    p->first[0] = 0;
+    return SKG_OK;
 }
 
 /* The faces in each cell. */
 static skg_status sort_faces(planting *p) {
-    const int64_t total = cells_of(p->cells);
-    SKG_TRY(skg_alloc(total + 1, sizeof *p->first, "cells", &p->first));
-    for (int64_t f = 0; f < p->cells->face_count; f++) visit(p, f, count_face);
-    for (int64_t c = 0; c < total; c++) p->first[c + 1] += p->first[c];
-    SKG_TRY(skg_alloc(p->first[total] + 1, sizeof *p->faces_of, "cells", &p->faces_of));
-    for (int64_t f = 0; f < p->cells->face_count; f++) visit(p, f, take_face);
-    memmove(p->first + 1, p->first, (size_t)total * sizeof *p->first);
-    p->first[0] = 0;
-    return SKG_OK;
+    visits v = {.p = p};
+    skg_status status = skg_parallel(SHARES, visit_share, &v);
+    if (status == SKG_OK) status = sort_pairs(p, &v);
+    for (int s = 0; s < SHARES; s++) skg_free(&v.pairs[s].of);
+    return status;
 }
 
 /* --- words */
@@ -326,26 +349,42 @@ static int differs(const skg_cells *cells, const uint32_t *words, int64_t x, int
     return 0;
 }
 
+typedef struct {
+    const skg_cells *cells;
+    const uint32_t *words;
+    uint8_t *leap;
+} leaping;
+
+/* A plane of cells: those beside another word have no leap. */
+static skg_status begin_plane(void *user, int64_t z) {
+    const leaping *l = user;
+    const int64_t across = l->cells->count[0], down = l->cells->count[1];
+    for (int64_t y = 0; y < down; y++)
+        for (int64_t x = 0; x < across; x++)
+            l->leap[(z * down + y) * across + x] =
+                differs(l->cells, l->words, x, y, z) ? 0 : SKG_CELL_LEAP_MAX;
+    return SKG_OK;
+}
+
 static skg_status find_leaps(const skg_cells *cells, uint32_t *words) {
     const int64_t total = cells_of(cells), across = cells->count[0], plane = across * cells->count[1];
-    uint8_t *leap = NULL;
-    SKG_TRY(skg_alloc(total, 1, "cells", &leap));
+    leaping l = {.cells = cells, .words = words};
+    SKG_TRY(skg_alloc(total, 1, "cells", &l.leap));
+    const skg_status status = skg_parallel(cells->count[2], begin_plane, &l);
     for (int64_t c = 0; c < total; c++)
-        leap[c] = differs(cells, words, c % across, c / across % cells->count[1], c / plane)
-                      ? 0
-                      : SKG_CELL_LEAP_MAX;
-    for (int64_t c = 0; c < total; c++)
-        if (leap[c])
-            leap[c] = (uint8_t)nearest(cells, leap, c % across, c / across % cells->count[1], c / plane, 1);
+        if (l.leap[c])
+            l.leap[c] =
+                (uint8_t)nearest(cells, l.leap, c % across, c / across % cells->count[1], c / plane, 1);
     for (int64_t c = total - 1; c >= 0; c--)
-        if (leap[c]) {
-            const int64_t own = nearest(cells, leap, c % across, c / across % cells->count[1], c / plane, -1);
-            if (own < leap[c]) leap[c] = (uint8_t)own;
+        if (l.leap[c]) {
+            const int64_t own =
+                nearest(cells, l.leap, c % across, c / across % cells->count[1], c / plane, -1);
+            if (own < l.leap[c]) l.leap[c] = (uint8_t)own;
         }
     for (int64_t c = 0; c < total; c++)
-        if (SKG_CELL_KIND(words[c]) == SKG_CELL_MEDIUM) words[c] |= (uint32_t)leap[c] << 24;
-    skg_free(&leap);
-    return SKG_OK;
+        if (SKG_CELL_KIND(words[c]) == SKG_CELL_MEDIUM) words[c] |= (uint32_t)l.leap[c] << 24;
+    skg_free(&l.leap);
+    return status;
 }
 
 /* --- all of it */
@@ -379,18 +418,32 @@ static skg_status plant(planting *p) {
     return find_leaps(p->cells, p->tree.of);
 }
 
+/* A corner, the normal, and vectors whose products with a place relative to the corner are its shares of both edges. */
+static void write_face(const skg_cells *cells, const double corners[9], float to[16]) {
+    double edge[2][3], normal[3], across[2][3];
+    for (int k = 0; k < 3; k++) {
+        const double mm = cells->size[k] / (double)cells->count[k];
+        to[k] = (float)(corners[k] * mm);
+        for (int e = 0; e < 2; e++) edge[e][k] = (corners[3 + 3 * e + k] - corners[k]) * mm;
+    }
+    skg_cross(edge[0], edge[1], normal);
+    const double square = skg_dot(normal, normal), per = square > 0 ? 1 / square : 0, length = sqrt(square);
+    skg_cross(edge[1], normal, across[0]);
+    skg_cross(normal, edge[0], across[1]);
+    for (int k = 0; k < 3; k++) {
+        to[4 + k] = length > 0 ? (float)(normal[k] / length) : 0;
+        to[8 + k] = (float)(across[0][k] * per);
+        to[12 + k] = (float)(across[1][k] * per);
+    }
+}
+
 static skg_status write_faces(const planting *p) {
     skg_cells *cells = p->cells;
     if (cells->traced == 0) cells->face_count = 0;
     SKG_TRY(skg_alloc(cells->face_count + 1, sizeof *cells->faces, "cells", &cells->faces));
     for (int64_t f = 0; f < cells->face_count; f++) {
-        float *to = cells->faces[f];
-        memcpy(&to[3], &p->more[p->part[f]], sizeof to[3]);
-        for (int k = 0; k < 3; k++) {
-            const double mm = cells->size[k] / (double)cells->count[k], *c = p->corners[f];
-            to[k] = (float)(c[k] * mm);
-            for (int e = 0; e < 2; e++) to[4 + 4 * e + k] = (float)(c[3 + 3 * e + k] * mm) - to[k];
-        }
+        memcpy(&cells->faces[f][3], &p->more[p->part[f]], sizeof cells->faces[f][3]);
+        write_face(cells, p->corners[f], cells->faces[f]);
     }
     cells->face_count++; /* a buffer is not empty */
     return SKG_OK;

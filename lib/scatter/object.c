@@ -126,7 +126,7 @@ static void find_typical(const skg_spectrum *spectrum, const skg_scatter_physics
     for (int k = 0; k < SKG_SCATTER_RANK; k++) mu[k] = (double)p->total[row][k];
 }
 
-/* Smears no more of the cells than a third of the tolerance allows in the primary. */
+/* Smears no more of the cells than the tolerance allows in the primary, whose error is two to three times that of the scatter. */
 static skg_status trace(const skg_scatter_work *work, const skg_cell_parts *parts,
                         skg_scatter_object *object) {
     const skg_recipe *recipe = work->recipe;
@@ -138,8 +138,9 @@ static skg_status trace(const skg_scatter_work *work, const skg_cell_parts *part
         SKG_TRY(skg_cells_trace(parts, mu, limit, &object->cells));
         SKG_TRY(skg_cells_judge(parts, &object->physics, recipe->spectrum, work->view, &object->cells,
                                 &object->primary_error));
-        if (limit == 0 || object->cells.smeared == 0 || object->primary_error <= tolerance / 3) return SKG_OK;
-        limit = limit > LEAST_LIMIT ? limit / 4 : 0;
+        if (limit == 0 || object->cells.smeared == 0 || parts->priority || object->primary_error <= tolerance)
+            return SKG_OK;
+        limit = limit > LEAST_LIMIT ? limit / 1.4 : 0;
     }
 }
 

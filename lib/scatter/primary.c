@@ -181,10 +181,10 @@ static double verdict(const judge *j) {
         for (int i = 0; i < BLOCK * BLOCK; i++) {
             const double *of =
                 j->passed[(b / BLOCKS * BLOCK + i / BLOCK) * RAYS + b % BLOCKS * BLOCK + i % BLOCK];
-            means[0] += of[0] / (BLOCK * BLOCK), means[1] += of[1] / (BLOCK * BLOCK);
+            means[0] += of[0], means[1] += of[1];
+            if (of[0] < 1 || of[1] < 1) passed += of[0], stopped += 1 - of[0]; /* in the shadow */
         }
         off += fabs(means[1] - means[0]);
-        if (means[0] < 1) passed += means[0], stopped += 1 - means[0];
     }
     const double least = fmin(passed, stopped);
     return least > 0 ? off / least : 0;

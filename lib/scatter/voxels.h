@@ -46,7 +46,7 @@ typedef struct {
     /* As photons read them (walk.clh), by skg_cells_trace: */
     skg_mix4 *media; /* [media_count] mixtures per mm, and what faces of each part add */
     uint32_t *tree;  /* [tree_count] words of the cells; bricks of finer cells; lists of faces */
-    float (*faces)[12];
+    float (*faces)[16];
     int64_t media_count, tree_count, face_count;
     int64_t smeared, traced; /* cells that hold the mixture of several media, and those whose faces are met */
 } skg_cells;

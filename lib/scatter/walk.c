@@ -20,19 +20,20 @@ static void add(const float *medium, double factor, double *sum) {
 }
 
 /* Whether a face is crossed: 1 into the part, -1 out of it. */
-static int meets(const float face[12], const double from[3], const double to[3], double *share) {
-    double way[3], across[3], up[3], off[3], a[3], b[3];
+static int meets(const float face[16], const double from[3], const double to[3], double *share) {
+    double reach = 0, height = 0, u = 0, v = 0;
     for (int k = 0; k < 3; k++) {
-        way[k] = to[k] - from[k], off[k] = from[k] - (double)face[k];
-        a[k] = (double)face[4 + k], b[k] = (double)face[8 + k];
+        reach += (double)face[4 + k] * (to[k] - from[k]);
+        height -= (double)face[4 + k] * (from[k] - (double)face[k]);
     }
-    skg_cross(way, b, across);
-    const double reach = skg_dot(a, across);
     if (reach == 0) return 0;
-    skg_cross(off, a, up);
-    const double u = skg_dot(off, across) / reach, v = skg_dot(way, up) / reach;
-    *share = skg_dot(b, up) / reach;
-    return u >= 0 && v >= 0 && u + v <= 1 && *share > 0 && *share <= 1 ? (reach > 0 ? 1 : -1) : 0;
+    *share = height / reach;
+    if (!(*share > 0 && *share <= 1)) return 0;
+    for (int k = 0; k < 3; k++) {
+        const double at = from[k] + *share * (to[k] - from[k]) - (double)face[k];
+        u += (double)face[8 + k] * at, v += (double)face[12 + k] * at;
+    }
+    return u >= 0 && v >= 0 && u + v <= 1 ? (reach < 0 ? 1 : -1) : 0;
 }
 
 static void across_faces(const skg_cells *cells, const uint32_t *list, const double from[3],
