@@ -71,8 +71,8 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
             if (!wanted[l]) continue;
             if (bands[l] < 0) continue;
             image += bands[l];
-            skg_deposit(s->sums, image * images + places[l], weights[l] * signal.of[l].x);
-            if (s->args->noise) skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].y);
+            skg_deposit(s->sums, image * images + places[l], weights[l] * signal.of[l].of[0].x);
+            if (s->args->noise) skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].of[0].y);
         }
     }
 }
@@ -122,7 +122,7 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_fv within = skg_within(s->args, p->at, way, distance, &enter);
         const skg_fv length = seen ? within : (skg_fv)(0.0f);
         skg_march(s->args, &s->object, p->at, way, enter, length, &sums);
-        if (s->args->world_around) skg_add_world(s->args, distance - length, &sums);
+        if (s->args->world_around) skg_add_world(&s->object, distance - length, &sums);
         skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
         const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
@@ -261,8 +261,8 @@ static skg_fv skg_reach_cells(const skg_scattering *s, const skg_photons *p, skg
     const skg_fv start = skg_dot3(p->at, p->way) - (skg_fv)(s->args->world_start);
     mm = p->order == (skg_uv)(0) ? enter + start : enter;
 #endif
-    for (int l = 0; l < SKG_WIDE; l++) before.of[l] = (float4)(0.0f);
-    skg_add_world(s->args, mm, &before);
+    for (int l = 0; l < SKG_WIDE; l++) skg_mix_clear(&before.of[l]);
+    skg_add_world(&s->object, mm, &before);
     return skg_passes(s, &before, p->kev);
 }
 
@@ -290,7 +290,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     skg_fv arrives = passed;
     if (s->args->world_around) {
         skg_mixtures around = sums;
-        skg_add_world(s->args, p->reach - length, &around);
+        skg_add_world(&s->object, p->reach - length, &around);
         arrives = skg_passes(s, &around, p->kev);
     }
     skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,

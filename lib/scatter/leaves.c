@@ -391,11 +391,14 @@ static skg_status find_leaps(const skg_cells *cells, uint32_t *words) {
 
 static skg_status prepare(planting *p) {
     const int64_t parts = p->parts->count;
+    static const skg_cell_amount nothing;
+    uint32_t world = 0;
     SKG_TRY(skg_cells_amounts(p->parts, &p->amounts));
+    SKG_TRY(skg_media_find(&p->media, nothing, &world)); /* the first */
     SKG_TRY(skg_alloc(parts, sizeof *p->more, "cells", &p->more));
     SKG_TRY(skg_alloc(parts, sizeof *p->seen, "cells", &p->seen));
     for (int64_t i = 0; i < parts; i++) {
-        skg_mix4 more;
+        skg_mixture more;
         for (int k = 0; k < SKG_SCATTER_RANK; k++) {
             p->amounts[i][k] *= p->parts->sign[i];
             more[k] = (float)((double)p->amounts[i][k] / SKG_CELL_UNIT);

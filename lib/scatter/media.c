@@ -55,7 +55,7 @@ skg_status skg_media_add(skg_media *m, const float *mixture, uint32_t *number) {
 }
 
 skg_status skg_media_find(skg_media *m, const skg_cell_amount amounts, uint32_t *number) {
-    skg_mix4 mixture;
+    skg_mixture mixture;
     SKG_TRY(spread(m));
     const int64_t s = slot_of(m, amounts);
     if (m->slot[s]) {

@@ -9,7 +9,7 @@
 typedef struct {
     const double *base; /* of skg_cell_parts, or NULL */
     int64_t count, capacity, slots;
-    skg_mix4 *mixtures;       /* [count] */
+    skg_mixture *mixtures;       /* [count] */
     skg_cell_amount *amounts; /* [count] of those that were found by them */
     uint32_t *slot;           /* [slots] 1 + the number of a medium, 0: free */
 } skg_media;

@@ -15,6 +15,10 @@ static const double LOWEST = 0.25;
  * for the two or three of them that matter most. */
 static const double SMEARED = 3, LEAST_LIMIT = 0.02;
 
+/* Shares of the errors of the primary and of the worst material that the scatter has: the generated thorax, 1.4 % of 3.5 %; ten materials
+ * with K edges and four coefficients, 19 % of 85 %, twelve of them and bones, 1.3 % of 44 %. */
+static const double OF_PRIMARY = 0.4, OF_MIXTURES = 0.2, EXACT = 1e-5;
+
 /* Where a number of histories is given. */
 static const double DEFAULT_TOLERANCE = 0.01;
 
@@ -173,6 +177,11 @@ cleanup:
     skg_free(&p.materials);
     skg_free(&p.of_part);
     return status;
+}
+
+double skg_scatter_systematic(const skg_scatter_object *object) {
+    const double mixed = object->physics.attenuation_error > EXACT ? object->physics.attenuation_error : 0;
+    return hypot(OF_PRIMARY * object->primary_error, OF_MIXTURES * mixed);
 }
 
 void skg_scatter_object_free(skg_scatter_object *object) {

@@ -17,6 +17,8 @@ static const double MIXTURE_ERROR = 0.05;
  * (docs/scatter.md). */
 static const double CELLS_ERROR = 0.05;
 
+static const double MOST_OF_IT = 0.7;
+
 /* What the scatter of a frame depends on. */
 static skg_digest key_of(const skg_scatter_work *work) {
     const skg_recipe *recipe = work->recipe;
@@ -40,7 +42,8 @@ typedef struct {
     double *values; /* [batches][rows][columns] workspace */
     int64_t columns, rows;
     int32_t channels, images;
-    skg_cosines all;       /* of all images together */
+    double systematic; /* share of the mean that no number of histories takes away: skg_scatter_systematic */
+    skg_cosines all;   /* of all images together */
     skg_cosines *channel;  /* [channels] of its layers together */
     skg_cosines *image;    /* [images] with several layers */
     skg_cosines *variance; /* [images] with noise */
@@ -62,21 +65,27 @@ static void add_planes(const arrived *a, int32_t image, int32_t step, int first,
 static skg_status fit(arrived *a, skg_cosines *cosines) {
     const skg_arrivals arrivals = {SKG_SCATTER_BATCHES, a->columns, a->rows, a->values};
     skg_cosines_free(cosines);
-    return skg_cosines_fit(&arrivals, cosines);
+    SKG_TRY(skg_cosines_fit(&arrivals, cosines));
+    const double off = a->systematic * cosines->mean;
+    cosines->bias += off * off;
+    cosines->sigma = hypot(cosines->sigma, off);
+    return SKG_OK;
 }
 
 /* Follows histories until the error is what was asked for. */
 static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tracing *t, arrived *a) {
     const int64_t batches = SKG_SCATTER_BATCHES;
     int64_t end = asked->histories ? (asked->histories + batches - 1) / batches : FIRST;
+    /* If cells and materials are off by nearly all that is asked for, histories do not make up for it. */
+    const double tolerance = hypot(asked->tolerance, fmax(a->systematic - MOST_OF_IT * asked->tolerance, 0));
     for (;;) {
         SKG_TRY(skg_trace_until(context, t, end));
         SKG_TRY(skg_trace_read(context, t, a->sums));
         add_planes(a, 0, 1, 0, SKG_SCATTER_KINDS);
         SKG_TRY(fit(a, &a->all));
         const double error = a->all.mean > 0 ? a->all.sigma / a->all.mean : 0;
-        if (asked->histories || error <= asked->tolerance || end >= SKG_SCATTER_HISTORIES) break;
-        end = skg_trace_next(end, error, asked->tolerance);
+        if (asked->histories || error <= tolerance || end >= SKG_SCATTER_HISTORIES) break;
+        end = skg_trace_next(end, error, tolerance);
     }
     return SKG_OK;
 }
@@ -194,6 +203,7 @@ static skg_status compute(skg_context *context, const skg_scatter_work *work,
     skg_status status = SKG_OK;
     const skg_shown_scatter nothing = {.work = work};
     SKG_TRY_CLEANUP(begin(work, &a));
+    a.systematic = skg_scatter_systematic(object);
     if (object->cells.mixtures)
         SKG_TRY_CLEANUP(trace(context, work, object, s, &a));
     else

@@ -40,11 +40,11 @@ typedef int64_t skg_cell_amount[SKG_SCATTER_RANK];
 typedef struct {
     int64_t count[3];              /* cells along x, y, z; along x and y as many */
     double low[3], size[3];        /* mm, of the box of all parts */
-    skg_mix4 *mixtures;            /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    skg_mixture *mixtures;            /* [z][y][x] coefficients of skg_scatter_physics per mm */
     skg_cell_amount *known;        /* [z][y][x] what is at one place of each, beyond the base: SKG_KNOWN */
     double mean[SKG_SCATTER_RANK]; /* over the cells */
     /* As photons read them (walk.clh), by skg_cells_trace: */
-    skg_mix4 *media; /* [media_count] mixtures per mm, and what faces of each part add */
+    skg_mixture *media; /* [media_count] mixtures per mm, and what faces of each part add */
     uint32_t *tree;  /* [tree_count] words of the cells; bricks of finer cells; lists of faces */
     float (*faces)[16];
     int64_t media_count, tree_count, face_count;
@@ -119,6 +119,10 @@ typedef struct {
     skg_cells cells;
     double primary_error; /* skg_cells_judge */
 } skg_scatter_object;
+
+/* How far the scatter may be off for what stands for the object, over its mean: cells with the mixture of several media, whose primary is
+ * off by two to three times as much, and coefficients that stand for more compositions. */
+double skg_scatter_systematic(const skg_scatter_object *object);
 
 /* Makes both. Free the object also after a failure. */
 skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_object *object);

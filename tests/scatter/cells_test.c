@@ -73,7 +73,7 @@ static const float *cell_at(const skg_cells *cells, double x, double y, double z
     return cells->mixtures[(index[2] * cells->count[1] + index[1]) * cells->count[0] + index[0]];
 }
 
-static const double some[] = {0.02, -0.7, 1, 0};
+static const double some[SKG_SCATTER_RANK] = {0.02, -0.7, 1, 0};
 
 START_TEST(a_box_fills_its_cells) {
     subject s = {0};
@@ -93,7 +93,8 @@ START_TEST(a_box_fills_its_cells) {
 END_TEST
 
 START_TEST(an_inner_part_replaces_the_outer_one) {
-    static const double less[] = {-0.02, 0.7, -1, 2}; /* of the outer one's coefficients nothing is left */
+    static const double less[SKG_SCATTER_RANK] = {-0.02, 0.7, -1,
+                                                  2}; /* of the outer one's coefficients nothing is left */
     subject s = {0};
     add(&s, solid_box(30, 30, 30), some);
     add(&s, solid_box(10, 10, 10), less);
@@ -102,10 +103,7 @@ START_TEST(an_inner_part_replaces_the_outer_one) {
     compare_integrals(&s, &cells, 1e-6); /* the faces lie between cells */
     for (int k = 0; k < SKG_SCATTER_RANK; k++) {
         const double inside = (double)cell_at(&cells, 4.9, -4.9, 4.9)[k];
-        if (k < 3)
-            ck_assert_double_eq(inside, 0);
-        else
-            ck_assert_double_eq(inside, 2);
+        ck_assert_double_eq(inside, k == 3 ? 2 : 0);
         ck_assert_double_eq_tol((double)cell_at(&cells, 5.1, 0, 0)[k], some[k], FLT_EPSILON);
     }
     skg_cells_free(&cells);
@@ -140,7 +138,8 @@ END_TEST
 
 /* Void within a shell is exactly nothing, and so it is where an inner part takes all of the outer one away. */
 START_TEST(void_is_nothing) {
-    static const double all[] = {1 / 3.0, 0.1, 0.7, 1e-3}, none[] = {-1 / 3.0, -0.1, -0.7, -1e-3};
+    static const double all[SKG_SCATTER_RANK] = {1 / 3.0, 0.1, 0.7, 1e-3},
+                        none[SKG_SCATTER_RANK] = {-1 / 3.0, -0.1, -0.7, -1e-3};
     for (int nested = 0; nested < 2; nested++) {
         subject s = {0};
         add(&s, nested ? solid_blob(30, 48, 24, 7) : solid_shell(30, 20, 48, 24), all);
@@ -173,7 +172,7 @@ START_TEST(mirrored_parts_are_solid_too) {
     for (int64_t x = -8; x <= 8; x++)
         for (int64_t z = -8; z <= 8; z++)
             ck_assert_mem_eq(cell_at(&own, (double)x, 0.1, (double)z),
-                             cell_at(&other, -(double)x, 0.1, (double)z), sizeof(skg_mix4));
+                             cell_at(&other, -(double)x, 0.1, (double)z), sizeof(skg_mixture));
     skg_cells_free(&own);
     skg_cells_free(&other);
     drop(&s);
@@ -184,7 +183,7 @@ END_TEST
 /* Two boxes that overlap from x = 0 to 10: with equal priorities both count there, else the higher one alone. A child inside
  * the lower one falls with it. */
 START_TEST(priorities_decide_where_parts_overlap) {
-    static const double a[] = {1, 0, 0, 0}, b[] = {0, 1, 0, 0};
+    static const double a[SKG_SCATTER_RANK] = {1, 0, 0, 0}, b[SKG_SCATTER_RANK] = {0, 1, 0, 0};
     static const int32_t equal[] = {3, 3}, first[] = {4, 3}, second[] = {3, 4};
     subject s = {0};
     add(&s, solid_box(20, 20, 20), a); /* x from -10 to 10 */
@@ -225,7 +224,7 @@ END_TEST
 /* Sums of cells along z are the path lengths of parallel rays where the columns are. */
 START_TEST(columns_are_path_lengths_of_images) {
     enum { SIDE = 64 * SKG_CELL_COLUMNS };
-    static const double one[] = {1, 0, 0, 0};
+    static const double one[SKG_SCATTER_RANK] = {1, 0, 0, 0};
     subject s = {0};
     add(&s, solid_blob(20, 60, 30, 5), one);
     skg_cells cells = make(&s, 0);
@@ -268,7 +267,7 @@ static void along(const skg_cells *cells, const double *from, const double *to, 
     skg_cells_along(cells, ends[0], ends[1], mm);
 }
 
-static const double unit_mu[SKG_SCATTER_RANK] = {1, 1, 1, 1};
+static const double unit_mu[SKG_SCATTER_RANK] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
 
 static void trace_all(const subject *s, skg_cells *cells) {
     const skg_cell_parts parts = {.count = s->count,
@@ -280,7 +279,7 @@ static void trace_all(const subject *s, skg_cells *cells) {
 
 /* A foil of .05 mm and a box of a millimetre in a room of 2 m: photons meet their faces, in any direction, from within as from outside. */
 START_TEST(thin_parts_in_a_room_have_their_lengths) {
-    static const double dense[] = {10, 0, 0, 0}, thin[] = {0, 1, 0, 0};
+    static const double dense[SKG_SCATTER_RANK] = {10, 0, 0, 0}, thin[SKG_SCATTER_RANK] = {0, 1, 0, 0};
     static const double turn[12] = {0.8, 0, 0.6, 100, 0, 1, 0, 0, -0.6, 0, 0.8, 30};
     subject s = {0};
     add(&s, solid_box(2000, 2000, 20), thin);
@@ -318,7 +317,8 @@ END_TEST
 
 /* Many faces in few cells: bricks. A sphere's chords, and what lies in it. */
 START_TEST(many_faces_in_a_cell_make_a_brick) {
-    static const double ball[] = {1, 0, 0, 0}, inner[] = {-1, 2, 0, 0}, far[] = {0, 0, 1, 0};
+    static const double ball[SKG_SCATTER_RANK] = {1, 0, 0, 0}, inner[SKG_SCATTER_RANK] = {-1, 2, 0, 0},
+                        far[SKG_SCATTER_RANK] = {0, 0, 1, 0};
     subject s = {0};
     add(&s, solid_sphere(6, 96, 48), ball);
     add(&s, solid_sphere(2, 96, 48), inner);

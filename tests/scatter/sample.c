@@ -22,7 +22,7 @@ static const char sampling_kernel[] =
     "    const skg_place3 way = {(skg_fv)(0.48f), (skg_fv)(-0.6f), (skg_fv)(0.64f)};\n"
     "    skg_photons p = {.at = {middle[0], middle[1], middle[2]}, .way = way, .kev = (skg_fv)(kev), .weight = (skg_fv)(1.0f),\n"
     "                     .order = (skg_uv)(0u), .alive = (skg_intv)(-1), .changed = (skg_intv)(0)};\n"
-    "    for (int l = 0; l < SKG_WIDE; l++) number[l] = first + l, i.medium.of[l] = media[SKG_CELL_MEDIUM_OF(tree[cell])];\n"
+    "    for (int l = 0; l < SKG_WIDE; l++) number[l] = first + l, skg_mix_clear(&i.medium.of[l]), skg_mix_add(media, SKG_CELL_MEDIUM_OF(tree[cell]), 1.0f, &i.medium.of[l]);\n"
     "    const skg_intv numbers = SKG_LOAD_V(intv, number);\n"
     "    const skg_fv place = skg_energy_place(&args, p.kev);\n"
     "    i.total = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.medium);\n"
