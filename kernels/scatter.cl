@@ -227,8 +227,9 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
         fma((skg_fv)(args->field_u[2]), u, fma((skg_fv)(args->field_v[2]), v, (skg_fv)(args->field[2])))};
 #if SKG_PARALLEL
     const skg_place3 way = source; /* the beam's direction */
-    const skg_place3 begin = {fma(way.x, (skg_fv)(-args->far), on.x), fma(way.y, (skg_fv)(-args->far), on.y),
-                              fma(way.z, (skg_fv)(-args->far), on.z)};
+    skg_place3 begin = {fma(way.x, (skg_fv)(-args->far), on.x), fma(way.y, (skg_fv)(-args->far), on.y),
+                        fma(way.z, (skg_fv)(-args->far), on.z)};
+    if (args->world_around) begin = skg_on(begin, way, (skg_fv)(args->world_start) - skg_dot3(begin, way));
     const skg_fv share = (skg_fv)(1.0f);
 #else
     const skg_place3 to = {on.x - source.x, on.y - source.y, on.z - source.z}, begin = source;
@@ -253,17 +254,23 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     p->alive |= fresh;
 }
 
-/* The share of photons that come to the cells: those that start within them have no way there. */
-static skg_fv skg_reach_cells(const skg_scattering *s, const skg_photons *p, skg_fv enter) {
-    skg_mixtures before;
-    skg_fv mm = enter;
-#if SKG_PARALLEL
-    const skg_fv start = skg_dot3(p->at, p->way) - (skg_fv)(s->args->world_start);
-    mm = p->order == (skg_uv)(0) ? enter + start : enter;
-#endif
-    for (int l = 0; l < SKG_WIDE; l++) skg_mix_clear(&before.of[l]);
-    skg_add_world(&s->object, mm, &before);
-    return skg_passes(s, &before, p->kev);
+/* Photons interact after `depth`, within what is around the cells, or in them. mu: 1/mm per coefficient; around: of the world */
+static void skg_interact(const skg_scattering *s, skg_photons *p, const skg_mixtures *mu, skg_fv around, skg_fv before, skg_fv enter,
+                         skg_fv length, skg_fv within, skg_fv depth, skg_mixtures *medium) {
+    const skg_fv first = before * around, inside = depth - first, none = (skg_fv)(0.0f);
+    const skg_intv ahead = inside < none, behind = ~ahead & (inside > within) & (around > none);
+    const skg_intv here = p->alive & ~ahead & ~behind;
+    skg_fv on = enter + skg_collide(s->args, &s->object, p->at, p->way, enter, here ? length : none, mu, min(inside, within), medium);
+    on = ahead ? depth / max(around, (skg_fv)(1e-30f)) : behind ? before + length + (inside - within) / max(around, (skg_fv)(1e-30f)) : on;
+    p->at = skg_on(p->at, p->way, on);
+    if (!skg_any(ahead | behind)) return;
+    int outside[SKG_WIDE];
+    SKG_STORE_V(intv, ahead | behind, outside);
+    for (int l = 0; l < SKG_WIDE; l++) {
+        if (!outside[l]) continue;
+        skg_mix_clear(&medium->of[l]);
+        skg_mix_add(s->object.media, 0, 1.0f, &medium->of[l]);
+    }
 }
 
 /* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
@@ -285,18 +292,21 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv length = p->alive ? within : (skg_fv)(0.0f);
     skg_march(s->args, &s->object, p->at, p->way, enter, length, &sums);
     const skg_fv place = skg_energy_place(s->args, p->kev);
-    const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
-    const skg_fv passed = skg_exp(-depth);
-    skg_fv arrives = passed;
+    const skg_fv within_cells = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
+    skg_fv depth = within_cells, around = (skg_fv)(0.0f), before = enter, behind = (skg_fv)(0.0f);
     if (s->args->world_around) {
-        skg_mixtures around = sums;
-        skg_add_world(&s->object, p->reach - length, &around);
-        arrives = skg_passes(s, &around, p->kev);
+        skg_mixtures world;
+        for (int l = 0; l < SKG_WIDE; l++) skg_mix_clear(&world.of[l]);
+        skg_add_world(&s->object, (skg_fv)(1.0f), &world);
+        around = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &world);
+        skg_around(s->args, p->at, p->way, p->reach, enter, length, &before, &behind);
+        depth += around * (before + behind);
     }
+    const skg_fv passed = skg_exp(-depth);
+    const skg_fv arrives = s->args->world_around ? skg_exp(-fma(around, p->reach - length, within_cells)) : passed;
     skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,
               p->weight * p->share * arrives);
-    if (s->args->world_around) p->weight *= skg_reach_cells(s, p, enter);
-    /* Somewhere within the object. */
+    /* Somewhere on the way. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
     p->alive &= depth > (skg_fv)(1e-7f);
     const skg_fv chosen = SKG_DRAW(a[1], 3, 9), share = (skg_fv)(SKG_SCATTER_EVEN);
@@ -308,9 +318,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv fall = skg_exp(-until);
     p->weight *= fall / (share / max(depth, (skg_fv)(1e-7f)) +
                          ((skg_fv)(1.0f) - share) * fall / max((skg_fv)(1.0f) - passed, (skg_fv)(1e-7f)));
-    const skg_fv still = p->alive ? length : (skg_fv)(0.0f);
-    const skg_fv on = skg_collide(s->args, &s->object, p->at, p->way, enter, still, &mu, min(until, depth), &i.medium);
-    p->at = skg_on(p->at, p->way, enter + on);
+    skg_interact(s, p, &mu, around, before, enter, length, within_cells, min(until, depth), &i.medium);
     p->order += 1;
     i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.medium);
     i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.medium);

@@ -315,6 +315,7 @@ typedef struct {
     float period, strip, height; /* of the strips, mm */
     float anode[3], heel_low,
         heel_per; /* heel_rows > 0: across its face; cosine of the first row of the table, rows for a cosine of 1 */
+    float around_low[3], around_high[3]; /* world_around: of the box in which the world scatters */
     float world_start; /* world_around: of a parallel beam where the world begins, mm along it */
     float central[3], fan[3]; /* fan_rows > 0: to the detector's middle; where the angles of the fan grow */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
@@ -394,7 +395,7 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 59 * 4 + 24 * 4 && sizeof(skg_scattered_args) == 80,
+_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 24 * 4 && sizeof(skg_scattered_args) == 80,
                "layout of scatter");
 #endif
 #endif
