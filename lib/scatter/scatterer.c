@@ -13,8 +13,7 @@ enum { FIRST = 512 };
 /* Of the attenuation or of angles in a material, above which a scene is warned of. */
 static const double MIXTURE_ERROR = 0.05;
 
-/* Rooms whose scatter is right to the error that is stated have less than this, those that were found wrong by 9 % and more have more
- * (docs/scatter.md). */
+/* Of the primary, above which cells are warned of: 2 % of the scatter. */
 static const double CELLS_ERROR = 0.05;
 
 static const double MOST_OF_IT = 0.7;
@@ -223,9 +222,9 @@ static void warn_of_mixtures(const skg_context *context, const skg_scatter_physi
     s->warned = 1;
     skg_log(
         context, SKG_LOG_WARNING,
-        "scatter: four coefficients a cell stand for %" PRId64
+        "scatter: twelve coefficients a cell stand for %" PRId64
         " materials, with errors of up to %.2g %% in attenuation and %.2g %% in angles; fewer compositions are mixed "
-        "better, and up to four exactly",
+        "better, and up to twelve exactly",
         physics->materials, 100 * physics->attenuation_error, 100 * physics->error);
 }
 
@@ -235,9 +234,9 @@ static void warn_of_cells(const skg_context *context, const skg_scatter_object *
     s->cells_warned = 1;
     skg_log(
         context, SKG_LOG_WARNING,
-        "scatter: cells of %.3g x %.3g x %.3g mm pass %.2g %% more or less of the primary than the parts do, because parts are "
-        "thinner or smaller; the scatter may be wrong by as much, and its stated error does not hold. Leave out parts that are far "
-        "from the beam, or give Scatter a smaller Voxel if no part is a thin dense layer",
+        "scatter: cells of %.3g x %.3g x %.3g mm pass %.2g %% more or less of the primary than the parts do, because parts of "
+        "different priority, or clipped ones, are thinner or smaller; the scatter may be wrong by half as much, which is in its stated "
+        "error. Give these parts one priority where they do not overlap, or Scatter a smaller Voxel",
         cells->size[0] / (double)cells->count[0], cells->size[1] / (double)cells->count[1],
         cells->size[2] / (double)cells->count[2], 100 * object->primary_error);
 }
