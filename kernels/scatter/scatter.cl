@@ -6,7 +6,8 @@
  * Carlo rendering, SIGGRAPH 1995), so that contributions stay finite however near the detector is. */
 typedef struct {
     const skg_scatter_args *args;
-    __global const float4 *cells, *energies, *momenta;
+    skg_object object;
+    __global const float4 *energies, *momenta;
     __global const float *detector;
     __global uint *sums; /* of the batch */
 } skg_scattering;
@@ -22,9 +23,9 @@ typedef struct {
     skg_intv alive, changed; /* -1 or 0; changed: a Compton scattering was among the interactions */
 } skg_photons;
 
-/* An interaction: what stands in its cell. In 1/mm, and what normalises the shapes. */
+/* An interaction: what stands where it is. In 1/mm, and what normalises the shapes. */
 typedef struct {
-    skg_mixtures cell;
+    skg_mixtures medium;
     skg_fv total, compton, rayleigh, compton_shape, rayleigh_shape;
 } skg_interaction;
 
@@ -70,8 +71,8 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
             if (!wanted[l]) continue;
             if (bands[l] < 0) continue;
             image += bands[l];
-            skg_deposit(s->sums, image * images + places[l], weights[l] * signal.of[l].x);
-            if (s->args->noise) skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].y);
+            skg_deposit(s->sums, image * images + places[l], weights[l] * signal.of[l].of[0].x);
+            if (s->args->noise) skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].of[0].y);
         }
     }
 }
@@ -89,8 +90,8 @@ static void skg_likely(const skg_scattering *s, const skg_interaction *i, skg_fv
                              (skg_fv)((float)s->args->momenta - 1.001f));
     const skg_fv klein = (skg_fv)(0.5f) * ratio * ratio * (ratio + one / ratio - less * (one + cosine));
     const skg_fv thomson = (skg_fv)(0.5f) * fma(cosine, cosine, one);
-    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->cell),
-                 f_of = skg_value(s->momenta, 2, 1, place, &i->cell);
+    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->medium),
+                 f_of = skg_value(s->momenta, 2, 1, place, &i->medium);
     const skg_fv tiny = (skg_fv)(1e-30f);
     *compton = i->compton * klein * s_of / max(i->compton_shape * i->total, tiny);
     *rayleigh = i->rayleigh * thomson * f_of / max(i->rayleigh_shape * i->total, tiny);
@@ -105,7 +106,7 @@ static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, skg_
 
 /* Contributions of an interaction to places of the detector, one in each of SKG_SCATTER_SIDE^2 equal pieces. */
 static void skg_contribute(const skg_scattering *s, const skg_photons *p, const skg_sight *sight,
-                           const skg_interaction *i, skg_fv across, skg_fv down, skg_fv jitter) {
+                           const skg_interaction *i, skg_fv across, skg_fv down) {
     const float side = 1.0f / SKG_SCATTER_SIDE;
     for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
         const skg_fv u = (across + (skg_fv)((float)(k % SKG_SCATTER_SIDE))) * side;
@@ -118,9 +119,10 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         const skg_place3 way = skg_sight_way(s->args, sight, x, y, distance);
         const skg_intv seen = p->alive & sight->ahead;
         const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
-        const skg_fv length = skg_within(s->args, p->at, way, distance, &enter);
-        skg_march(s->args, s->cells, p->at, way, enter, length, jitter, &sums);
-        if (s->args->world_around) skg_add_world(s->args, distance - length, &sums);
+        const skg_fv within = skg_within(s->args, p->at, way, distance, &enter);
+        const skg_fv length = seen ? within : (skg_fv)(0.0f);
+        skg_march(s->args, &s->object, p->at, way, enter, length, &sums);
+        if (s->args->world_around) skg_add_world(&s->object, distance - length, &sums);
         skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
         const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
@@ -225,8 +227,9 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
         fma((skg_fv)(args->field_u[2]), u, fma((skg_fv)(args->field_v[2]), v, (skg_fv)(args->field[2])))};
 #if SKG_PARALLEL
     const skg_place3 way = source; /* the beam's direction */
-    const skg_place3 begin = {fma(way.x, (skg_fv)(-args->far), on.x), fma(way.y, (skg_fv)(-args->far), on.y),
-                              fma(way.z, (skg_fv)(-args->far), on.z)};
+    skg_place3 begin = {fma(way.x, (skg_fv)(-args->far), on.x), fma(way.y, (skg_fv)(-args->far), on.y),
+                        fma(way.z, (skg_fv)(-args->far), on.z)};
+    if (args->world_around) begin = skg_on(begin, way, (skg_fv)(args->world_start) - skg_dot3(begin, way));
     const skg_fv share = (skg_fv)(1.0f);
 #else
     const skg_place3 to = {on.x - source.x, on.y - source.y, on.z - source.z}, begin = source;
@@ -251,17 +254,23 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
     p->alive |= fresh;
 }
 
-/* The share of photons that come to the cells: those that start within them have no way there. */
-static skg_fv skg_reach_cells(const skg_scattering *s, const skg_photons *p, skg_fv enter) {
-    skg_mixtures before;
-    skg_fv mm = enter;
-#if SKG_PARALLEL
-    const skg_fv start = skg_dot3(p->at, p->way) - (skg_fv)(s->args->world_start);
-    mm = p->order == (skg_uv)(0) ? enter + start : enter;
-#endif
-    for (int l = 0; l < SKG_WIDE; l++) before.of[l] = (float4)(0.0f);
-    skg_add_world(s->args, mm, &before);
-    return skg_passes(s, &before, p->kev);
+/* Photons interact after `depth`, within what is around the cells, or in them. mu: 1/mm per coefficient; around: of the world */
+static void skg_interact(const skg_scattering *s, skg_photons *p, const skg_mixtures *mu, skg_fv around, skg_fv before, skg_fv enter,
+                         skg_fv length, skg_fv within, skg_fv depth, skg_mixtures *medium) {
+    const skg_fv first = before * around, inside = depth - first, none = (skg_fv)(0.0f);
+    const skg_intv ahead = inside < none, behind = ~ahead & (inside > within) & (around > none);
+    const skg_intv here = p->alive & ~ahead & ~behind;
+    skg_fv on = enter + skg_collide(s->args, &s->object, p->at, p->way, enter, here ? length : none, mu, min(inside, within), medium);
+    on = ahead ? depth / max(around, (skg_fv)(1e-30f)) : behind ? before + length + (inside - within) / max(around, (skg_fv)(1e-30f)) : on;
+    p->at = skg_on(p->at, p->way, on);
+    if (!skg_any(ahead | behind)) return;
+    int outside[SKG_WIDE];
+    SKG_STORE_V(intv, ahead | behind, outside);
+    for (int l = 0; l < SKG_WIDE; l++) {
+        if (!outside[l]) continue;
+        skg_mix_clear(&medium->of[l]);
+        skg_mix_add(s->object.media, 0, 1.0f, &medium->of[l]);
+    }
 }
 
 /* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
@@ -272,7 +281,6 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     skg_interaction i;
     skg_sight sight;
     skg_fv enter;
-    int met[SKG_WIDE];
     skg_words(s->args, p->history, p->order, batch, 0, a);
     skg_words(s->args, p->history, p->order, batch, 1, b);
     const skg_intv first = p->order == (skg_uv)(0), second = p->order == (skg_uv)(1);
@@ -280,22 +288,25 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                         \
      : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                        \
               : skg_uniform(word))
-    const skg_fv length = skg_within(s->args, p->at, p->way, p->reach, &enter);
-    const skg_fv jitter = skg_uniform(a[0]);
-    skg_march(s->args, s->cells, p->at, p->way, enter, length, jitter, &sums);
+    const skg_fv within = skg_within(s->args, p->at, p->way, p->reach, &enter);
+    const skg_fv length = p->alive ? within : (skg_fv)(0.0f);
+    skg_march(s->args, &s->object, p->at, p->way, enter, length, &sums);
     const skg_fv place = skg_energy_place(s->args, p->kev);
-    const skg_fv depth = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
-    const skg_fv passed = skg_exp(-depth);
-    skg_fv arrives = passed;
+    const skg_fv within_cells = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
+    skg_fv depth = within_cells, around = (skg_fv)(0.0f), before = enter, behind = (skg_fv)(0.0f);
     if (s->args->world_around) {
-        skg_mixtures around = sums;
-        skg_add_world(s->args, p->reach - length, &around);
-        arrives = skg_passes(s, &around, p->kev);
+        skg_mixtures world;
+        for (int l = 0; l < SKG_WIDE; l++) skg_mix_clear(&world.of[l]);
+        skg_add_world(&s->object, (skg_fv)(1.0f), &world);
+        around = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &world);
+        skg_around(s->args, p->at, p->way, p->reach, enter, length, &before, &behind);
+        depth += around * (before + behind);
     }
+    const skg_fv passed = skg_exp(-depth);
+    const skg_fv arrives = s->args->world_around ? skg_exp(-fma(around, p->reach - length, within_cells)) : passed;
     skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,
               p->weight * p->share * arrives);
-    if (s->args->world_around) p->weight *= skg_reach_cells(s, p, enter);
-    /* Somewhere within the object. */
+    /* Somewhere on the way. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
     p->alive &= depth > (skg_fv)(1e-7f);
     const skg_fv chosen = SKG_DRAW(a[1], 3, 9), share = (skg_fv)(SKG_SCATTER_EVEN);
@@ -307,19 +318,16 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv fall = skg_exp(-until);
     p->weight *= fall / (share / max(depth, (skg_fv)(1e-7f)) +
                          ((skg_fv)(1.0f) - share) * fall / max((skg_fv)(1.0f) - passed, (skg_fv)(1e-7f)));
-    const skg_fv on =
-        skg_collide(s->args, s->cells, p->at, p->way, enter, length, jitter, &mu, min(until, depth), met);
-    p->at = skg_on(p->at, p->way, enter + on);
+    skg_interact(s, p, &mu, around, before, enter, length, within_cells, min(until, depth), &i.medium);
     p->order += 1;
-    for (int l = 0; l < SKG_WIDE; l++) i.cell.of[l] = s->cells[met[l]];
-    i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.cell);
-    i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.cell);
-    i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.cell);
-    i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.cell);
-    i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.cell);
+    i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.medium);
+    i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.medium);
+    i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.medium);
+    i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.medium);
+    i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.medium);
     p->alive &= i.total > (skg_fv)(0.0f);
     skg_see(s->args, p->at, &sight);
-    skg_contribute(s, p, &sight, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11), skg_uniform(b[3]));
+    skg_contribute(s, p, &sight, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11));
     const skg_fv angle = first ? skg_lattice(s, lattice, batch, p->history, 6) : skg_uniform(b[0]);
     const skg_fv turn = first ? skg_lattice(s, lattice, batch, p->history, 7) : skg_uniform(b[1]);
     const skg_fv process = first ? skg_lattice(s, lattice, batch, p->history, 8) : skg_uniform(b[2]);
@@ -328,7 +336,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     skg_roulette(s->args, p, skg_uniform(a[0]));
 }
 
-/* cells     [cells] coefficients of their mixtures
+/* media, tree, faces   the object (walk.clh)
  * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy; momenta: [momenta][2] S and F^2
  * angles    [rows][SKG_SCATTER_ANGLES + 1] cosines between which scattering is equally likely
  * beam      [bins] energy, share of the bins up to this one, weight, 1/mm of a bow-tie filter
@@ -338,7 +346,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
  * detector  [args.edges] edges of the bands, keV; then with args.cosines what layers record (arrive.clh); else NULL
  * sums      [batches][args.layers][bands][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
  * Work-items: those of a batch, then batches. */
-__kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
+__kernel void skg_scatter(skg_scatter_args args, __global const float4 *media, __global const uint *tree, __global const float4 *faces,
                           __global const float4 *energies, __global const float4 *momenta,
                           __global const float *angles, __global const float4 *beam,
                           __global const float *profiles, __global const float4 *spots, __constant const uint *lattice, __global const float *detector,
@@ -347,7 +355,7 @@ __kernel void skg_scatter(skg_scatter_args args, __global const float4 *cells,
     uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
     const uint end = min(next + (uint)args.each, (uint)args.end);
     const int images = args.layers * args.bands * SKG_SCATTER_PLANES * args.rows * args.columns;
-    const skg_scattering s = {&args, cells, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images};
+    const skg_scattering s = {&args, {media, tree, faces}, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images};
     skg_photons p = {
         .alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};
     uint numbers[SKG_WIDE];

@@ -160,7 +160,7 @@
     X(DETECT_VARIANCE, variance)
 
 #define SKG_ARGUMENTS_SCATTER(X) \
-    X(SCATTER, args) X(SCATTER, cells) X(SCATTER, energies) X(SCATTER, momenta) X(SCATTER, angles) X(SCATTER, beam) \
+    X(SCATTER, args) X(SCATTER, media) X(SCATTER, tree) X(SCATTER, faces) X(SCATTER, energies) X(SCATTER, momenta) X(SCATTER, angles) X(SCATTER, beam) \
     X(SCATTER, profiles) X(SCATTER, spots) X(SCATTER, lattice) X(SCATTER, detector) X(SCATTER, sums)
 
 #define SKG_ARGUMENTS_SCATTERED(X) \

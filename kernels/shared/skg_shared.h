@@ -270,8 +270,6 @@ typedef struct {
     skg_image_args image;
 
 /* Scattered photons (scatter.cl). */
-#define SKG_SCATTER_STEPS                                                                                    \
-    32 /* of a path through the object: 64 take half as long again; the thorax has 0.2 % too much with 32, 0.1 % with 64 */
 #define SKG_SCATTER_SIDE                                                                                     \
     2 /* an interaction contributes to a place in each of side x side pieces of the detector */
 #define SKG_SCATTER_ANGLES 256    /* equally likely ranges of the angle of scattering */
@@ -284,6 +282,18 @@ typedef struct {
 #define SKG_SCATTER_EVEN 0.5f  /* share of interactions whose place is even in the optical depth */
 #define SKG_SCATTER_LEAST 0.2f /* weights below this play roulette */
 #define SKG_SCATTER_FAR 1e6f   /* mm */
+
+/* Words of cells (walk.clh): a kind, and from bit 0 on a medium with its leap above, or the place of a brick or of a list of faces. */
+#define SKG_CELL_MEDIUM 0u
+#define SKG_CELL_FACES 1u
+#define SKG_CELL_BRICK 2u
+#define SKG_CELL_KIND(word) ((word) >> 30)
+#define SKG_CELL_PLACE(word) ((word)&0x3fffffffu)
+#define SKG_CELL_MEDIUM_OF(word) ((word)&0xffffffu)
+#define SKG_CELL_LEAP_MAX 63
+#define SKG_LIST_HEAD 5       /* of a list of faces: a medium, how many faces, a place with this medium; then their numbers */
+#define SKG_CELL_NUDGE 2e-5f  /* coarse cells: a line is looked up so far behind a boundary */
+#define SKG_CELL_MARGIN 4e-5f /* a face that is so near a boundary and along it is on it */
 
 /* Of skg_scatter. Places and vectors are in mm from the lowest corner of the cells. */
 typedef struct {
@@ -305,8 +315,8 @@ typedef struct {
     float period, strip, height; /* of the strips, mm */
     float anode[3], heel_low,
         heel_per; /* heel_rows > 0: across its face; cosine of the first row of the table, rows for a cosine of 1 */
-    float world[4],
-        world_start; /* world_around: coefficients around the cells; of a parallel beam where it begins, mm along it */
+    float around_low[3], around_high[3]; /* world_around: of the box in which the world scatters */
+    float world_start; /* world_around: of a parallel beam where the world begins, mm along it */
     float central[3], fan[3]; /* fan_rows > 0: to the detector's middle; where the angles of the fan grow */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
     SKG_INT heel_rows, fan_rows; /* of the table of the heel effect and of the filter's; 0: none */
@@ -385,7 +395,7 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 63 * 4 + 24 * 4 && sizeof(skg_scattered_args) == 80,
+_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 24 * 4 && sizeof(skg_scattered_args) == 80,
                "layout of scatter");
 #endif
 #endif

@@ -12,6 +12,9 @@ enum { SIDE = 64, HISTORIES = 8192 };
 /* The error of energies: far below what so few histories make. */
 static const double TOLERANCE = 0.01;
 
+/* Of the cells: a third of what is promised. */
+static const double CELLS = 0.05;
+
 /* Primary over open beam below which a pixel lies in the shadow. */
 static const double SHADOW = 0.99;
 
@@ -122,7 +125,7 @@ static skg_status predict(skg_plan *plan, skg_scatter_prediction *prediction) {
     skg_scatter scatter;
     skg_status status = SKG_OK;
     skg_scatter_init(&scatter);
-    scatter.histories = HISTORIES;
+    scatter.histories = HISTORIES, scatter.tolerance = CELLS;
     skg_plan_options options = coarse_options(recipe, &scatter);
     const int has_grid = options.grid != NULL;
     SKG_TRY_CLEANUP(skg_alloc(4 * count, sizeof *images, "prediction of scatter", &images));

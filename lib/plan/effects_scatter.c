@@ -55,7 +55,7 @@ static int refuses_half(const skg_recipe *recipe) {
     return recipe->options.scatter != NULL;
 }
 
-/* The world's own scatter is followed in the box of the parts alone. Around it, it has to be little. */
+/* The world scatters in the box around source, parts and detector, and what comes back into it is left out: it has to be little. */
 static skg_status check_world(const skg_recipe *recipe) {
     const skg_spectrum *spectrum = recipe->spectrum;
     const char *name = "";
@@ -85,7 +85,7 @@ static skg_status check_world(const skg_recipe *recipe) {
     return skg_fail(
         SKG_ERR_UNSUPPORTED,
         "scatter: a World of %s scatters %.3g %% of the beam between source and detector, which is followed in "
-        "the box of the parts alone and may be left out elsewhere up to %g %%; make it a part that holds the "
+        "the box around source, parts and detector alone, and may do so up to %g %%; make it a part that holds the "
         "others, or leave it out",
         name, 100 * met / signals, 100 * WORLD_SCATTERS);
 }

@@ -10,7 +10,7 @@
 enum { POINTS = 1024 };
 
 /* A row of a table at a place between two. */
-static void row_at(const skg_mix4 *table, int64_t count, double place, double row[SKG_SCATTER_RANK]) {
+static void row_at(const skg_mixture *table, int64_t count, double place, double row[SKG_SCATTER_RANK]) {
     const int64_t i = place < (double)(count - 2) ? (int64_t)place : count - 2;
     const double share = place - (double)i;
     for (int k = 0; k < SKG_SCATTER_RANK; k++)

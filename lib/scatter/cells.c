@@ -4,6 +4,7 @@
 #include "core/threads.h"
 
 #include <math.h>
+#include <string.h>
 
 typedef skg_cell_amount amount;
 
@@ -15,10 +16,11 @@ typedef struct {
     skg_cells *cells;
 } filling;
 
-/* One column of cells. own: [z] of the hits in each; behind: [z + 1] what begins before each, for all behind. */
+/* One column of cells. own: [z] of the hits in each; behind: [z + 1] what begins before each, for all behind; known: [z + 1] what
+ * begins before the place of each where its medium is known, likewise, or NULL. */
 typedef struct {
     const skg_cells *cells;
-    amount *own, *behind;
+    amount *own, *behind, *known;
 } pile;
 
 static void add(int64_t *sum, const int64_t *more, int64_t factor) {
@@ -34,6 +36,9 @@ static void deposit(void *user, double depth, const int64_t *more, int64_t facto
     const double rest = fmin(fmax((double)(cell + 1) - place, 0), 1);
     for (int k = 0; k < SKG_SCATTER_RANK; k++) p->own[cell][k] += factor * llrint((double)more[k] * rest);
     add(p->behind[cell + 1], more, factor);
+    if (!p->known) return;
+    const double next = floor(place - SKG_KNOWN[2]) + 1;
+    add(p->known[next < 0 ? 0 : next < (double)cells ? (int64_t)next : cells], more, factor);
 }
 
 /* --- parts that compete */
@@ -130,7 +135,7 @@ static skg_status fill_row(void *user, int64_t row) {
     const double *base = f->parts->base;
     const double each = 1 / (SKG_CELL_UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
     skg_columns grid = *f->grid;
-    amount *own = NULL, *behind = NULL;
+    amount *own = NULL, *behind = NULL, *known = NULL;
     int64_t *inside_of = NULL;
     skg_status status = SKG_OK;
     grid.first_row = row * SKG_CELL_COLUMNS;
@@ -139,15 +144,22 @@ static skg_status fill_row(void *user, int64_t row) {
     SKG_TRY_CLEANUP(skg_alloc(2 * f->parts->count, sizeof *inside_of, "cells", &inside_of));
     SKG_TRY_CLEANUP(skg_alloc(side * depth, sizeof *own, "cells", &own));
     SKG_TRY_CLEANUP(skg_alloc(side * (depth + 1), sizeof *behind, "cells", &behind));
+    SKG_TRY_CLEANUP(skg_alloc(side * (depth + 1), sizeof *known, "cells", &known));
     for (int64_t c = 0; c < grid.rows * grid.side; c++) {
         const int64_t x = c % grid.side / SKG_CELL_COLUMNS;
-        pile p = {f->cells, own + x * depth, behind + x * (depth + 1)};
+        const int first = c < grid.side && c % SKG_CELL_COLUMNS == 0;
+        pile p = {f->cells, own + x * depth, behind + x * (depth + 1),
+                  first ? known + x * (depth + 1) : NULL};
         skg_cells_walk(f->parts, (const amount *)f->amounts, &grid, c, inside_of, deposit, &p);
     }
     for (int64_t x = 0; x < side; x++) {
-        amount sum = {0};
+        amount sum = {0}, *of = f->cells->known + row * side + x;
         for (int64_t z = 0; z < depth; z++) {
             float *mixture = f->cells->mixtures[(z * f->cells->count[1] + row) * side + x];
+            if (z)
+                memcpy(of[z * f->cells->count[1] * side], of[(z - 1) * f->cells->count[1] * side],
+                       sizeof *of);
+            add(of[z * f->cells->count[1] * side], known[x * (depth + 1) + z], 1);
             add(sum, behind[x * (depth + 1) + z], 1);
             for (int k = 0; k < SKG_SCATTER_RANK; k++)
                 mixture[k] = (float)((double)(sum[k] + own[x * depth + z][k]) * each + (base ? base[k] : 0));
@@ -158,6 +170,7 @@ cleanup:
     skg_free(&inside_of);
     skg_free(&own);
     skg_free(&behind);
+    skg_free(&known);
     return status;
 }
 
@@ -179,6 +192,7 @@ static skg_status fill(filling *f) {
     const int64_t total = cells->count[0] * cells->count[1] * cells->count[2];
     SKG_TRY(skg_cells_amounts(f->parts, &f->amounts));
     SKG_TRY(skg_alloc(total, sizeof *cells->mixtures, "cells", &cells->mixtures));
+    SKG_TRY(skg_alloc(total, sizeof *cells->known, "cells", &cells->known));
     SKG_TRY(skg_parallel(cells->count[1], fill_row, f));
     for (int64_t c = 0; c < total; c++)
         for (int k = 0; k < SKG_SCATTER_RANK; k++)
@@ -206,4 +220,8 @@ skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cell
 
 void skg_cells_free(skg_cells *cells) {
     skg_free(&cells->mixtures);
+    skg_free(&cells->known);
+    skg_free(&cells->media);
+    skg_free(&cells->tree);
+    skg_free(&cells->faces);
 }

@@ -9,9 +9,9 @@
 #include <math.h>
 
 /* --- What photons meet: attenuation and the angles of scattering, for mixtures of all materials of a scene. *
- * A cell of the object holds four coefficients. Every function of energy or of momentum transfer is linear in them: mu of a cell
- * is the sum over k of coefficient[k] * total[energy][k]. A cell without matter has zeros. With at most four
- * compositions each coefficient is the length of one composition, and the functions are exact. With more, they are a
+ * A cell of the object holds four, eight or twelve coefficients. Every function of energy or of momentum transfer is linear in them: mu of a cell
+ * is the sum over k of coefficient[k] * total[energy][k]. A cell without matter has zeros. With at most as
+ * many compositions each coefficient is the length of one composition, and the functions are exact. With more, they are a
  * joint basis fitted to all functions of all materials (smoothing.h), whose error is measured. From 15 to 120 keV the total
  * of 12 tissues is right within 0.1 % and their distributions of angles within 0.3 %; with steel and iodine beside them
  * within 1.5 % (steel; tissues 0.8 %) and 9 % (Rayleigh of bone).
@@ -20,25 +20,26 @@
  * numbers are XCOM's, the same as the primary's. Angles are distributed like Klein and Nishina's cross section
  * times S, and like Thomson's times F^2, of free atoms (material/scattering.h). */
 
-enum { SKG_SCATTER_RANK = 4 };
-typedef float skg_mix4[SKG_SCATTER_RANK];
+enum { SKG_SCATTER_RANK = 12, SKG_SCATTER_FOUR = 4 }; /* the most coefficients; they are taken in fours */
+typedef float skg_mixture[SKG_SCATTER_RANK];
 
 typedef struct {
+    int32_t rank, reserved; /* coefficients that are not always 0: 4, 8 or 12 */
     /* Points even in ln E from low_kev to high_kev. Tables are linear between them. */
     int64_t energies;
     double low_kev, high_kev;
-    /* [energies] 1/mm per coefficient; total: photo + Compton + Rayleigh. With more than four compositions Compton
+    /* [energies] 1/mm per coefficient; total: photo + Compton + Rayleigh. With more compositions than coefficients Compton
      * + Rayleigh may exceed the total within the errors. */
-    skg_mix4 *total, *compton, *rayleigh;
+    skg_mixture *total, *compton, *rayleigh;
     /* [energies] 1/mm per coefficient: integrals over the sphere of klein_nishina(E, theta) * incoherent(x) and of
      * (1 + cos^2 theta) / 2 * coherent(x). They normalise the distributions of angles. */
-    skg_mix4 *compton_shape, *rayleigh_shape;
+    skg_mixture *compton_shape, *rayleigh_shape;
     /* Points even in ln(1 + x / momentum_scale) from x = 0 to momentum_high, that of a photon of high_kev turned back,
      * 1/Angstrom. Tables are linear between them. */
     int64_t momenta;
     double momentum_scale, momentum_high;
     /* [momenta] 1/mm per coefficient: r_e^2 times the number of atoms per volume times S and times F^2. */
-    skg_mix4 *incoherent, *coherent;
+    skg_mixture *incoherent, *coherent;
     int64_t materials;
     double (*coefficients)[SKG_SCATTER_RANK]; /* [materials] of 1 mm of each at its density, per mm */
     /* The greatest relative error over the materials of total, Compton and Rayleigh at the energies; and of these and of both
@@ -102,13 +103,14 @@ skg_status skg_angles_make(const skg_scatter_physics *physics, const double mixt
  * The coefficients of the SKG_SCATTER_RANK materials that differ most are 1 and 0s, which loses nothing, because
  * a basis is only defined up to a linear map. */
 
-/* weight         [rows] of a relative error in the search for coefficients
+/* most           the rank at most, up to SKG_SCATTER_RANK
+ * weight         [rows] of a relative error in the search for coefficients
  * columns        [count][rows] values > 0, or 0 in a row where all are
  * coefficients   [count]
  * basis          [rows]
  *
- * With at most SKG_SCATTER_RANK columns that are no multiples of each other the result is exact. */
-skg_status skg_reduce(int64_t count, int64_t rows, const double *weight, const double *columns,
+ * With at most `most` columns that are no multiples of each other the result is exact. */
+skg_status skg_reduce(int32_t most, int64_t count, int64_t rows, const double *weight, const double *columns,
                       double (*coefficients)[SKG_SCATTER_RANK], double (*basis)[SKG_SCATTER_RANK]);
 
 #endif

@@ -11,6 +11,17 @@
 /* Photons are followed down to this share of the lowest energy of the beam. */
 static const double LOWEST = 0.25;
 
+/* A way through m cells whose depth is off by up to d each, evenly, passes m d^2 / 24 too much on average; a third of the tolerance
+ * for the two or three of them that matter most. */
+static const double SMEARED = 3, LEAST_LIMIT = 0.02;
+
+/* Shares of the errors of the primary and of the worst material that the scatter has: the generated thorax, 1.4 % of 3.5 %; ten materials
+ * with K edges and four coefficients, 19 % of 85 %, twelve of them and bones, 1.3 % of 44 %. */
+static const double OF_PRIMARY = 0.4, OF_MIXTURES = 0.2, EXACT = 1e-5;
+
+/* Where a number of histories is given. */
+static const double DEFAULT_TOLERANCE = 0.01;
+
 const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part) {
     return work->poses && work->poses[part] ? work->poses[part] : work->recipe->scene->parts[part].pose;
 }
@@ -107,6 +118,36 @@ static void drop(int64_t count, placed *p) {
     skg_free(&p->differences);
 }
 
+/* 1/mm per coefficient at the mean energy of the beam. */
+static void find_typical(const skg_spectrum *spectrum, const skg_scatter_physics *p,
+                         double mu[SKG_SCATTER_RANK]) {
+    double photons = 0, energy = 0;
+    for (int64_t i = 0; i < spectrum->count; i++)
+        photons += spectrum->photons[i], energy += spectrum->photons[i] * spectrum->energy_kev[i];
+    const double at =
+        log(energy / photons / p->low_kev) / log(p->high_kev / p->low_kev) * (double)(p->energies - 1);
+    const int64_t row = (int64_t)fmin(fmax(at, 0), (double)(p->energies - 1));
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) mu[k] = (double)p->total[row][k];
+}
+
+/* Smears no more of the cells than the tolerance allows in the primary, whose error is two to three times that of the scatter. */
+static skg_status trace(const skg_scatter_work *work, const skg_cell_parts *parts,
+                        skg_scatter_object *object) {
+    const skg_recipe *recipe = work->recipe;
+    const double asked = recipe->options.scatter->tolerance,
+                 tolerance = asked > 0 ? asked : DEFAULT_TOLERANCE;
+    double mu[SKG_SCATTER_RANK], limit = sqrt(tolerance * SMEARED);
+    find_typical(recipe->spectrum, &object->physics, mu);
+    for (;;) {
+        SKG_TRY(skg_cells_trace(parts, mu, limit, &object->cells));
+        SKG_TRY(skg_cells_judge(parts, &object->physics, recipe->spectrum, work->view, &object->cells,
+                                &object->primary_error));
+        if (limit == 0 || object->cells.smeared == 0 || parts->priority || object->primary_error <= tolerance)
+            return SKG_OK;
+        limit = limit > LEAST_LIMIT ? limit / 1.4 : 0;
+    }
+}
+
 skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_object *object) {
     palette p = {0};
     placed parts = {0};
@@ -130,13 +171,17 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
         .unite = work->recipe->options.unite,
     };
     SKG_TRY_CLEANUP(skg_cells_make(&to_fill, work->recipe->options.scatter->voxel_mm, &object->cells));
-    status = skg_cells_judge(&to_fill, &object->physics, work->recipe->spectrum, work->view, &object->cells,
-                             &object->primary_error);
+    status = trace(work, &to_fill, object);
 cleanup:
     drop(work->recipe->scene->count, &parts);
     skg_free(&p.materials);
     skg_free(&p.of_part);
     return status;
+}
+
+double skg_scatter_systematic(const skg_scatter_object *object) {
+    const double mixed = object->physics.attenuation_error > EXACT ? object->physics.attenuation_error : 0;
+    return hypot(OF_PRIMARY * object->primary_error, OF_MIXTURES * mixed);
 }
 
 void skg_scatter_object_free(skg_scatter_object *object) {

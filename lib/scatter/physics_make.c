@@ -18,6 +18,10 @@ static const double HIGHEST_KEV = 1022;
 enum { EVERY = 8 };
 static const double ROUNDING_OF_FLOATS = 1e-6;
 
+/* Errors of attenuation and of angles with which there are coefficients enough. The worst of a material, at one energy, by one process
+ * is several times what the scatter is off by. */
+static const double GOOD = 0.02, GOOD_ANGLES = 0.1;
+
 static skg_status check(int64_t count, skg_material *const *materials, double low_kev, double high_kev) {
     if (!(low_kev < high_kev))
         return skg_fail(SKG_ERR_ARGUMENT, "scatter: photons from %g to %g keV: the range is empty", low_kev,
@@ -45,8 +49,8 @@ static skg_status allocate(int64_t count, double low_kev, double high_kev, skg_s
     p->momentum_high = high_kev / SKG_HC_KEV_ANGSTROM;
     p->momenta = (int64_t)ceil(log1p(p->momentum_high / MOMENTUM_SCALE) / MOMENTUM_STEP) + 1;
     p->materials = count;
-    skg_mix4 **const by_energy[] = {&p->total, &p->compton, &p->rayleigh, &p->compton_shape,
-                                    &p->rayleigh_shape};
+    skg_mixture **const by_energy[] = {&p->total, &p->compton, &p->rayleigh, &p->compton_shape,
+                                       &p->rayleigh_shape};
     for (size_t i = 0; i < sizeof by_energy / sizeof *by_energy; i++)
         SKG_TRY(skg_alloc(p->energies, sizeof **by_energy[i], "scatter", by_energy[i]));
     SKG_TRY(skg_alloc(p->momenta, sizeof *p->incoherent, "scatter", &p->incoherent));
@@ -82,7 +86,7 @@ static void weigh(const skg_scatter_physics *p, const double *column, double *we
 }
 
 static void store(const skg_scatter_physics *p, double (*basis)[SKG_SCATTER_RANK]) {
-    skg_mix4 *const table[] = {p->total, p->compton, p->rayleigh, p->incoherent, p->coherent};
+    skg_mixture *const table[] = {p->total, p->compton, p->rayleigh, p->incoherent, p->coherent};
     for (int f = 0; f < SKG_SCATTER_FUNCTIONS; f++) {
         const int64_t first = skg_scatter_first_row(p, f), rows = skg_scatter_first_row(p, f + 1) - first;
         for (int64_t i = 0; i < rows; i++)
@@ -92,8 +96,8 @@ static void store(const skg_scatter_physics *p, double (*basis)[SKG_SCATTER_RANK
 
 /* scratch: [2][momenta] */
 static void integrate_shapes(const skg_scatter_physics *p, double *scratch) {
-    skg_mix4 *const table[2] = {p->incoherent, p->coherent}, *const shape[2] = {p->compton_shape,
-                                                                                p->rayleigh_shape};
+    skg_mixture *const table[2] = {p->incoherent, p->coherent}, *const shape[2] = {p->compton_shape,
+                                                                                   p->rayleigh_shape};
     for (int64_t e = 0; e < p->energies; e++) {
         const int64_t points = skg_shape_weights(p, skg_scatter_energy(p, e), scratch, scratch + p->momenta);
         for (int f = 0; f < 2; f++) {
@@ -106,14 +110,14 @@ static void integrate_shapes(const skg_scatter_physics *p, double *scratch) {
     }
 }
 
-static double mix(const double coefficient[SKG_SCATTER_RANK], const skg_mix4 of) {
+static double mix(const double coefficient[SKG_SCATTER_RANK], const skg_mixture of) {
     double sum = 0;
     for (int k = 0; k < SKG_SCATTER_RANK; k++) sum += coefficient[k] * (double)of[k];
     return sum;
 }
 
 static double energies_error(const skg_scatter_physics *p, int64_t material, const double *column) {
-    skg_mix4 *const table[] = {p->total, p->compton, p->rayleigh};
+    skg_mixture *const table[] = {p->total, p->compton, p->rayleigh};
     double worst = 0;
     for (int f = 0; f < SKG_SCATTER_INCOHERENT; f++)
         for (int64_t e = 0; e < p->energies; e++) {
@@ -143,7 +147,7 @@ static double shape_error(const skg_scatter_physics *p, int64_t points, const do
 }
 
 static skg_status shapes_error(const skg_scatter_physics *p, const double *columns, double *error) {
-    skg_mix4 *const table[2] = {p->incoherent, p->coherent};
+    skg_mixture *const table[2] = {p->incoherent, p->coherent};
     const int64_t rows = skg_scatter_first_row(p, SKG_SCATTER_FUNCTIONS), both = 2 * p->momenta;
     const double *exact = columns + skg_scatter_first_row(p, SKG_SCATTER_INCOHERENT);
     double *weights = NULL, *wrong = NULL;
@@ -171,14 +175,17 @@ static skg_status fill(int64_t count, skg_material *const *materials, skg_scatte
     SKG_TRY_CLEANUP(skg_alloc(2 * p->momenta, sizeof *scratch, "scatter", &scratch));
     SKG_TRY_CLEANUP(skg_alloc(rows, sizeof *basis, "scatter", &basis));
     if (count > 0) weigh(p, columns, weight, scratch);
-    SKG_TRY_CLEANUP(skg_reduce(count, rows, weight, columns, p->coefficients, basis));
-    store(p, basis);
-    integrate_shapes(p, scratch);
-    p->attenuation_error = ROUNDING_OF_FLOATS;
-    for (int64_t m = 0; m < count; m++)
-        p->attenuation_error = fmax(p->attenuation_error, energies_error(p, m, columns + m * rows));
-    p->error = p->attenuation_error;
-    SKG_TRY_CLEANUP(shapes_error(p, columns, &p->error));
+    for (p->rank = SKG_SCATTER_FOUR;; p->rank += SKG_SCATTER_FOUR) {
+        SKG_TRY_CLEANUP(skg_reduce(p->rank, count, rows, weight, columns, p->coefficients, basis));
+        store(p, basis);
+        integrate_shapes(p, scratch);
+        p->attenuation_error = ROUNDING_OF_FLOATS;
+        for (int64_t m = 0; m < count; m++)
+            p->attenuation_error = fmax(p->attenuation_error, energies_error(p, m, columns + m * rows));
+        p->error = p->attenuation_error;
+        SKG_TRY_CLEANUP(shapes_error(p, columns, &p->error));
+        if (p->rank == SKG_SCATTER_RANK || (p->attenuation_error <= GOOD && p->error <= GOOD_ANGLES)) break;
+    }
 cleanup:
     skg_free(&columns);
     skg_free(&weight);

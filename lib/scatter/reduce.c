@@ -22,14 +22,14 @@ static const double NEGLIGIBLE = 1e-8;
 /* In a row of zeros logarithms are taken of this. */
 static const double LEAST = 1e-300;
 
-static const int32_t ALL[RANK] = {0, 1, 2, 3};
+static const int32_t ALL[RANK] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
 
 typedef struct {
     int64_t count, rows;
     const double *weight, *columns;
     double (*coefficients)[RANK], (*basis)[RANK];
     int64_t compositions, *list; /* [count] the first material of each composition; pivots come first */
-    int32_t rank, reserved;
+    int32_t rank, most;
     int64_t *like; /* [count] the first material of the same composition */
     double *ratio; /* [count] to that material */
 } reduction;
@@ -80,7 +80,7 @@ static void find_directions(const reduction *r, double *rest) {
 /* Moves the compositions that differ most to the front of the list, by Gram and Schmidt with the largest remainder first. */
 static void find_pivots(reduction *r, double *rest) {
     const int64_t rows = r->rows;
-    for (r->rank = 0; r->rank < RANK; r->rank++) {
+    for (r->rank = 0; r->rank < r->most; r->rank++) {
         const int32_t k = r->rank;
         int64_t most = k;
         double longest = 0;
@@ -159,9 +159,10 @@ static skg_status search(reduction *r) {
     return improve(r);
 }
 
-skg_status skg_reduce(int64_t count, int64_t rows, const double *weight, const double *columns,
+skg_status skg_reduce(int32_t most, int64_t count, int64_t rows, const double *weight, const double *columns,
                       double (*coefficients)[SKG_SCATTER_RANK], double (*basis)[SKG_SCATTER_RANK]) {
-    reduction r = {.count = count,
+    reduction r = {.most = most,
+                   .count = count,
                    .rows = rows,
                    .weight = weight,
                    .columns = columns,
@@ -174,7 +175,7 @@ skg_status skg_reduce(int64_t count, int64_t rows, const double *weight, const d
     SKG_TRY_CLEANUP(skg_alloc(count, sizeof *r.like, "scatter", &r.like));
     SKG_TRY_CLEANUP(skg_alloc(count, sizeof *r.ratio, "scatter", &r.ratio));
     find_compositions(&r);
-    if (r.compositions > RANK) {
+    if (r.compositions > most) {
         SKG_TRY_CLEANUP(search(&r));
     } else {
         r.rank = (int32_t)r.compositions;

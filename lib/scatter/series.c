@@ -35,7 +35,8 @@ typedef struct {
     int64_t intervals, end;
     knot *knots; /* [intervals + 1] */
     knot checks[CHECKS];
-    int64_t *sums; /* as skg_trace_read */
+    int64_t *sums;     /* as skg_trace_read */
+    double systematic; /* the greatest of the frames, as of skg_scatter_systematic */
     skg_tracing tracing;
 } maker;
 
@@ -107,6 +108,7 @@ static skg_status follow(maker *m, knot *k) {
     work.seed = k->seed;
     skg_status status = skg_scatter_object_make(&work, &object);
     if (status == SKG_OK && object.cells.mixtures) status = trace(m, &work, &object, k);
+    if (status == SKG_OK) m->systematic = fmax(m->systematic, skg_scatter_systematic(&object));
     skg_scatter_object_free(&object);
     if (status != SKG_OK) return status;
     m->series->report.histories += (m->end - k->end) * SKG_SCATTER_BATCHES;
@@ -233,6 +235,9 @@ skg_status skg_series_make(skg_context *context, int64_t count, skg_series_frame
     SKG_TRY_CLEANUP(begin(&m));
     SKG_TRY_CLEANUP(converge(&m, is_smooth));
     if (*is_smooth && m.noise) SKG_TRY_CLEANUP(fit(&m, 1, &series->variance));
+    const double off = m.systematic * series->mean.mean; /* more histories do not make up for it */
+    series->mean.bias += off * off;
+    series->mean.sigma = hypot(series->mean.sigma, off);
     series->report.frames = count;
     series->report.followed = m.intervals + 1;
     series->report.error = series->mean.mean > 0 ? series->mean.sigma / series->mean.mean : 0;

@@ -122,7 +122,22 @@ static skg_status fill_grid(const skg_scatter_work *work, skg_scatter_args *args
     return SKG_OK;
 }
 
+/* The box around the cells, the detector and the source: what scatters farther away hardly comes back. */
+static void fill_around(const skg_scatter_work *work, const skg_cells *cells, skg_scatter_args *args) {
+    const skg_view *view = work->view;
+    for (int k = 0; k < 3; k++) {
+        double low = fmin(cells->low[k], view->source[k]),
+               high = fmax(cells->low[k] + cells->size[k], view->source[k]);
+        const double half = 0.5 * (fabs(view->column_step[k]) * (double)view->columns +
+                                   fabs(view->row_step[k]) * (double)view->rows);
+        low = fmin(low, view->centre[k] - half), high = fmax(high, view->centre[k] + half);
+        args->around_low[k] = (float)(low - cells->low[k]);
+        args->around_high[k] = (float)(high - cells->low[k]);
+    }
+}
+
 skg_status skg_sight_fill(const skg_scatter_work *work, const skg_cells *cells, skg_scatter_args *args) {
+    fill_around(work, cells, args);
     for (int k = 0; k < 3; k++) {
         args->size[k] = (float)cells->size[k];
         args->cells[k] = (SKG_INT)cells->count[k];

@@ -80,15 +80,34 @@ static skg_status send_spots(skg_context *context, const skg_scatter_work *work,
     return status;
 }
 
+/* Sends mixtures with as many coefficients as there are. */
+static skg_status send_mixtures(skg_context *context, int64_t count, const skg_mixture *mixtures,
+                                int32_t rank, skg_buffer *buffer, const char *what) {
+    const size_t bytes = (size_t)rank * sizeof(float);
+    float *packed = NULL;
+    SKG_TRY(skg_alloc(count * rank, sizeof *packed, "scatter", &packed));
+    for (int64_t i = 0; i < count; i++) memcpy(packed + i * rank, mixtures[i], bytes);
+    const skg_status status = skg_buffer_write(context, buffer, count * (int64_t)bytes, packed, what);
+    skg_free(&packed);
+    return status;
+}
+
 static skg_status send_tables(skg_context *context, const skg_scatter_object *object,
                               const skg_scatter_tables *tables, skg_tracing *t) {
     const skg_scatter_physics *p = &object->physics;
-    const int64_t *count = object->cells.count, four = 4 * (int64_t)sizeof(float);
-    SKG_TRY(skg_buffer_write(context, &t->cells, count[0] * count[1] * count[2] * four,
-                             object->cells.mixtures, "cells"));
-    SKG_TRY(skg_buffer_write(context, &t->energies, p->energies * SKG_SCATTER_COLUMNS * four,
-                             tables->energies, "energies"));
-    SKG_TRY(skg_buffer_write(context, &t->momenta, p->momenta * 2 * four, tables->momenta, "momenta"));
+    const skg_cells *cells = &object->cells;
+    const int64_t four = 4 * (int64_t)sizeof(float);
+    t->fours = p->rank / SKG_SCATTER_FOUR;
+    SKG_TRY(send_mixtures(context, cells->media_count, (const skg_mixture *)cells->media, p->rank, &t->media,
+                          "cells"));
+    SKG_TRY(skg_buffer_write(context, &t->tree, cells->tree_count * (int64_t)sizeof *cells->tree, cells->tree,
+                             "cells"));
+    SKG_TRY(skg_buffer_write(context, &t->faces, cells->face_count * (int64_t)sizeof *cells->faces,
+                             cells->faces, "cells"));
+    SKG_TRY(send_mixtures(context, p->energies * SKG_SCATTER_COLUMNS, (const skg_mixture *)tables->energies,
+                          p->rank, &t->energies, "energies"));
+    SKG_TRY(send_mixtures(context, p->momenta * 2, (const skg_mixture *)tables->momenta, p->rank, &t->momenta,
+                          "momenta"));
     SKG_TRY(skg_buffer_write(context, &t->angles,
                              SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1) * (int64_t)sizeof *tables->angles,
                              tables->angles, "angles"));
@@ -167,7 +186,6 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     fill_profile(&tables->profile, t);
     fill_images(work->recipe, tables, t);
     t->args.world_around = work->recipe->options.world != NULL;
-    for (int k = 0; k < SKG_SCATTER_RANK; k++) t->args.world[k] = (float)object->world[k];
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
     SKG_TRY(send_lattice(context, seed, &t->lattice));
@@ -175,12 +193,14 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 }
 
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
-    static const char *const files[] = {"exponential.clh", "random.clh",  "noise.clh",
-                                        "scatter.clh",     "sight.clh",   "strips.clh",
-                                        "arrive.clh",      "profile.clh", "scatter.cl"};
+    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh",  "scatter.clh",
+                                        "walk.clh",        "sight.clh",  "strips.clh", "arrive.clh",
+                                        "profile.clh",     "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
-    return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files, NULL, program);
+    const skg_define fours[] = {{"SKG_FOURS", t->fours}};
+    return skg_kernels_get(context, &options, (int32_t)(sizeof files / sizeof *files), files,
+                           t->fours > 1 ? SKG_DEFINES(fours) : NULL, program);
 }
 
 /* Enqueues histories args.first to args.end of all batches. */
@@ -194,7 +214,9 @@ static skg_status launch(skg_context *context, cl_program program, skg_tracing *
     const skg_work_size work = {2, {(histories + each - 1) / each, SKG_SCATTER_BATCHES}, {group, 1}};
     const skg_argument arguments[] = {
         SKG_ARGUMENT(SCATTER, args, t->args),
-        SKG_ARGUMENT(SCATTER, cells, t->cells.memory),
+        SKG_ARGUMENT(SCATTER, media, t->media.memory),
+        SKG_ARGUMENT(SCATTER, tree, t->tree.memory),
+        SKG_ARGUMENT(SCATTER, faces, t->faces.memory),
         SKG_ARGUMENT(SCATTER, energies, t->energies.memory),
         SKG_ARGUMENT(SCATTER, momenta, t->momenta.memory),
         SKG_ARGUMENT(SCATTER, angles, t->angles.memory),
@@ -233,12 +255,13 @@ skg_status skg_trace_read(skg_context *context, const skg_tracing *t, int64_t *s
 }
 
 void skg_trace_release(skg_tracing *t) {
-    skg_buffer *const buffers[] = {&t->cells,    &t->energies, &t->momenta, &t->angles,   &t->beam,
-                                   &t->profiles, &t->spots,    &t->lattice, &t->detector, &t->sums};
+    skg_buffer *const buffers[] = {&t->media, &t->tree,     &t->faces, &t->energies, &t->momenta,  &t->angles,
+                                   &t->beam,  &t->profiles, &t->spots, &t->lattice,  &t->detector, &t->sums};
     for (size_t i = 0; i < sizeof buffers / sizeof *buffers; i++) skg_buffer_release(buffers[i]);
 }
 
 int64_t skg_trace_bytes(const skg_tracing *t) {
-    return t->cells.bytes + t->energies.bytes + t->momenta.bytes + t->angles.bytes + t->beam.bytes +
-           t->profiles.bytes + t->spots.bytes + t->lattice.bytes + t->detector.bytes + t->sums.bytes;
+    return t->media.bytes + t->tree.bytes + t->faces.bytes + t->energies.bytes + t->momenta.bytes +
+           t->angles.bytes + t->beam.bytes + t->profiles.bytes + t->spots.bytes + t->lattice.bytes +
+           t->detector.bytes + t->sums.bytes;
 }

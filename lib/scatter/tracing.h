@@ -41,9 +41,9 @@ enum { SKG_SCATTER_BATCHES = 32 };
 
 /* All zero: nothing is allocated. */
 typedef struct {
-    skg_buffer cells, energies, momenta, angles, beam, profiles, spots, lattice, detector, sums;
-    skg_scatter_args args; /* `end`: so many histories of each batch were followed */
-    int32_t parallel, reserved;
+    skg_buffer media, tree, faces, energies, momenta, angles, beam, profiles, spots, lattice, detector, sums;
+    skg_scatter_args args;   /* `end`: so many histories of each batch were followed */
+    int32_t parallel, fours; /* fours: of coefficients in a mixture */
     int64_t sums_count;
     skg_progress *progress; /* of the frame, whose caller owns it; NULL: none */
 } skg_tracing;

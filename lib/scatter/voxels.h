@@ -31,14 +31,29 @@ skg_status skg_scatter_columns(int64_t count, skg_material *const *materials, co
  * SKG_CELL_COLUMNS x SKG_CELL_COLUMNS columns a cell. Amounts are whole multiples of a small unit, so that a cell of void holds
  * exactly nothing. */
 
-enum { SKG_CELLS_DEFAULT = 64, SKG_CELLS_MAX = 256, SKG_CELL_COLUMNS = 2 };
+enum { SKG_CELLS_DEFAULT = 64, SKG_CELLS_MAX = 128, SKG_CELL_COLUMNS = 2 };
+
+/* Whole multiples of a unit, of which sums of 2^22 hits fit in 63 bits. */
+#define SKG_CELL_UNIT 0x1p40
+typedef int64_t skg_cell_amount[SKG_SCATTER_RANK];
 
 typedef struct {
     int64_t count[3];              /* cells along x, y, z; along x and y as many */
     double low[3], size[3];        /* mm, of the box of all parts */
-    skg_mix4 *mixtures;            /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    skg_mixture *mixtures;            /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    skg_cell_amount *known;        /* [z][y][x] what is at one place of each, beyond the base: SKG_KNOWN */
     double mean[SKG_SCATTER_RANK]; /* over the cells */
+    /* As photons read them (walk.clh), by skg_cells_trace: */
+    skg_mixture *media; /* [media_count] mixtures per mm, and what faces of each part add */
+    uint32_t *tree;  /* [tree_count] words of the cells; bricks of finer cells; lists of faces */
+    float (*faces)[16];
+    int64_t media_count, tree_count, face_count;
+    int64_t smeared, traced; /* cells that hold the mixture of several media, and those whose faces are met */
 } skg_cells;
+
+/* The place of a cell where its medium is known, in shares of its sides: a column that was walked, at an odd height, so that faces
+ * rarely contain it. */
+#define SKG_KNOWN ((const double[3]){0.3660254037844386, 0.20710678118654755, 0.5772156649015329})
 
 /* Closed parts. */
 typedef struct {
@@ -53,10 +68,6 @@ typedef struct {
     int32_t unite; /* 1: a solid counts once where its winding number is above 0 */
 } skg_cell_parts;
 
-/* Whole multiples of a unit, of which sums of 2^22 hits fit in 63 bits. */
-#define SKG_CELL_UNIT 0x1p40
-typedef int64_t skg_cell_amount[SKG_SCATTER_RANK];
-
 /* The coefficients of each part in these units; the caller frees them. */
 skg_status skg_cells_amounts(const skg_cell_parts *parts, skg_cell_amount **amounts);
 
@@ -69,6 +80,15 @@ void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts,
 
 /* Makes the cells of parts. voxel_mm: about; 0: SKG_CELLS_DEFAULT cells along each side. Without any triangle there are no cells. */
 skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cells *cells);
+
+/* Makes of cells what photons read. Where media meet whose difference, over a side of the cell, is an optical depth above `limit`, the
+ * cell gets the faces of the parts; else, and where priorities decide, its mixture stands for it. mu: 1/mm per coefficient. */
+skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK], double limit,
+                           skg_cells *cells);
+
+/* The sum of the coefficients times mm from one place to another, in mm from the lowest corner, as photons read the cells. */
+void skg_cells_along(const skg_cells *cells, const double from[3], const double to[3],
+                     double mm[SKG_SCATTER_RANK]);
 void skg_cells_free(skg_cells *cells);
 
 /* How far the primary through the cells, read as photons read them, is from that through the surfaces: the sum of the absolute differences
@@ -99,6 +119,10 @@ typedef struct {
     skg_cells cells;
     double primary_error; /* skg_cells_judge */
 } skg_scatter_object;
+
+/* How far the scatter may be off for what stands for the object, over its mean: cells with the mixture of several media, whose primary is
+ * off by two to three times as much, and coefficients that stand for more compositions. */
+double skg_scatter_systematic(const skg_scatter_object *object);
 
 /* Makes both. Free the object also after a failure. */
 skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_object *object);

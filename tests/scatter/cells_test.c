@@ -7,7 +7,7 @@
 #include <float.h>
 #include <math.h>
 
-enum { SOLIDS = 2 };
+enum { SOLIDS = 3 };
 
 typedef struct {
     int64_t count;
@@ -73,7 +73,7 @@ static const float *cell_at(const skg_cells *cells, double x, double y, double z
     return cells->mixtures[(index[2] * cells->count[1] + index[1]) * cells->count[0] + index[0]];
 }
 
-static const double some[] = {0.02, -0.7, 1, 0};
+static const double some[SKG_SCATTER_RANK] = {0.02, -0.7, 1, 0};
 
 START_TEST(a_box_fills_its_cells) {
     subject s = {0};
@@ -93,7 +93,8 @@ START_TEST(a_box_fills_its_cells) {
 END_TEST
 
 START_TEST(an_inner_part_replaces_the_outer_one) {
-    static const double less[] = {-0.02, 0.7, -1, 2}; /* of the outer one's coefficients nothing is left */
+    static const double less[SKG_SCATTER_RANK] = {-0.02, 0.7, -1,
+                                                  2}; /* of the outer one's coefficients nothing is left */
     subject s = {0};
     add(&s, solid_box(30, 30, 30), some);
     add(&s, solid_box(10, 10, 10), less);
@@ -102,10 +103,7 @@ START_TEST(an_inner_part_replaces_the_outer_one) {
     compare_integrals(&s, &cells, 1e-6); /* the faces lie between cells */
     for (int k = 0; k < SKG_SCATTER_RANK; k++) {
         const double inside = (double)cell_at(&cells, 4.9, -4.9, 4.9)[k];
-        if (k < 3)
-            ck_assert_double_eq(inside, 0);
-        else
-            ck_assert_double_eq(inside, 2);
+        ck_assert_double_eq(inside, k == 3 ? 2 : 0);
         ck_assert_double_eq_tol((double)cell_at(&cells, 5.1, 0, 0)[k], some[k], FLT_EPSILON);
     }
     skg_cells_free(&cells);
@@ -140,7 +138,8 @@ END_TEST
 
 /* Void within a shell is exactly nothing, and so it is where an inner part takes all of the outer one away. */
 START_TEST(void_is_nothing) {
-    static const double all[] = {1 / 3.0, 0.1, 0.7, 1e-3}, none[] = {-1 / 3.0, -0.1, -0.7, -1e-3};
+    static const double all[SKG_SCATTER_RANK] = {1 / 3.0, 0.1, 0.7, 1e-3},
+                        none[SKG_SCATTER_RANK] = {-1 / 3.0, -0.1, -0.7, -1e-3};
     for (int nested = 0; nested < 2; nested++) {
         subject s = {0};
         add(&s, nested ? solid_blob(30, 48, 24, 7) : solid_shell(30, 20, 48, 24), all);
@@ -173,7 +172,7 @@ START_TEST(mirrored_parts_are_solid_too) {
     for (int64_t x = -8; x <= 8; x++)
         for (int64_t z = -8; z <= 8; z++)
             ck_assert_mem_eq(cell_at(&own, (double)x, 0.1, (double)z),
-                             cell_at(&other, -(double)x, 0.1, (double)z), sizeof(skg_mix4));
+                             cell_at(&other, -(double)x, 0.1, (double)z), sizeof(skg_mixture));
     skg_cells_free(&own);
     skg_cells_free(&other);
     drop(&s);
@@ -184,7 +183,7 @@ END_TEST
 /* Two boxes that overlap from x = 0 to 10: with equal priorities both count there, else the higher one alone. A child inside
  * the lower one falls with it. */
 START_TEST(priorities_decide_where_parts_overlap) {
-    static const double a[] = {1, 0, 0, 0}, b[] = {0, 1, 0, 0};
+    static const double a[SKG_SCATTER_RANK] = {1, 0, 0, 0}, b[SKG_SCATTER_RANK] = {0, 1, 0, 0};
     static const int32_t equal[] = {3, 3}, first[] = {4, 3}, second[] = {3, 4};
     subject s = {0};
     add(&s, solid_box(20, 20, 20), a); /* x from -10 to 10 */
@@ -225,7 +224,7 @@ END_TEST
 /* Sums of cells along z are the path lengths of parallel rays where the columns are. */
 START_TEST(columns_are_path_lengths_of_images) {
     enum { SIDE = 64 * SKG_CELL_COLUMNS };
-    static const double one[] = {1, 0, 0, 0};
+    static const double one[SKG_SCATTER_RANK] = {1, 0, 0, 0};
     subject s = {0};
     add(&s, solid_blob(20, 60, 30, 5), one);
     skg_cells cells = make(&s, 0);
@@ -261,6 +260,102 @@ START_TEST(columns_are_path_lengths_of_images) {
 }
 END_TEST
 
+/* The sum of coefficients times mm between places of the world, as photons read the cells. */
+static void along(const skg_cells *cells, const double *from, const double *to, double mm[SKG_SCATTER_RANK]) {
+    double ends[2][3];
+    for (int k = 0; k < 3; k++) ends[0][k] = from[k] - cells->low[k], ends[1][k] = to[k] - cells->low[k];
+    skg_cells_along(cells, ends[0], ends[1], mm);
+}
+
+static const double unit_mu[SKG_SCATTER_RANK] = {1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1, 1};
+
+static void trace_all(const subject *s, skg_cells *cells) {
+    const skg_cell_parts parts = {.count = s->count,
+                                  .solids = s->solids,
+                                  .sign = s->sign,
+                                  .coefficients = (const double(*)[SKG_SCATTER_RANK])s->coefficients};
+    ck_skg(skg_cells_trace(&parts, unit_mu, 0, cells));
+}
+
+/* A foil of .05 mm and a box of a millimetre in a room of 2 m: photons meet their faces, in any direction, from within as from outside. */
+START_TEST(thin_parts_in_a_room_have_their_lengths) {
+    static const double dense[SKG_SCATTER_RANK] = {10, 0, 0, 0}, thin[SKG_SCATTER_RANK] = {0, 1, 0, 0};
+    static const double turn[12] = {0.8, 0, 0.6, 100, 0, 1, 0, 0, -0.6, 0, 0.8, 30};
+    subject s = {0};
+    add(&s, solid_box(2000, 2000, 20), thin);
+    add(&s, solid_box(300, 200, 0.05), dense);
+    solid_move(&s.of[1], turn);
+    solid_shift(&s.of[0], 0, 0, 900);
+    skg_cells cells = make(&s, 0);
+    trace_all(&s, &cells);
+    ck_assert_int_eq(cells.smeared, 0);
+    for (int i = 0; i < 200; i++) {
+        /* Through a place of the foil, and on: from far away, and from a mm before it. */
+        const double at[2] = {-140 + 280 * fmod(0.618 * i, 1), -90 + 180 * fmod(0.414 * i, 1)};
+        const double way[3] = {0.3 * sin(i), 0.3 * cos(2 * i), 1};
+        const double cosine = 0.6 * way[0] + 0.8 * way[2], far = i % 2 ? 1 : 800;
+        double from[3], to[3], mm[SKG_SCATTER_RANK];
+        for (int k = 0; k < 3; k++) {
+            const double on = turn[4 * k] * at[0] + turn[4 * k + 1] * at[1] + turn[4 * k + 3];
+            from[k] = on - far * way[k], to[k] = on + 700 * way[k];
+        }
+        const double length = sqrt(way[0] * way[0] + way[1] * way[1] + 1);
+        along(&cells, from, to, mm);
+        /* Faces are floats: 6e-5 mm in a metre, of a foil of .05 mm. */
+        ck_assert_double_eq_tol(mm[0] / (10 * 0.05 * length / fabs(cosine)), 1, 5e-3);
+        ck_assert_double_eq(mm[1], 0);
+    }
+    /* From the middle of the foil half of it is left. */
+    const double from[3] = {100, 0, 30}, to[3] = {100 + 60, 0, 30 + 80};
+    double mm[SKG_SCATTER_RANK];
+    along(&cells, from, to, mm);
+    ck_assert_double_eq_tol(mm[0] / (10 * 0.025), 1, 5e-3);
+    skg_cells_free(&cells);
+    drop(&s);
+}
+END_TEST
+
+/* Many faces in few cells: bricks. A sphere's chords, and what lies in it. */
+START_TEST(many_faces_in_a_cell_make_a_brick) {
+    static const double ball[SKG_SCATTER_RANK] = {1, 0, 0, 0}, inner[SKG_SCATTER_RANK] = {-1, 2, 0, 0},
+                        far[SKG_SCATTER_RANK] = {0, 0, 1, 0};
+    subject s = {0};
+    add(&s, solid_sphere(6, 96, 48), ball);
+    add(&s, solid_sphere(2, 96, 48), inner);
+    skg_cells alone = make(&s, 0);
+    trace_all(&s, &alone);
+    solid box = solid_box(10, 10, 10);
+    solid_shift(&box, 500, 600, 700);
+    subject room = s;
+    room.solids[room.count] = (skg_solid){box.vertices, box.triangles, box.positions, box.corners, -1};
+    room.sign[room.count] = 1;
+    memcpy(room.coefficients[room.count++], far, sizeof far);
+    skg_cells cells = make(&room, 0);
+    trace_all(&room, &cells);
+    double most = 0;
+    for (int i = 0; i < 500; i++) {
+        const double from[3] = {-20, 12 * fmod(0.618 * i, 1) - 6, 12 * fmod(0.414 * i, 1) - 6};
+        const double to[3] = {30, from[1] + 3 * sin(i), from[2] + 3 * cos(i)};
+        double mm[SKG_SCATTER_RANK], own[SKG_SCATTER_RANK];
+        along(&cells, from, to, mm);
+        along(&alone, from, to, own);
+        for (int k = 0; k < 2; k++) most = fmax(most, fabs(mm[k] - own[k]));
+    }
+    ck_assert_double_le(
+        most, 1e-3); /* both are floats, one of them in a room of 700 mm: 6e-5 mm at slopes of up to 10 */
+    /* Through the middle, where each way has the chord of the polyhedron. */
+    const double from[3] = {-20, 0.01, 0.02}, to[3] = {20, 0.01, 0.02};
+    double mm[SKG_SCATTER_RANK];
+    along(&cells, from, to, mm);
+    ck_assert_double_eq_tol(mm[0], 12 - 4, 0.02);
+    ck_assert_double_eq_tol(mm[1], 2 * 4, 0.02);
+    skg_cells_free(&cells);
+    skg_cells_free(&alone);
+    solid_free(&box);
+    drop(&s);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_test(tests, a_box_fills_its_cells);
@@ -269,6 +364,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, void_is_nothing);
     tcase_add_test(tests, mirrored_parts_are_solid_too);
     tcase_add_test(tests, priorities_decide_where_parts_overlap);
+    tcase_add_test(tests, thin_parts_in_a_room_have_their_lengths);
+    tcase_add_test(tests, many_faces_in_a_cell_make_a_brick);
     tcase_add_test(tests, without_parts_there_are_no_cells);
     tcase_add_test(tests, columns_are_path_lengths_of_images);
 }

@@ -32,7 +32,7 @@ static void drop(subject *s) {
 }
 
 /* A table at a place in units of its points, for one material, as a kernel reads it. */
-static double read_table(const subject *s, int64_t material, const skg_mix4 *table, int64_t points,
+static double read_table(const subject *s, int64_t material, const skg_mixture *table, int64_t points,
                          double place) {
     int64_t i = (int64_t)place;
     if (i > points - 2) i = points - 2;
@@ -44,13 +44,13 @@ static double read_table(const subject *s, int64_t material, const skg_mix4 *tab
     return sum;
 }
 
-static double at_energy(const subject *s, int64_t material, const skg_mix4 *table, double kev) {
+static double at_energy(const subject *s, int64_t material, const skg_mixture *table, double kev) {
     const skg_scatter_physics *p = &s->physics;
     return read_table(s, material, table, p->energies,
                       log(kev / p->low_kev) / log(p->high_kev / p->low_kev) * (double)(p->energies - 1));
 }
 
-static double at_momentum(const subject *s, int64_t material, const skg_mix4 *table, double x) {
+static double at_momentum(const subject *s, int64_t material, const skg_mixture *table, double x) {
     const skg_scatter_physics *p = &s->physics;
     return read_table(s, material, table, p->momenta,
                       log1p(x / p->momentum_scale) / log1p(p->momentum_high / p->momentum_scale) *
@@ -87,7 +87,7 @@ static void compare_with_materials(int64_t count, const char *const *names) {
             skg_coefficients_init(&c);
             ck_skg(skg_material_coefficients_get(s.material[m], kev, &c));
             const double exact = attenuation(s.material[m], kev), density = exact / c.total;
-            const skg_mix4 *const table[] = {s.physics.total, s.physics.compton, s.physics.rayleigh};
+            const skg_mixture *const table[] = {s.physics.total, s.physics.compton, s.physics.rayleigh};
             const double expected[] = {exact, density * c.compton, density * c.rayleigh};
             for (int f = 0; f < 3 && !near_edge(kev); f++) {
                 const double found = at_energy(&s, m, table[f], kev);

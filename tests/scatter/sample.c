@@ -9,10 +9,10 @@
 
 /* One interaction of each photon at the middle of a cell: how it flies on. out: weight, cosine, keV, 1 after a Compton scattering */
 static const char sampling_kernel[] =
-    "__kernel void sample(skg_scatter_args args, __global const float4 *cells, __global const float4 *energies,\n"
+    "__kernel void sample(skg_scatter_args args, __global const float4 *media, __global const uint *tree, __global const float4 *faces, __global const float4 *energies,\n"
     "                     __global const float4 *momenta, __global const float *angles, int cell, float kev,\n"
     "                     int photons, __global float4 *out) {\n"
-    "    const skg_scattering s = {&args, cells, energies, momenta, 0};\n"
+    "    const skg_scattering s = {&args, {media, tree, faces}, energies, momenta, 0};\n"
     "    const int first = (int)get_global_id(0) * SKG_WIDE;\n"
     "    int number[SKG_WIDE], changed[SKG_WIDE];\n"
     "    float weight[SKG_WIDE], cosine[SKG_WIDE], left[SKG_WIDE];\n"
@@ -23,14 +23,14 @@ static const char sampling_kernel[] =
     "    const skg_place3 way = {(skg_fv)(0.48f), (skg_fv)(-0.6f), (skg_fv)(0.64f)};\n"
     "    skg_photons p = {.at = {middle[0], middle[1], middle[2]}, .way = way, .kev = (skg_fv)(kev), .weight = (skg_fv)(1.0f),\n"
     "                     .order = (skg_uv)(0u), .alive = (skg_intv)(-1), .changed = (skg_intv)(0)};\n"
-    "    for (int l = 0; l < SKG_WIDE; l++) number[l] = first + l, i.cell.of[l] = cells[cell];\n"
+    "    for (int l = 0; l < SKG_WIDE; l++) number[l] = first + l, skg_mix_clear(&i.medium.of[l]), skg_mix_add(media, SKG_CELL_MEDIUM_OF(tree[cell]), 1.0f, &i.medium.of[l]);\n"
     "    const skg_intv numbers = SKG_LOAD_V(intv, number);\n"
     "    const skg_fv place = skg_energy_place(&args, p.kev);\n"
-    "    i.total = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.cell);\n"
-    "    i.compton = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.cell);\n"
-    "    i.rayleigh = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.cell);\n"
-    "    i.compton_shape = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.cell);\n"
-    "    i.rayleigh_shape = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.cell);\n"
+    "    i.total = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.medium);\n"
+    "    i.compton = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.medium);\n"
+    "    i.rayleigh = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.medium);\n"
+    "    i.compton_shape = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.medium);\n"
+    "    i.rayleigh_shape = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.medium);\n"
     "    skg_see(&args, p.at, &sight);\n"
     "    skg_words(&args, SKG_AS_UINT_V(numbers), p.order, 0, 0, words);\n"
     "    const skg_fv angle = (SKG_TO_FLOAT_V(numbers) + (skg_fv)(0.5f)) * (skg_fv)(1.0f / photons);\n"
@@ -42,13 +42,13 @@ static const char sampling_kernel[] =
     "    for (int l = 0; l < SKG_WIDE; l++) out[first + l] = (float4)(weight[l], cosine[l], left[l], changed[l] ? 1.0f : 0.0f);\n"
     "}\n";
 
-enum { TEXTS = 17 };
+enum { TEXTS = 18 };
 
 static skg_status build(skg_context *context, cl_program *program) {
     static const char *const names[TEXTS - 1] = {
-        "config.clh",   "types.clh",       "skg_shared.h", "scalar.clh", "triangle.clh", "wide.clh",
-        "triangle.clh", "exponential.clh", "random.clh",   "noise.clh",  "scatter.clh",  "sight.clh",
-        "strips.clh",   "arrive.clh",      "profile.clh",  "scatter.cl"};
+        "config.clh",   "types.clh",       "skg_shared.h", "scalar.clh",  "triangle.clh", "wide.clh",
+        "triangle.clh", "exponential.clh", "random.clh",   "noise.clh",   "scatter.clh",  "walk.clh",
+        "sight.clh",    "strips.clh",      "arrive.clh",   "profile.clh", "scatter.cl"};
     const char *texts[TEXTS] = {0};
     char options[256];
     cl_int code = CL_SUCCESS;
@@ -74,14 +74,16 @@ static skg_status launch(skg_context *context, const skg_tracing *t, cl_program 
     SKG_TRY(skg_buffer_reserve(context, buffer, bytes, CL_MEM_READ_WRITE, "sample"));
     const skg_argument arguments[] = {
         {0, sizeof t->args, &t->args},
-        {1, sizeof t->cells.memory, &t->cells.memory},
-        {2, sizeof t->energies.memory, &t->energies.memory},
-        {3, sizeof t->momenta.memory, &t->momenta.memory},
-        {4, sizeof t->angles.memory, &t->angles.memory},
-        {5, sizeof cell, &cell},
-        {6, sizeof energy, &energy},
-        {7, sizeof photons, &photons},
-        {8, sizeof buffer->memory, &buffer->memory},
+        {1, sizeof t->media.memory, &t->media.memory},
+        {2, sizeof t->tree.memory, &t->tree.memory},
+        {3, sizeof t->faces.memory, &t->faces.memory},
+        {4, sizeof t->energies.memory, &t->energies.memory},
+        {5, sizeof t->momenta.memory, &t->momenta.memory},
+        {6, sizeof t->angles.memory, &t->angles.memory},
+        {7, sizeof cell, &cell},
+        {8, sizeof energy, &energy},
+        {9, sizeof photons, &photons},
+        {10, sizeof buffer->memory, &buffer->memory},
     };
     SKG_TRY(SKG_LAUNCH_ONCE(context, program, "sample", "sample", &work, arguments, NULL));
     SKG_CL_TRY(clEnqueueReadBuffer(context->device->queue, buffer->memory, CL_TRUE, 0, (size_t)bytes, out, 0,

@@ -284,14 +284,13 @@ SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy
 /** Scattered photons: what the object sends to the detector after one or more interactions. Prepare with
  * skg_scatter_init: to 1 % of the mean.
  *
- * method   Monte Carlo on the device, through cells of which each holds the mixture of materials in it. Photons are made
+ * method   Monte Carlo on the device, through cells that hold a medium, or the faces of the parts in them. Photons are made
  *          to interact and to survive; from each interaction they contribute to directions to the detector. The first
  *          interactions follow a lattice of points in place of random numbers. What arrives is counted on a coarse grid of
  *          the detector and smoothed by cosines, as many as independent batches show to pay.
  * physics  photo absorption, Compton scattering (Klein and Nishina, times the scattering functions of free atoms),
  *          Rayleigh scattering (form factors of free atoms); cross sections of XCOM, as for the primary. Left out:
- *          fluorescence, Doppler broadening, the order of molecules, what the world scatters outside the box of all
- *          parts, what the detector itself scatters.
+ *          fluorescence, Doppler broadening, the order of molecules, what the detector itself scatters.
  * field    without skg_plan_options.collimation the beam that scatters is limited to the detector, from its pixels'
  *          outer edges on */
 typedef struct {
@@ -306,7 +305,8 @@ typedef struct {
     int64_t histories;
     /** Of the histories. Frames with the same scene, view and seed have the same scatter. */
     int64_t seed;
-    /** Sides of the cells, mm, about; 0 (default): 64 cells along each side of the box of all parts. At most 256. */
+    /** Sides of the cells, mm, about; 0 (default): 64 cells along each side of the box of all parts. Cells in
+     * which parts differ hold their faces, however large they are. At most 128 along each side. */
     double voxel_mm;
     /** Places of the detector, along its rows and columns, that arriving photons are counted in; 0 (default): 32 along the
      * longer side, at most one for a pixel. At most 256. */

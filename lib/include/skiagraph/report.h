@@ -121,11 +121,11 @@ typedef struct {
     double rayleigh;
     /** Cells along x, y and z. */
     int64_t cells[3];
-    /** Greatest relative error of attenuation and angles that four coefficients per cell make, over the materials. */
+    /** Greatest relative error of attenuation and angles that four, eight or twelve coefficients for all materials make. */
     double mixture_error;
-    /** How far the primary through the cells is from that through the surfaces: the sum of the absolute differences over 16 blocks of the
-     * detector, over what passes or what is stopped, whichever is less. Where it is large the scatter may be wrong by as much. 0 for a
-     * frame of a series, and where a part reaches behind the source. */
+    /** How far the primary through the cells is from that through the surfaces: the sum of the absolute differences over 144 blocks of the
+     * detector, over what passes or what is stopped of the rays that meet parts, whichever is less. Four tenths of it are in the stated error.
+     * 0 for a frame of a series, and where a part reaches behind the source. */
     double cells_error;
 } skg_scatter_report;
 

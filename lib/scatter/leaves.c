@@ -1,0 +1,480 @@
+/* Cells as photons read them: a medium as far as it goes, a brick of finer cells, or the faces of parts in a cell. */
+#include "scatter/media.h"
+
+#include "core/maths.h"
+#include "core/threads.h"
+#include "skg_shared.h"
+
+#include <math.h>
+#include <string.h>
+
+/* A cell with more faces gets a brick of finer cells: so many along each side that one of them has about FACES, as surfaces have n^2 of
+ * n^3 cells, and no more than ROOM finer cells for each face, which bounds the memory. */
+enum { FACES = 12, ROOM = 8, FINEST = 16 };
+static const double PER_FINE = 3;
+
+typedef struct {
+    const skg_cell_parts *parts;
+    skg_cells *cells;
+    const double *mu;
+    double limit;
+    double (*corners)[9];     /* [faces] in cells */
+    int32_t *part;            /* [faces] */
+    skg_cell_amount *amounts; /* [parts] with the sign of the solid */
+    uint32_t *more;           /* [parts] the medium that a face adds */
+    int64_t *seen;            /* [parts] 1 + the cell that a part was last seen in */
+    skg_media media;
+    skg_words tree;
+    int64_t *first;     /* [cells + 1] */
+    uint32_t *faces_of; /* of each cell */
+} planting;
+
+static int64_t cells_of(const skg_cells *cells) {
+    return cells->count[0] * cells->count[1] * cells->count[2];
+}
+
+static void place_of(const skg_cells *cells, int64_t cell, double place[3]) {
+    place[0] = (double)(cell % cells->count[0]);
+    place[1] = (double)(cell / cells->count[0] % cells->count[1]);
+    place[2] = (double)(cell / cells->count[0] / cells->count[1]);
+}
+
+/* --- faces */
+
+static skg_status find_faces(planting *p) {
+    const skg_cells *cells = p->cells;
+    int64_t count = 0, f = 0;
+    for (int64_t s = 0; s < p->parts->count; s++) count += p->parts->solids[s].triangles;
+    SKG_TRY(skg_alloc(count, sizeof *p->corners, "cells", &p->corners));
+    SKG_TRY(skg_alloc(count, sizeof *p->part, "cells", &p->part));
+    for (int64_t s = 0; s < p->parts->count; s++) {
+        const skg_solid *solid = &p->parts->solids[s];
+        for (int64_t t = 0; t < solid->triangles; t++, f++) {
+            p->part[f] = (int32_t)s;
+            for (int c = 0; c < 9; c++) {
+                const int k = c % 3;
+                p->corners[f][c] =
+                    (solid->positions[3 * (int64_t)solid->corners[3 * t + c / 3] + k] - cells->low[k]) /
+                    cells->size[k] * (double)cells->count[k];
+            }
+        }
+    }
+    p->cells->face_count = count;
+    return SKG_OK;
+}
+
+/* Adds each cell that a face has a piece in, and the face, to `pairs`. */
+static skg_status visit(planting *p, int64_t face, skg_words *pairs) {
+    const int64_t *count = p->cells->count;
+    const double margin = -(double)SKG_CELL_MARGIN;
+    int64_t first[3], last[3], place = 0;
+    skg_face_cells(p->corners[face], count, margin, first, last);
+    const int alone = first[0] == last[0] && first[1] == last[1] && first[2] == last[2];
+    for (int64_t z = first[2]; z <= last[2]; z++)
+        for (int64_t y = first[1]; y <= last[1]; y++)
+            for (int64_t x = first[0]; x <= last[0]; x++) {
+                const double low[3] = {(double)x, (double)y, (double)z};
+                if (!alone && !skg_face_in_cell(p->corners[face], low, margin)) continue;
+                SKG_TRY(skg_words_grow(pairs, 2, &place));
+                pairs->of[place] = (uint32_t)((z * count[1] + y) * count[0] + x);
+                pairs->of[place + 1] = (uint32_t)face;
+            }
+    return SKG_OK;
+}
+
+/* Faces in shares of all, each share by one thread. */
+enum { SHARES = 16 };
+typedef struct {
+    planting *p;
+    skg_words pairs[SHARES];
+} visits;
+
+static skg_status visit_share(void *user, int64_t share) {
+    visits *v = user;
+    const int64_t count = v->p->cells->face_count;
+    for (int64_t f = share * count / SHARES; f < (share + 1) * count / SHARES; f++)
+        SKG_TRY(visit(v->p, f, &v->pairs[share]));
+    return SKG_OK;
+}
+
+static skg_status sort_pairs(planting *p, const visits *v) {
+    const int64_t total = cells_of(p->cells);
+    SKG_TRY(skg_alloc(total + 1, sizeof *p->first, "cells", &p->first));
+    for (int s = 0; s < SHARES; s++)
+        for (int64_t i = 0; i < v->pairs[s].count; i += 2) p->first[v->pairs[s].of[i] + 1]++;
+    for (int64_t c = 0; c < total; c++) p->first[c + 1] += p->first[c];
+    SKG_TRY(skg_alloc(p->first[total] + 1, sizeof *p->faces_of, "cells", &p->faces_of));
+    for (int s = 0; s < SHARES; s++)
+        for (int64_t i = 0; i < v->pairs[s].count; i += 2)
+            p->faces_of[p->first[v->pairs[s].of[i]]++] = v->pairs[s].of[i + 1];
+    memmove(p->first + 1, p->first, (size_t)total * sizeof *p->first);
+    p->first[0] = 0;
+    return SKG_OK;
+}
+
+/* The faces in each cell. */
+static skg_status sort_faces(planting *p) {
+    visits v = {.p = p};
+    skg_status status = skg_parallel(SHARES, visit_share, &v);
+    if (status == SKG_OK) status = sort_pairs(p, &v);
+    for (int s = 0; s < SHARES; s++) skg_free(&v.pairs[s].of);
+    return status;
+}
+
+/* --- words */
+
+static uint32_t word_of(uint32_t kind, int64_t place) {
+    return kind << 30 | (uint32_t)place;
+}
+
+/* A list of faces, and its word. at: where the medium is known, in coarse cells */
+static skg_status make_list(planting *p, uint32_t medium, const double at[3], int64_t count,
+                            const uint32_t *faces, uint32_t *word) {
+    int64_t place = 0;
+    SKG_TRY(skg_words_grow(&p->tree, SKG_LIST_HEAD + count, &place));
+    uint32_t *list = p->tree.of + place;
+    list[0] = medium, list[1] = (uint32_t)count;
+    for (int k = 0; k < 3; k++) {
+        const float mm = (float)(at[k] * p->cells->size[k] / (double)p->cells->count[k]);
+        memcpy(&list[2 + k], &mm, sizeof mm);
+    }
+    memcpy(list + SKG_LIST_HEAD, faces, (size_t)count * sizeof *faces);
+    *word = word_of(SKG_CELL_FACES, place);
+    return SKG_OK;
+}
+
+/* --- bricks: coordinates in finer cells */
+
+typedef struct {
+    planting *p;
+    int64_t n, cell, count;
+    const uint32_t *faces; /* [count] of the coarse cell */
+    double low[3];         /* of the coarse cell, in coarse cells */
+    double (*corners)[9];  /* [count] */
+    int64_t *first;        /* [n^3 + 1] */
+    uint32_t *
+        list; /* of each finer cell: 2 * the place of a face in the list of the coarse cell, + 1 if it is within */
+    skg_cell_amount *state; /* [n^3] */
+} brick;
+
+static void fine_place(const brick *b, int64_t fine, double at[3]) {
+    at[0] = (double)(fine % b->n) + SKG_KNOWN[0];
+    at[1] = (double)(fine / b->n % b->n) + SKG_KNOWN[1];
+    at[2] = (double)(fine / b->n / b->n) + SKG_KNOWN[2];
+}
+
+/* Faces on boundaries change the state on the way from one finer cell to the next, but are in neither list of the device. */
+static void share_faces(brick *b, int take) {
+    const double margin = (double)SKG_CELL_MARGIN * (double)b->n;
+    const int64_t count[3] = {b->n, b->n, b->n};
+    int64_t first[3], last[3];
+    for (int64_t f = 0; f < b->count; f++) {
+        skg_face_cells(b->corners[f], count, margin, first, last);
+        for (int64_t z = first[2]; z <= last[2]; z++)
+            for (int64_t y = first[1]; y <= last[1]; y++)
+                for (int64_t x = first[0]; x <= last[0]; x++) {
+                    const double low[3] = {(double)x, (double)y, (double)z};
+                    const int64_t fine = (z * b->n + y) * b->n + x;
+                    if (!skg_face_in_cell(b->corners[f], low, margin)) continue;
+                    if (!take) {
+                        b->first[fine + 1]++;
+                        continue;
+                    }
+                    b->list[b->first[fine]++] =
+                        (uint32_t)(2 * f + skg_face_in_cell(b->corners[f], low, -margin));
+                }
+    }
+}
+
+static void cross(const brick *b, int64_t face, const double from[3], const double to[3], int64_t *state) {
+    double share;
+    const int sign = skg_face_crossed(b->corners[face], from, to, &share);
+    const int64_t *more = b->p->amounts[b->p->part[b->faces[face]]];
+    for (int k = 0; sign && k < SKG_SCATTER_RANK; k++) state[k] += sign * more[k];
+}
+
+static int holds(const brick *b, int64_t fine, uint32_t face) {
+    for (int64_t i = b->first[fine]; i < b->first[fine + 1]; i++)
+        if (b->list[i] / 2 == face) return 1;
+    return 0;
+}
+
+/* What is at the known place of each finer cell, from one to the next. */
+static void find_states(brick *b) {
+    const int64_t n = b->n;
+    double from[3], to[3];
+    for (int64_t fine = 0; fine < n * n * n; fine++) {
+        const int64_t before = fine % n ? fine - 1 : fine / n % n ? fine - n : fine - n * n;
+        fine_place(b, fine, to);
+        if (fine == 0) {
+            for (int k = 0; k < 3; k++) from[k] = SKG_KNOWN[k] * (double)n;
+            memcpy(b->state[0], b->p->cells->known[b->cell], sizeof *b->state);
+            for (int64_t f = 0; f < b->count; f++) cross(b, f, from, to, b->state[0]);
+            continue;
+        }
+        fine_place(b, before, from);
+        memcpy(b->state[fine], b->state[before], sizeof *b->state);
+        for (int64_t i = b->first[before]; i < b->first[before + 1]; i++)
+            cross(b, b->list[i] / 2, from, to, b->state[fine]);
+        for (int64_t i = b->first[fine]; i < b->first[fine + 1]; i++)
+            if (!holds(b, before, b->list[i] / 2)) cross(b, b->list[i] / 2, from, to, b->state[fine]);
+    }
+}
+
+static skg_status write_brick(brick *b, uint32_t *word) {
+    const int64_t fine = b->n * b->n * b->n;
+    uint32_t *own = NULL;
+    int64_t place = 0;
+    SKG_TRY(skg_alloc(b->count + 1, sizeof *own, "cells", &own));
+    skg_status status = skg_words_grow(&b->p->tree, 1 + fine, &place);
+    if (status == SKG_OK) b->p->tree.of[place] = (uint32_t)b->n;
+    for (int64_t c = 0; status == SKG_OK && c < fine; c++) {
+        uint32_t medium = 0, made = 0;
+        int64_t count = 0;
+        double at[3];
+        for (int64_t i = b->first[c]; i < b->first[c + 1]; i++)
+            if (b->list[i] % 2) own[count++] = b->faces[b->list[i] / 2];
+        fine_place(b, c, at);
+        for (int k = 0; k < 3; k++) at[k] = b->low[k] + at[k] / (double)b->n;
+        status = skg_media_find(&b->p->media, (const int64_t *)b->state[c], &medium);
+        made = word_of(SKG_CELL_MEDIUM, medium);
+        if (status == SKG_OK && count) status = make_list(b->p, medium, at, count, own, &made);
+        if (status == SKG_OK) b->p->tree.of[place + 1 + c] = made;
+    }
+    skg_free(&own);
+    *word = word_of(SKG_CELL_BRICK, place);
+    return status;
+}
+
+static skg_status make_brick(planting *p, int64_t cell, int64_t count, const uint32_t *faces,
+                             uint32_t *word) {
+    const double most = fmin(sqrt((double)count / PER_FINE), cbrt(ROOM * (double)count));
+    brick b = {.p = p,
+               .cell = cell,
+               .count = count,
+               .faces = faces,
+               .n = (int64_t)fmin(fmax(ceil(most), 2), FINEST)};
+    const int64_t fine = b.n * b.n * b.n;
+    skg_status status = SKG_OK;
+    place_of(p->cells, cell, b.low);
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *b.corners, "cells", &b.corners));
+    SKG_TRY_CLEANUP(skg_alloc(fine + 1, sizeof *b.first, "cells", &b.first));
+    SKG_TRY_CLEANUP(skg_alloc(fine, sizeof *b.state, "cells", &b.state));
+    for (int64_t f = 0; f < count; f++)
+        for (int c = 0; c < 9; c++) b.corners[f][c] = (p->corners[faces[f]][c] - b.low[c % 3]) * (double)b.n;
+    share_faces(&b, 0);
+    for (int64_t c = 0; c < fine; c++) b.first[c + 1] += b.first[c];
+    SKG_TRY_CLEANUP(skg_alloc(b.first[fine] + 1, sizeof *b.list, "cells", &b.list));
+    share_faces(&b, 1);
+    memmove(b.first + 1, b.first, (size_t)fine * sizeof *b.first);
+    b.first[0] = 0;
+    find_states(&b);
+    status = write_brick(&b, word);
+cleanup:
+    skg_free(&b.corners);
+    skg_free(&b.first);
+    skg_free(&b.list);
+    skg_free(&b.state);
+    return status;
+}
+
+/* --- coarse cells */
+
+/* The optical depth over a side of a cell by which its media may differ: of all parts that have faces there. */
+static double contrast_of(planting *p, int64_t cell) {
+    const skg_cells *cells = p->cells;
+    double side = 0, sum = 0;
+    for (int k = 0; k < 3; k++) side = fmax(side, cells->size[k] / (double)cells->count[k]);
+    for (int64_t i = p->first[cell]; i < p->first[cell + 1]; i++) {
+        const int64_t part = p->part[p->faces_of[i]];
+        double more = 0;
+        if (p->seen[part] == cell + 1) continue;
+        p->seen[part] = cell + 1;
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) more += p->mu[k] * p->parts->coefficients[part][k];
+        sum += fabs(more) * side;
+    }
+    return sum;
+}
+
+static skg_status make_word(planting *p, int64_t cell, uint32_t *word) {
+    const int64_t count = p->first[cell + 1] - p->first[cell];
+    const uint32_t *faces = p->faces_of + p->first[cell];
+    uint32_t medium = 0;
+    if (count && (p->parts->priority || !(contrast_of(p, cell) > p->limit))) {
+        SKG_TRY(skg_media_add(&p->media, p->cells->mixtures[cell], &medium));
+        *word = word_of(SKG_CELL_MEDIUM, medium);
+        p->cells->smeared++;
+        return SKG_OK;
+    }
+    if (count > FACES) {
+        p->cells->traced++;
+        return make_brick(p, cell, count, faces, word);
+    }
+    SKG_TRY(skg_media_find(&p->media, (const int64_t *)p->cells->known[cell], &medium));
+    *word = word_of(SKG_CELL_MEDIUM, medium);
+    if (count == 0) return SKG_OK;
+    double at[3];
+    place_of(p->cells, cell, at);
+    for (int k = 0; k < 3; k++) at[k] += SKG_KNOWN[k];
+    p->cells->traced++;
+    return make_list(p, medium, at, count, faces, word);
+}
+
+/* --- leaps */
+
+/* The least of the neighbours' leaps and one more, along the sweep of a chessboard's distance (G. Borgefors, Distance transformations
+ * in digital images, Computer Vision, Graphics, and Image Processing 34 (1986) 344-371). */
+static int64_t nearest(const skg_cells *cells, const uint8_t *leap, int64_t x, int64_t y, int64_t z,
+                       int64_t sweep) {
+    int64_t least = SKG_CELL_LEAP_MAX;
+    for (int64_t n = 0; n < 13; n++) {
+        const int64_t i = x + sweep * (n % 3 - 1), j = y + sweep * (n / 3 % 3 - 1),
+                      k = z + sweep * (n / 9 - 1);
+        if (i < 0 || j < 0 || k < 0 || i >= cells->count[0] || j >= cells->count[1] || k >= cells->count[2])
+            continue;
+        const int64_t own = leap[(k * cells->count[1] + j) * cells->count[0] + i] + 1;
+        least = own < least ? own : least;
+    }
+    return least;
+}
+
+/* 1 if a neighbour has another word. Beyond the box there is nothing that differs. */
+static int differs(const skg_cells *cells, const uint32_t *words, int64_t x, int64_t y, int64_t z) {
+    const int64_t across = cells->count[0], plane = across * cells->count[1],
+                  own = z * plane + y * across + x;
+    for (int64_t k = z > 0 ? -1 : 0; k <= (z + 1 < cells->count[2]); k++)
+        for (int64_t j = y > 0 ? -1 : 0; j <= (y + 1 < cells->count[1]); j++)
+            for (int64_t i = x > 0 ? -1 : 0; i <= (x + 1 < across); i++)
+                if (words[own + k * plane + j * across + i] != words[own]) return 1;
+    return 0;
+}
+
+typedef struct {
+    const skg_cells *cells;
+    const uint32_t *words;
+    uint8_t *leap;
+} leaping;
+
+/* A plane of cells: those beside another word have no leap. */
+static skg_status begin_plane(void *user, int64_t z) {
+    const leaping *l = user;
+    const int64_t across = l->cells->count[0], down = l->cells->count[1];
+    for (int64_t y = 0; y < down; y++)
+        for (int64_t x = 0; x < across; x++)
+            l->leap[(z * down + y) * across + x] =
+                differs(l->cells, l->words, x, y, z) ? 0 : SKG_CELL_LEAP_MAX;
+    return SKG_OK;
+}
+
+static skg_status find_leaps(const skg_cells *cells, uint32_t *words) {
+    const int64_t total = cells_of(cells), across = cells->count[0], plane = across * cells->count[1];
+    leaping l = {.cells = cells, .words = words};
+    SKG_TRY(skg_alloc(total, 1, "cells", &l.leap));
+    const skg_status status = skg_parallel(cells->count[2], begin_plane, &l);
+    for (int64_t c = 0; c < total; c++)
+        if (l.leap[c])
+            l.leap[c] =
+                (uint8_t)nearest(cells, l.leap, c % across, c / across % cells->count[1], c / plane, 1);
+    for (int64_t c = total - 1; c >= 0; c--)
+        if (l.leap[c]) {
+            const int64_t own =
+                nearest(cells, l.leap, c % across, c / across % cells->count[1], c / plane, -1);
+            if (own < l.leap[c]) l.leap[c] = (uint8_t)own;
+        }
+    for (int64_t c = 0; c < total; c++)
+        if (SKG_CELL_KIND(words[c]) == SKG_CELL_MEDIUM) words[c] |= (uint32_t)l.leap[c] << 24;
+    skg_free(&l.leap);
+    return status;
+}
+
+/* --- all of it */
+
+static skg_status prepare(planting *p) {
+    const int64_t parts = p->parts->count;
+    static const skg_cell_amount nothing;
+    uint32_t world = 0;
+    SKG_TRY(skg_cells_amounts(p->parts, &p->amounts));
+    SKG_TRY(skg_media_find(&p->media, nothing, &world)); /* the first */
+    SKG_TRY(skg_alloc(parts, sizeof *p->more, "cells", &p->more));
+    SKG_TRY(skg_alloc(parts, sizeof *p->seen, "cells", &p->seen));
+    for (int64_t i = 0; i < parts; i++) {
+        skg_mixture more;
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) {
+            p->amounts[i][k] *= p->parts->sign[i];
+            more[k] = (float)((double)p->amounts[i][k] / SKG_CELL_UNIT);
+        }
+        SKG_TRY(skg_media_add(&p->media, more, &p->more[i]));
+    }
+    SKG_TRY(find_faces(p));
+    return sort_faces(p);
+}
+
+static skg_status plant(planting *p) {
+    const int64_t total = cells_of(p->cells);
+    int64_t first = 0;
+    SKG_TRY(skg_words_grow(&p->tree, total, &first));
+    for (int64_t c = 0; c < total; c++) {
+        uint32_t word = 0;
+        SKG_TRY(make_word(p, c, &word));
+        p->tree.of[c] = word;
+    }
+    return find_leaps(p->cells, p->tree.of);
+}
+
+/* A corner, the normal, and vectors whose products with a place relative to the corner are its shares of both edges. */
+static void write_face(const skg_cells *cells, const double corners[9], float to[16]) {
+    double edge[2][3], normal[3], across[2][3];
+    for (int k = 0; k < 3; k++) {
+        const double mm = cells->size[k] / (double)cells->count[k];
+        to[k] = (float)(corners[k] * mm);
+        for (int e = 0; e < 2; e++) edge[e][k] = (corners[3 + 3 * e + k] - corners[k]) * mm;
+    }
+    skg_cross(edge[0], edge[1], normal);
+    const double square = skg_dot(normal, normal), per = square > 0 ? 1 / square : 0, length = sqrt(square);
+    skg_cross(edge[1], normal, across[0]);
+    skg_cross(normal, edge[0], across[1]);
+    for (int k = 0; k < 3; k++) {
+        to[4 + k] = length > 0 ? (float)(normal[k] / length) : 0;
+        to[8 + k] = (float)(across[0][k] * per);
+        to[12 + k] = (float)(across[1][k] * per);
+    }
+}
+
+static skg_status write_faces(const planting *p) {
+    skg_cells *cells = p->cells;
+    if (cells->traced == 0) cells->face_count = 0;
+    SKG_TRY(skg_alloc(cells->face_count + 1, sizeof *cells->faces, "cells", &cells->faces));
+    for (int64_t f = 0; f < cells->face_count; f++) {
+        memcpy(&cells->faces[f][3], &p->more[p->part[f]], sizeof cells->faces[f][3]);
+        write_face(cells, p->corners[f], cells->faces[f]);
+    }
+    cells->face_count++; /* a buffer is not empty */
+    return SKG_OK;
+}
+
+skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK], double limit,
+                           skg_cells *cells) {
+    planting p = {.parts = parts, .cells = cells, .mu = mu, .limit = limit, .media = {.base = parts->base}};
+    skg_status status = SKG_OK;
+    if (!cells->mixtures) return SKG_OK;
+    skg_free(&cells->media);
+    skg_free(&cells->tree);
+    skg_free(&cells->faces);
+    cells->smeared = cells->traced = 0;
+    SKG_TRY_CLEANUP(prepare(&p));
+    SKG_TRY_CLEANUP(plant(&p));
+    SKG_TRY_CLEANUP(write_faces(&p));
+    cells->media = p.media.mixtures, cells->media_count = p.media.count, p.media.mixtures = NULL;
+    cells->tree = p.tree.of, cells->tree_count = p.tree.count, p.tree.of = NULL;
+cleanup:
+    skg_media_free(&p.media);
+    skg_free(&p.tree.of);
+    skg_free(&p.corners);
+    skg_free(&p.part);
+    skg_free(&p.amounts);
+    skg_free(&p.more);
+    skg_free(&p.seen);
+    skg_free(&p.first);
+    skg_free(&p.faces_of);
+    return status;
+}

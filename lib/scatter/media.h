@@ -1,0 +1,46 @@
+/* The media of an object, and where faces of parts are in its cells. Private. */
+#ifndef SKG_MEDIA_H
+#define SKG_MEDIA_H
+
+#include "scatter/voxels.h"
+
+/* --- Media by their amounts, each once. All zero: none. */
+
+typedef struct {
+    const double *base; /* of skg_cell_parts, or NULL */
+    int64_t count, capacity, slots;
+    skg_mixture *mixtures;       /* [count] */
+    skg_cell_amount *amounts; /* [count] of those that were found by them */
+    uint32_t *slot;           /* [slots] 1 + the number of a medium, 0: free */
+} skg_media;
+
+/* The number of the medium with these amounts beyond the base, which is new if there is none. */
+skg_status skg_media_find(skg_media *media, const skg_cell_amount amounts, uint32_t *number);
+
+/* Adds a mixture as it is. */
+skg_status skg_media_add(skg_media *media, const float *mixture, uint32_t *number);
+void skg_media_free(skg_media *media);
+
+/* --- Faces of parts in cells. Coordinates are in cells. */
+
+/* Whether a triangle has a piece within a margin around the cell whose lowest corner is at `low`; a margin below 0 is within it. */
+int skg_face_in_cell(const double corners[9], const double low[3], double margin);
+
+/* The range of cells that hold a triangle's box: first to last along each side, from 0 to count - 1. */
+void skg_face_cells(const double corners[9], const int64_t count[3], double margin, int64_t first[3],
+                    int64_t last[3]);
+
+/* Whether a line from one place to another crosses a triangle: 1 into the part, -1 out of it; 0: not. */
+int skg_face_crossed(const double corners[9], const double from[3], const double to[3], double *share);
+
+/* --- Growing lists. */
+
+typedef struct {
+    int64_t count, capacity;
+    uint32_t *of;
+} skg_words;
+
+/* Makes room for `more` words behind the last, which are not set; *first: the number of the first of them. */
+skg_status skg_words_grow(skg_words *words, int64_t more, int64_t *first);
+
+#endif
