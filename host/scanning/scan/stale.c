@@ -4,6 +4,7 @@
 #include "core/text.h"
 
 #include <dirent.h>
+#include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -35,15 +36,22 @@ static void clear_file(const skg_scan_file *file, const char *folder, const char
 }
 
 void skg_scan_remove_stale(const skg_scan_file *file) {
-    char *folder = NULL;
+    char *folder = NULL, name[NAME_MAX + 1];
     if (file->format == &skg_scan_format_folder) {
         clear(file->path, "scan.txt", "scan.txt");
         clear(file->path, file->options.stem ? file->options.stem : "projection-", ".tif");
+        if (file->options.stem) return;
+        clear(file->path, "flat-", ".tif");
+        clear(file->path, "dark-", ".tif");
         return;
     }
     if (skg_copy_text(file->path, &folder) != SKG_OK) return;
     char *slash = strrchr(folder, '/');
     if (slash) *slash = '\0';
-    clear_file(file, slash ? slash == folder ? "/" : folder : ".", slash ? slash + 1 : folder);
+    const char *in = slash ? slash == folder ? "/" : folder : ".";
+    clear_file(file, in, slash ? slash + 1 : folder);
+    for (int32_t dark = 0; dark < 2 && file->format->fields_beside; dark++)
+        if (skg_scan_fields_name_get(file->path, dark, name, sizeof name) == SKG_OK)
+            clear_file(file, in, name);
     skg_free(&folder);
 }
