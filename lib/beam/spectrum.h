@@ -41,6 +41,9 @@ double skg_response_lowest(const skg_response *response);
 /* Whether K fluorescence leaves the layer. */
 int skg_response_escapes(const skg_response *response);
 
+/* 1 if scattered photons are followed in its layer. */
+int skg_response_transports(const skg_response *response);
+
 /* The transmission exp(-sum of mu times thickness) of filters at an energy. */
 skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double energy_kev, double *passed);
 

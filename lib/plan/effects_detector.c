@@ -178,8 +178,23 @@ static void find_escape(const skg_effect_facts *f, skg_effect_state *state) {
         skg_effect_set(state, 0, "the detector is ideal");
     else
         skg_effect_set(state, 0,
+                       skg_response_is_layer(response) ? "not asked for: fluorescence stays in the layer"
+                                                       : "the response is a table");
+}
+
+static void find_deposition(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_response *response = f->recipe->options.response;
+    if (skg_response_transports(response))
+        skg_effect_set(
+            state, 1,
+            "photons that the scintillator scatters leave it or are absorbed elsewhere in it: recorded "
+            "energies and Swank factors are those of what is left");
+    else if (!response)
+        skg_effect_set(state, 0, "the detector is ideal");
+    else
+        skg_effect_set(state, 0,
                        skg_response_is_layer(response)
-                           ? "not asked for: every photon that interacts is absorbed"
+                           ? "not asked for: every photon that interacts leaves all its energy"
                            : "the response is a table");
 }
 
@@ -307,6 +322,8 @@ const skg_effect_row skg_effect_oblique = {"oblique scintillator", SKG_SELF_TEST
     NULL, check_oblique, has_oblique, find_oblique, cost_oblique};
 const skg_effect_row skg_effect_escape = {"K escape", SKG_SELF_TEST_CORE,
     NULL, NULL, NULL, find_escape, NULL};
+const skg_effect_row skg_effect_deposition = {"scintillator scatter", SKG_SELF_TEST_CORE,
+    NULL, NULL, NULL, find_deposition, NULL};
 const skg_effect_row skg_effect_depths = {"blur by depths", SKG_SELF_TEST_DEPTHS,
     copy_depths, check_depths, has_blur, find_depths, cost_depths};
 const skg_effect_row skg_effect_dqe = {"noise power", SKG_SELF_TEST_APART,

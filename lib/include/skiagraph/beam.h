@@ -267,7 +267,8 @@ SKG_API skg_status skg_response_load(const char *path, const char *unit, int32_t
  *     packing        fraction of the material's density that the layer has, above 0 to 1; needles of CsI have
  *                    0.75 to 0.85
  *     method         R = E (1 - exp(-mu t)): every photon that interacts is fully absorbed and no
- *                    fluorescence escapes, so this is an upper bound */
+ *                    fluorescence escapes, so this is an upper bound; skg_response_create_transporting and
+ *                    skg_response_create_escaping make it lower */
 SKG_API skg_status skg_response_create_scintillator(const skg_material *material, double thickness_mm,
                                                     double packing, skg_response **response);
 
@@ -286,6 +287,18 @@ SKG_API skg_status skg_response_create_screen(const skg_material *material, doub
  *                    the layer is not considered.
  *     errors         SKG_ERR_BEAM if the response is a table; SKG_ERR_MATERIAL if the composition is unknown */
 SKG_API skg_status skg_response_create_escaping(const skg_response *scintillator, skg_response **response);
+
+/** Makes the response of a scintillator in which scattered photons are followed: Compton scattering leaves the energy of the electron,
+ * and the scattered photon, as after Rayleigh scattering, is absorbed elsewhere or lost.
+ *
+ * of 600 um CsI (packing 0.8) it leaves 0.96 of the energy of photons that interact at 80 keV, 0.85 at 150, 0.52 at 450 keV.
+ *
+ *     scintillator   response of skg_response_create_scintillator, _screen or _escaping; it does not change
+ *     method         An integral equation of photon transport in the layer, solved once by energy, depth and direction: mean and mean
+ *                    square, so that the Swank factor follows. Free atoms; electrons stay where they are set free. The efficiency
+ *                    stays the share of the photons that interact, of which some leave nothing.
+ *     errors         SKG_ERR_BEAM if the response is a table; SKG_ERR_MATERIAL if the composition is unknown */
+SKG_API skg_status skg_response_create_transporting(const skg_response *scintillator, skg_response **response);
 
 /** Makes a response with a measured detective quantum efficiency at spatial frequency 0. What is recorded does not
  * change; the Swank factor becomes dqe / efficiency, both for photons that arrive straight.
