@@ -92,7 +92,9 @@ enum skg_tube_model {
  * Continuum, K lines and L lines of tungsten, molybdenum and rhodium are calibrated with SpekPy 2.5. Behind
  * 2.5 mm Al, with tungsten at 12 degrees, air kerma at 1 m is within 2 % of 48.9, 82.0, 118.9, 158.7 and
  * 222.8 uGy/mAs at 60, 80, 100, 120 and 150 kV, and the first half-value layer within 1 % of 2.082, 2.734,
- * 3.458, 4.219 and 5.372 mm Al; behind 0.5 mm Al at 25 to 40 kV both are within 5 %; mammographic beams (Mo/Mo,
+ * 3.458, 4.219 and 5.372 mm Al; from 160 to 300 kV, behind 2.5 mm Al and 0.5 and 2 mm Cu, air kerma is within 2 % and first
+ * half-value layers in Al and Cu within 1.5 % of SpekPy's at 12 degrees (3 % at 20 degrees); beyond 300 kV nothing is verified;
+ * behind 0.5 mm Al at 25 to 40 kV both are within 5 %; mammographic beams (Mo/Mo,
  * Mo/Rh, Rh/Rh, W/Rh, W/Ag) are within 2 %. First half-value layers that PTB measured are reproduced within 3 %.
  * What lies outside the range of the calibration is reported as a warning: other voltages and angles, other
  * anodes, and filters so thin that more than 1 % of the air kerma is that of photons below 7 keV. No
@@ -103,7 +105,7 @@ typedef struct {
     int32_t size;
     /** enum skg_tube_model; SKG_TUBE_MODEL_EBEL by default */
     int32_t model;
-    /** Tube voltage in kV, 10 to 450; validated from 20 to 150 with W, from 20 to 49 with Mo and Rh. */
+    /** Tube voltage in kV, 10 to 450; validated from 20 to 300 with W, from 20 to 49 with Mo and Rh. */
     double kvp;
     /** Angle between the anode's face and the central ray, degrees, 3 to 60; 12 by default. Validated from 6 to
      * 20 with W, from 12 to 20 with Mo and Rh. */
