@@ -1,5 +1,5 @@
 /* Responses of scintillators: layers that absorb, from which fluorescence may escape and in which scattered photons may be followed. */
-#include "beam/layer.h"
+#include "beam/response.h"
 #include "core/core.h"
 #include "core/text.h"
 

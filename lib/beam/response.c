@@ -1,5 +1,5 @@
 /* The energy that a detector records of a photon. */
-#include "beam/layer.h"
+#include "beam/response.h"
 #include "beam/spectrum.h"
 #include "core/files.h"
 #include "core/text.h"

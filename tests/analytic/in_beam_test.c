@@ -231,7 +231,7 @@ START_TEST(grid_near_cut_off_behind_matter) {
         for (int64_t p = PIXELS * PIXELS / 2; p < PIXELS * PIXELS / 2 + PIXELS; p++) {
             const double truth = expected(&view, p, through_grid, 4 * water_of(&view, p), 0);
             if (truth > 0.1 * expected(&view, p, NULL, 4 * water_of(&view, p), 0))
-                ck_assert_double_eq_tol(pixels[p] / truth, 1, 2e-3);
+                ck_assert_double_eq_tol(pixels[p] / truth, 1, 2e-3); /* 1.4e-3, and half as much again */
         }
         free(pixels);
     }

@@ -132,17 +132,19 @@ START_TEST(stacks_have_fields_beside) {
                SCAN, noise, endings[e]);
         snprintf(name, sizeof name, "scan-flats.%s", endings[e]);
         look_at_end(name, 5, &mean, &deviation);
+        /* five standard errors */
         ck_assert_double_eq_tol(mean, 60000, 5 * 300 / sqrt(5 * COLUMNS * ROWS));
         ck_assert_double_eq_tol(deviation / 300, 1, 5 / sqrt(2 * 5 * COLUMNS * ROWS));
         snprintf(name, sizeof name, "scan-darks.%s", endings[e]);
         look_at_end(name, 3, &mean, &deviation);
+        /* five standard errors */
         ck_assert_double_eq_tol(mean, 0, 5 * 300 / sqrt(3 * COLUMNS * ROWS));
         ck_assert_double_eq_tol(deviation / 300, 1, 5 / sqrt(2 * 3 * COLUMNS * ROWS));
         before[read_file("g.csv", before)] = '\0';
         ck_assert_msg(strstr(before, name) != NULL, "%s", before);
     }
     ck_assert(has_file("scan-flats.mhd") && has_file("scan-darks.mhd"));
-    /* A finished scan gets other numbers of them; one without none is left as it is, and another scan removes them. */
+    /* A finished scan gets other numbers of them; and another scan removes them. */
     ck_run(0, "scan scene.json %s -o whole.mha --quiet --set Scan.Darks='{\"Number\":2}'", SCAN);
     ck_assert_uint_lt(read_file("whole-darks.mha", bytes), 2 * COLUMNS * ROWS * sizeof(float) + 2048);
     look_at_end("whole-darks.mha", 2, &mean, &deviation);
@@ -151,6 +153,7 @@ START_TEST(stacks_have_fields_beside) {
     ck_assert(!has_file("whole-darks.mha") && !has_file("whole-flats.mha"));
     ck_run(0, "scan scene.json %s -o whole.mha --quiet --flats 2 --darks 0", SCAN);
     look_at_end("whole-flats.mha", 2, &mean, &deviation);
+    /* 6e-8 each, of floats */
     ck_assert(fabs(mean - 60000) < 1 && !has_file("whole-darks.mha"));
 }
 END_TEST

@@ -130,7 +130,7 @@ double matter_draw(const matter *m, double kev, int is_compton, uint64_t *seed) 
 }
 
 void matter_turn(double way[3], double cosine, double azimuth) {
-    const double sine = sqrt(fmax(1 - cosine * cosine, 0)), axis = fabs(way[2]) < 0.9;
+    const double sine = sqrt(fmax(1 - cosine * cosine, 0)), axis = way[2] * way[2] < 0.8;
     double a[3] = {way[1] * axis, axis ? -way[0] : way[2], axis ? 0 : -way[1]}, b[3], length = 0;
     for (int k = 0; k < 3; k++) length += a[k] * a[k];
     for (int k = 0; k < 3; k++) a[k] /= sqrt(length);

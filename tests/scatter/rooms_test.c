@@ -22,11 +22,13 @@ START_TEST(both_methods_agree) {
                      b = room_follow(r, ROOM_EXPECTED, EXPECTED, 6);
     printf("%s: %.5f +- %.5f, %.5f +- %.5f\n", r->name, a.ratio, a.ratio_sigma, b.ratio, b.ratio_sigma);
     fflush(stdout);
+    /* four standard errors */
     ck_assert_double_eq_tol(a.ratio, b.ratio, 4 * hypot(a.ratio_sigma, b.ratio_sigma));
     double square = 0; /* over its expectation, which is 1 +- sqrt(2 / ROOM_BLOCKS) = .35 */
     for (int k = 0; k < ROOM_BLOCKS; k++)
         square +=
             pow(a.scatter[k] - b.scatter[k], 2) / (pow(a.sigma[k], 2) + pow(b.sigma[k], 2)) / ROOM_BLOCKS;
+    /* four of those */
     ck_assert_double_lt(square, 1 + 4 * 0.35);
 }
 END_TEST

@@ -11,33 +11,20 @@
 #include <sys/stat.h>
 #include <unistd.h>
 
-enum { KINDS = 2 };
-
-static const char *const kinds[KINDS] = {"flat", "dark"};
-
-/* "scan-flats.mha" for "scan.mha" */
-static skg_status path_beside(const char *path, const char *kind, char **result) {
-    const char *dot = strrchr(path, '.');
-    const size_t stem = (size_t)(dot - path), room = strlen(path) + strlen(kind) + 3;
-    SKG_TRY(skg_alloc((int64_t)room, 1, "path", result));
-    snprintf(*result, room, "%.*s-%ss%s", (int)stem, path, kind, dot);
-    return SKG_OK;
-}
-
 skg_status skg_scan_fields_name_get(const char *path, int32_t dark, char *name, int64_t size) {
     const skg_scan_format *format = NULL;
     char *beside = NULL;
     SKG_NEEDS(path);
     SKG_NEEDS(name);
     SKG_TRY(skg_scan_find_format(path, &format));
-    const char *slash = strrchr(path, '/'), *kind = kinds[dark != 0];
+    const char *slash = strrchr(path, '/'), *kind = skg_scan_field_kind(dark);
     int length = 0;
     if (format == &skg_scan_format_hdf5)
         length = snprintf(name, (size_t)size, "/exchange/data_%s", dark ? "dark" : "white");
     else if (format == &skg_scan_format_folder)
         length = snprintf(name, (size_t)size, "%s-00000.tif", kind);
     else {
-        SKG_TRY(path_beside(slash ? slash + 1 : path, kind, &beside));
+        SKG_TRY(skg_scan_path_beside(slash ? slash + 1 : path, kind, &beside));
         length = snprintf(name, (size_t)size, "%s", beside);
         skg_free(&beside);
     }
@@ -72,29 +59,6 @@ cleanup:
     return status;
 }
 
-/* Removes a stack of fields if it is one of ours. */
-static skg_status remove_stack(const skg_scan_file *file, char *path) {
-    skg_scan_identity identity;
-    skg_scan_file stack = *file;
-    stack.path = path;
-    SKG_TRY(file->format->identify(path, &identity));
-    if (!identity.hash[0]) return SKG_OK;
-    if (file->format->remove) return file->format->remove(&stack);
-    unlink(path);
-    return SKG_OK;
-}
-
-skg_status skg_scan_fields_remove(skg_scan_file *file) {
-    skg_status status = SKG_OK;
-    for (int k = 0; k < KINDS && status == SKG_OK && file->format->fields_beside; k++) {
-        char *path = NULL;
-        SKG_TRY(path_beside(file->path, kinds[k], &path));
-        status = remove_stack(file, path);
-        skg_free(&path);
-    }
-    return status;
-}
-
 /* Fields inside the file, which stand side by side. */
 static skg_status write_inside(skg_scan_file *file, int64_t at, int64_t have, int64_t count,
                                const void *images) {
@@ -107,8 +71,8 @@ static skg_status write_inside(skg_scan_file *file, int64_t at, int64_t have, in
 
 static skg_status write_beside(skg_scan_file *file, const char *kind, int64_t count, const void *images) {
     char *path = NULL;
-    SKG_TRY(path_beside(file->path, kind, &path));
-    skg_status status = count > 0 ? save_stack(file, path, count, images) : remove_stack(file, path);
+    SKG_TRY(skg_scan_path_beside(file->path, kind, &path));
+    skg_status status = count > 0 ? save_stack(file, path, count, images) : skg_scan_stack_remove(file, path);
     skg_free(&path);
     return status;
 }
@@ -120,8 +84,8 @@ skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const 
     if (darks > 0) SKG_NEEDS(dark);
     if (file->format->write_fields) return file->format->write_fields(file, flats, white, darks, dark);
     if (file->format->fields_beside) {
-        SKG_TRY(write_beside(file, kinds[0], flats, white));
-        return write_beside(file, kinds[1], darks, dark);
+        SKG_TRY(write_beside(file, skg_scan_field_kind(0), flats, white));
+        return write_beside(file, skg_scan_field_kind(1), darks, dark);
     }
     SKG_TRY(write_inside(file, file->white_at, file->options.flats, flats, white));
     return write_inside(file, file->dark_at, file->options.darks, darks, dark);

@@ -83,6 +83,13 @@ skg_status skg_scan_read_identity(const char *path, skg_scan_identity *identity)
 /* Fails if a file does not have a projection of the scan. */
 skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index);
 
+/* "flat" or "dark"; and, with these, "scan-flats.mha" for "scan.mha", which the caller frees. */
+const char *skg_scan_field_kind(int32_t dark);
+skg_status skg_scan_path_beside(const char *path, const char *kind, char **result);
+
+/* Removes a stack of the format of a file if it is one of ours. */
+skg_status skg_scan_stack_remove(const skg_scan_file *file, char *path);
+
 /* Removes the fields beside a stack, which are those of another scan. */
 skg_status skg_scan_fields_remove(skg_scan_file *file);
 

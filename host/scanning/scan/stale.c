@@ -4,7 +4,6 @@
 #include "core/text.h"
 
 #include <dirent.h>
-#include <limits.h>
 #include <string.h>
 #include <sys/stat.h>
 #include <unistd.h>
@@ -36,7 +35,7 @@ static void clear_file(const skg_scan_file *file, const char *folder, const char
 }
 
 void skg_scan_remove_stale(const skg_scan_file *file) {
-    char *folder = NULL, name[NAME_MAX + 1];
+    char *folder = NULL;
     if (file->format == &skg_scan_format_folder) {
         clear(file->path, "scan.txt", "scan.txt");
         clear(file->path, file->options.stem ? file->options.stem : "projection-", ".tif");
@@ -50,8 +49,11 @@ void skg_scan_remove_stale(const skg_scan_file *file) {
     if (slash) *slash = '\0';
     const char *in = slash ? slash == folder ? "/" : folder : ".";
     clear_file(file, in, slash ? slash + 1 : folder);
-    for (int32_t dark = 0; dark < 2 && file->format->fields_beside; dark++)
-        if (skg_scan_fields_name_get(file->path, dark, name, sizeof name) == SKG_OK)
-            clear_file(file, in, name);
+    for (int32_t dark = 0; dark < 2 && file->format->fields_beside; dark++) {
+        char *beside = NULL;
+        if (skg_scan_path_beside(slash ? slash + 1 : folder, skg_scan_field_kind(dark), &beside) == SKG_OK)
+            clear_file(file, in, beside);
+        skg_free(&beside);
+    }
     skg_free(&folder);
 }

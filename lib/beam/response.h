@@ -1,6 +1,6 @@
 /* What a response is made of: a table, or a layer that absorbs. Private. */
-#ifndef SKG_LAYER_H
-#define SKG_LAYER_H
+#ifndef SKG_RESPONSE_H
+#define SKG_RESPONSE_H
 
 #include "beam/deposition.h"
 
