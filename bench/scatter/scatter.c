@@ -2,18 +2,20 @@
 #include "affinity/affinity.h"
 #include "scatter/calibrate.h"
 #include "scatter/compare.h"
+#include "scatter/rooms.h"
 #include "scatter/speed.h"
 
 #include <stdlib.h>
 #include <string.h>
 
 static const char usage[] =
-    "[--quick] [--reference FOLDER/] [--cube FILE.json] [--compare | --seeds N] [--device CONFIG] [--affinity] "
+    "[--quick] [--reference FOLDER/] [--cube FILE.json] [--compare | --seeds N | --rooms | --truth HISTORIES] [--room NAME] [--device CONFIG] [--affinity] "
     "[--csv FILE]";
 
 typedef struct {
-    int quick, affinity, compare;                        /* compare: no times */
+    int quick, affinity, compare, rooms;                 /* compare, rooms: no times */
     const char *reference, *cube, *device, *csv, *seeds; /* seeds: nothing but the calibration of the error */
+    const char *truth, *room;                            /* truth: nothing but photons of our own in rooms */
 } settings;
 
 static void read_settings(int count, char **words, settings *out) {
@@ -26,10 +28,14 @@ static void read_settings(int count, char **words, settings *out) {
             out->affinity = 1;
         else if (bench_flag(&arguments, "--compare"))
             out->compare = 1;
+        else if (bench_flag(&arguments, "--rooms"))
+            out->rooms = 1;
         else if (!bench_option(&arguments, "--reference", &out->reference) &&
                  !bench_option(&arguments, "--cube", &out->cube) &&
                  !bench_option(&arguments, "--device", &out->device) &&
                  !bench_option(&arguments, "--seeds", &out->seeds) &&
+                 !bench_option(&arguments, "--truth", &out->truth) &&
+                 !bench_option(&arguments, "--room", &out->room) &&
                  !bench_option(&arguments, "--csv", &out->csv))
             bench_usage(&arguments, usage);
     }
@@ -85,11 +91,17 @@ int main(int count, char **words) {
     settings set;
     read_settings(count, words, &set);
     if (set.affinity) host_pin_threads();
+    if (set.truth) {
+        rooms_make_truth(set.room, (int64_t)atof(set.truth));
+        return 0;
+    }
     FILE *csv = set.csv ? bench_open(set.csv) : NULL;
     if (csv) fprintf(csv, "scene,what,value,error_percent,worst,count,bar\n");
     skg_context *context = bench_context(set.device);
     const int missed = set.reference ? compare(context, &set, csv) : 0;
-    if (set.seeds)
+    if (set.rooms)
+        rooms_compare(context, set.room, csv);
+    else if (set.seeds)
         calibrate(context, &set, csv);
     else if (!set.compare)
         measure(context, &set, csv);

@@ -92,6 +92,7 @@ subject subject_thorax(skg_context *context, long size) {
 void subject_close(subject *s) {
     skg_scene_release(&s->scene);
     skg_spectrum_release(&s->beam);
+    skg_material_release(&s->world);
 }
 
 static double cpu_now(void) {
@@ -111,6 +112,7 @@ static skg_plan *plan_of(const subject *s, double tolerance, int64_t histories, 
     options.falloff = SKG_FALLOFF_ON;
     options.supersampling = s->rays;
     options.overlaps = 0;
+    options.world = s->world;
     bench_try(skg_plan_create(s->context, s->scene, &s->view, s->beam, &options, &plan), s->name);
     return plan;
 }

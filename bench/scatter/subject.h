@@ -9,6 +9,7 @@ typedef struct {
     skg_context *context;
     skg_scene *scene;
     skg_spectrum *beam;
+    skg_material *world; /* NULL: vacuum */
     skg_view view;
     int32_t rays; /* rays x rays in a pixel */
 } subject;

@@ -28,7 +28,7 @@ typedef struct {
 /* What is fitted: the samples of one anode and kind, and for the continuum the model. */
 typedef struct {
     const samples *from;
-    int32_t z, kind, model, reserved;
+    int32_t z, kind, model, high; /* high: 1: the factors above the seam, from voltages above it */
 } target;
 
 static samples read_samples(const char *path) {
@@ -60,33 +60,51 @@ static int is_same(const skg_anode *a, const skg_anode *b) {
     return a->z == b->z && a->kvp == b->kvp && a->angle_deg == b->angle_deg;
 }
 
-/* Weights each energy of a continuum by its share of the air kerma behind 0.5 and 2.5 mm of aluminium, in equal parts. */
+/* Weights each energy of a continuum by its share of the air kerma behind two filters, or above the seam three, in equal parts. */
+enum { FILTERS = 3 };
+
 static void weigh(samples *s) {
-    skg_material *aluminium = NULL;
+    skg_material *aluminium = NULL, *copper = NULL;
     bench_try(skg_material_create_element(13, &aluminium), "aluminium");
+    bench_try(skg_material_create_element(29, &copper), "copper");
+    const skg_filter low[FILTERS] = {{sizeof *low, 0, aluminium, 0.5}, {sizeof *low, 0, aluminium, 2.5}},
+                     high[FILTERS] = {{sizeof *low, 0, aluminium, 2.5},
+                                      {sizeof *low, 0, copper, 0.5},
+                                      {sizeof *low, 0, copper, 2}};
     for (int64_t first = 0, next; first < s->count; first = next) {
-        double whole[2] = {0}, share[2];
+        const int is_high =
+            s->all[first].anode.kvp > skg_tube_calibration_of(s->all[first].anode.z)->seam_kvp;
+        const int filters = is_high ? FILTERS : FILTERS - 1;
+        double whole[FILTERS] = {0}, share[FILTERS];
         for (int pass = 0; pass < 2; pass++)
             for (next = first; next < s->count && is_same(&s->all[next].anode, &s->all[first].anode);
                  next++) {
                 sample *at = s->all + next;
                 if (at->kind != CONTINUUM) continue;
-                for (int f = 0; f < 2; f++) {
-                    const skg_filter filter = {
-                        .size = (int32_t)sizeof filter, .material = aluminium, .thickness_mm = f ? 2.5 : 0.5};
-                    bench_try(skg_filters_pass(1, &filter, at->kev, &share[f]), "filter");
+                if (pass == 1) at->weight = 0;
+                for (int f = 0; f < filters; f++) {
+                    bench_try(skg_filters_pass(1, (is_high ? high : low) + f, at->kev, &share[f]), "filter");
                     share[f] *= at->photons * skg_air_kerma(at->kev);
                     if (pass == 0) whole[f] += share[f];
+                    if (pass == 1) at->weight += share[f] / whole[f] / filters;
                 }
-                if (pass == 1) at->weight = 0.5 * (share[0] / whole[0] + share[1] / whole[1]);
             }
     }
+    skg_material_release(&copper);
     skg_material_release(&aluminium);
 }
 
 /* The factors of a target within its calibration: `count` places. */
 static int places(const target *t, skg_tube_calibration *c, double **place) {
     int count = 0;
+    if (t->high && t->kind == K_LINES) {
+        for (int i = 0; i < 3; i++) place[count++] = c->k_high + i;
+        return count;
+    }
+    for (int i = 0; i < 4 && t->high; i++)
+        for (int j = 0; j < 2; j++) place[count++] = c->continuum[t->model].h[i] + j;
+    for (int i = 0; i < 2 && t->high; i++) place[count++] = c->continuum[t->model].g + i;
+    if (t->high) return count;
     if (t->kind != CONTINUUM) {
         for (int i = 0; i < LINE_FACTORS; i++) place[count++] = (t->kind == K_LINES ? c->k : c->l) + i;
         return count;
@@ -108,13 +126,17 @@ static double modelled(const target *t, const skg_tube_calibration *c, const sam
     return sum;
 }
 
+static int is_of(const target *t, const skg_tube_calibration *c, const sample *s) {
+    return s->anode.z == t->z && s->kind == t->kind && (s->anode.kvp > c->seam_kvp) == t->high;
+}
+
 /* Weighted differences of logarithms; returns their number. Samples that the model has not are left out: voltages less than
  * 6 % above an edge. */
 static int64_t differences(const target *t, const skg_tube_calibration *c, double *out) {
     int64_t n = 0;
     for (int64_t i = 0; i < t->from->count; i++) {
         const sample *s = t->from->all + i;
-        if (s->anode.z != t->z || s->kind != t->kind) continue;
+        if (!is_of(t, c, s)) continue;
         if (t->kind == K_LINES && skg_ebel_overvoltage(&s->anode, SKG_SHELL_K) < 1.06) continue;
         out[n++] = sqrt(s->weight) * log(modelled(t, c, s) / s->photons);
     }
@@ -161,7 +183,7 @@ static double fit(const target *t, int rounds, skg_tube_calibration *c) {
     }
     for (int64_t i = 0; i < t->from->count; i++) {
         const sample *s = t->from->all + i;
-        if (s->anode.z == t->z && s->kind == t->kind) weights += s->weight;
+        if (is_of(t, c, s)) weights += s->weight;
     }
     const double mean = sqrt(square(n, now) / weights);
     skg_least_squares_release(&system);
@@ -179,7 +201,9 @@ static void print_row(const char *before, int count, const double *v, const char
 static void print_factors(const char *name, const skg_continuum_factors *f) {
     printf("    [%s] = {.c = {", name);
     for (int i = 0; i < 4; i++) print_row("", 3, f->c[i], i < 3 ? ", " : "}, ");
-    print_row(".d = ", 4, f->d, "},\n");
+    print_row(".d = ", 4, f->d, ",\n     .h = {");
+    for (int i = 0; i < 4; i++) print_row("", 2, f->h[i], i < 3 ? ", " : "}, ");
+    print_row(".g = ", 2, f->g, "},\n");
 }
 
 int main(int count, char **words) {
@@ -201,6 +225,14 @@ int main(int count, char **words) {
     for (size_t a = 0; a < sizeof anodes / sizeof *anodes; a++) {
         const int32_t z = anodes[a].z;
         skg_tube_calibration c = *skg_tube_calibration_of(z);
+        /* Above the seam first, with the factors in use below it. */
+        if (c.seam_kvp < c.range.kvp[1]) {
+            const double high[] = {fit(&(target){&s, z, CONTINUUM, SKG_TUBE_MODEL_EBEL, 1}, (int)rounds, &c),
+                                   fit(&(target){&s, z, CONTINUUM, SKG_TUBE_MODEL_BIRCH, 1}, (int)rounds, &c),
+                                   fit(&(target){&s, z, K_LINES, 0, 1}, (int)rounds, &c)};
+            printf("%s above %g kV: Ebel %.2f %%, Birch %.2f %%, K lines %.2f %%\n", anodes[a].symbol,
+                   c.seam_kvp, 100 * high[0], 100 * high[1], 100 * high[2]);
+        }
         const double ebel = fit(&(target){&s, z, CONTINUUM, SKG_TUBE_MODEL_EBEL, 0}, (int)rounds, &c);
         const double birch = fit(&(target){&s, z, CONTINUUM, SKG_TUBE_MODEL_BIRCH, 0}, (int)rounds, &c);
         const double k = fit(&(target){&s, z, K_LINES, 0, 0}, (int)rounds, &c);
@@ -211,6 +243,7 @@ int main(int count, char **words) {
         print_factors("SKG_TUBE_MODEL_EBEL", c.continuum + SKG_TUBE_MODEL_EBEL);
         print_factors("SKG_TUBE_MODEL_BIRCH", c.continuum + SKG_TUBE_MODEL_BIRCH);
         print_row("    .k = ", LINE_FACTORS, c.k, ",\n");
+        if (c.seam_kvp < c.range.kvp[1]) print_row("    .k_high = ", 3, c.k_high, ",\n");
         if (z == 74) print_row("    .l = ", LINE_FACTORS, c.l, ",\n");
     }
     free(s.all);

@@ -180,3 +180,21 @@ void skg_escape_moments(const skg_escape *escape, double energy_kev, double per_
         }
     }
 }
+
+void skg_escape_left(const skg_escape *escape, double energy_kev, int depths, const double *depth_mm,
+                     double *energy, double *square) {
+    double sections[SKG_PROCESSES];
+    skg_mixed_sections(escape->material->count, escape->material->parts, energy_kev, sections);
+    const double cm2_g = skg_total_section(sections);
+    for (int i = 0; i < depths; i++) energy[i] = square[i] = 0;
+    for (const emitter *e = escape->emitters; e < escape->emitters + escape->count; e++) {
+        const double share = vacancies(e, energy_kev, cm2_g);
+        if (!(share > 0)) continue;
+        for (int i = 0; i < depths; i++) {
+            const double cosine = 1 - 2 * depth_mm[i] / escape->mm;
+            const int cell = (int)(acos(fmin(fmax(cosine, -1), 1)) / SKG_PI * CELLS);
+            energy[i] += share * e->left[cell < CELLS ? cell : CELLS - 1];
+            square[i] += share * e->left_squares[cell < CELLS ? cell : CELLS - 1];
+        }
+    }
+}

@@ -1,5 +1,5 @@
 /* The energy that a detector records of a photon. */
-#include "beam/escape.h"
+#include "beam/response.h"
 #include "beam/spectrum.h"
 #include "core/files.h"
 #include "core/text.h"
@@ -7,18 +7,6 @@
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
-
-struct skg_response {
-    skg_refs refs;
-    int64_t count;   /* rows of a table; 0: the response is a layer that absorbs */
-    int32_t meaning; /* of a table: SKG_RESPONSE_MEANING_... */
-    int32_t reserved;
-    double *energy_kev, *recorded_kev, *efficiency, *swank;
-    skg_material *material; /* retained */
-    double mm;              /* thickness at the full density of the material */
-    skg_escape *escape;     /* of the layer; NULL: no fluorescence leaves it */
-    skg_response *base;     /* retained: what records, whose DQE is `efficiency`; NULL: none */
-};
 
 /* A recorded energy may exceed that of the photon by this share, because published tables are rounded to three
  * digits. */
@@ -126,68 +114,6 @@ skg_status skg_response_load(const char *path, const char *unit, int32_t meaning
     return status;
 }
 
-static skg_status make_layer(const skg_material *material, double mm, skg_response **response) {
-    skg_response *made = NULL;
-    skg_material *own = NULL;
-    double unused = 0, density = 0;
-    SKG_TRY(skg_material_density_get(material, &density));
-    SKG_TRY(skg_material_attenuation_get(material, 60, &unused)); /* fails unless the density is known */
-    /* The caller's material is const and cannot be retained, so the layer gets its own. */
-    SKG_TRY(skg_material_create_at_density(material, density, &own));
-    skg_status status = skg_alloc(1, sizeof *made, "energy response", &made);
-    if (status != SKG_OK) {
-        skg_material_release(&own);
-        return status;
-    }
-    skg_refs_init(&made->refs);
-    made->material = own;
-    made->mm = mm;
-    *response = made;
-    return SKG_OK;
-}
-
-skg_status skg_response_create_scintillator(const skg_material *material, double thickness_mm, double packing,
-                                            skg_response **response) {
-    SKG_PLAIN;
-    SKG_NEEDS(response);
-    *response = NULL;
-    if (!(isfinite(thickness_mm) && thickness_mm > 0))
-        return skg_fail(SKG_ERR_BEAM, "a scintillator of %g mm is not usable; give a thickness above 0",
-                        thickness_mm);
-    if (!(packing > 0 && packing <= 1))
-        return skg_fail(SKG_ERR_BEAM, "a scintillator's packing of %g is not usable; give above 0, up to 1",
-                        packing);
-    return make_layer(material, thickness_mm * packing, response);
-}
-
-skg_status skg_response_create_screen(const skg_material *material, double mg_cm2, skg_response **response) {
-    SKG_PLAIN;
-    SKG_NEEDS(response);
-    *response = NULL;
-    double density = 0;
-    if (!(isfinite(mg_cm2) && mg_cm2 > 0))
-        return skg_fail(SKG_ERR_BEAM, "a screen of %g mg/cm2 is not usable; give a mass above 0", mg_cm2);
-    SKG_TRY(skg_material_density_get(material, &density));
-    if (!(density > 0)) return make_layer(material, 1, response); /* fails with the sentence on the density */
-    return make_layer(material, mg_cm2 / 1000 / density * 10, response);
-}
-
-skg_status skg_response_create_escaping(const skg_response *scintillator, skg_response **response) {
-    SKG_PLAIN;
-    SKG_NEEDS(scintillator);
-    SKG_NEEDS(response);
-    *response = NULL;
-    if (scintillator->count > 0) /* also of one with a DQE, which knows its noise */
-        return skg_fail(
-            SKG_ERR_BEAM,
-            "fluorescence escapes from a scintillator of given thickness, not from a table, which "
-            "has its own recorded energies and Swank factors");
-    SKG_TRY(make_layer(scintillator->material, scintillator->mm, response));
-    const skg_status status = skg_escape_create((*response)->material, (*response)->mm, &(*response)->escape);
-    if (status != SKG_OK) skg_response_release(response);
-    return status;
-}
-
 skg_status skg_response_create_dqe(skg_response *response, int64_t count, const double *energies_kev,
                                    const double *dqe, skg_response **measured) {
     SKG_PLAIN;
@@ -231,6 +157,7 @@ void skg_response_release(skg_response **response) {
         skg_free(&(*response)->recorded_kev);
         skg_free(&(*response)->efficiency);
         skg_free(&(*response)->swank);
+        skg_deposition_release(&(*response)->deposition);
         skg_escape_release(&(*response)->escape);
         skg_response_release(&(*response)->base);
         skg_material_release(&(*response)->material);
@@ -260,6 +187,11 @@ skg_status skg_response_depth_share(const skg_response *response, double energy_
 
 int skg_response_escapes(const skg_response *response) {
     return response && (response->base ? skg_response_escapes(response->base) : response->escape != NULL);
+}
+
+int skg_response_transports(const skg_response *response) {
+    return response &&
+           (response->base ? skg_response_transports(response->base) : response->deposition != NULL);
 }
 
 /* What a detector makes of a photon of one energy. */
@@ -338,8 +270,15 @@ static skg_status record(const skg_response *response, double energy_kev, double
     SKG_TRY(skg_material_attenuation_get(response->material, energy_kev, &per_cm));
     found->efficiency = -expm1(-per_cm * response->mm / 10 * oblique);
     found->recorded = energy_kev * found->efficiency;
-    if (!response->escape) return SKG_OK;
     double left = 0, square = 0;
+    if (response->deposition) {
+        double mean = 0;
+        skg_deposition_moments(response->deposition, energy_kev, per_cm / 10, oblique, &mean, &square);
+        found->recorded = mean * found->efficiency;
+        found->swank = square > 0 ? fmin(mean * mean / square, 1) : 1;
+        return SKG_OK;
+    }
+    if (!response->escape) return SKG_OK;
     skg_escape_moments(response->escape, energy_kev, per_cm / 10, oblique, &left, &square);
     const double mean = energy_kev - left; /* of a photon that interacts */
     found->recorded = mean * found->efficiency;

@@ -41,6 +41,9 @@ double skg_response_lowest(const skg_response *response);
 /* Whether K fluorescence leaves the layer. */
 int skg_response_escapes(const skg_response *response);
 
+/* 1 if scattered photons are followed in its layer. */
+int skg_response_transports(const skg_response *response);
+
 /* The transmission exp(-sum of mu times thickness) of filters at an energy. */
 skg_status skg_filters_pass(int64_t count, const skg_filter *filters, double energy_kev, double *passed);
 
@@ -84,12 +87,14 @@ typedef struct {
 /* Factors on continuum and lines, and on the depths at which photons are made: calibration.c has their formulas. */
 typedef struct {
     double c[4][3], d[4];
+    double h[4][2], g[2]; /* above the seam */
 } skg_continuum_factors;
 
 typedef struct {
     skg_tube_range range;
+    double seam_kvp; /* where factors of higher voltages begin; the end of the range: there are none */
     skg_continuum_factors continuum[2]; /* by SKG_TUBE_MODEL_ */
-    double k[5], l[5];
+    double k[5], l[5], k_high[3];
 } skg_tube_calibration;
 
 /* The calibration of an anode; that of tungsten if the element has none. */

@@ -119,9 +119,11 @@ static void warn_of_range(const skg_tube *tube, const skg_logger *log) {
         return;
     }
     if (tube->kvp < range->kvp[0] || tube->kvp > range->kvp[1])
-        skg_logger_say(log, SKG_LOG_WARNING,
-                       "%g kV: the tube model is validated from %g to %g kV only, with an anode of %s",
-                       tube->kvp, range->kvp[0], range->kvp[1], symbol);
+        skg_logger_say(
+            log, SKG_LOG_WARNING,
+            "%g kV: the tube model is validated from %g to %g kV only, with an anode of %s; output and "
+            "half-value layers are not verified",
+            tube->kvp, range->kvp[0], range->kvp[1], symbol);
     if (tube->angle_deg < range->angle_deg[0] || tube->angle_deg > range->angle_deg[1])
         skg_logger_say(
             log, SKG_LOG_WARNING,

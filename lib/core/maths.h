@@ -37,6 +37,15 @@ static inline double skg_draw(uint64_t *state) {
     return (double)((z ^ z >> 31) >> 11) * 0x1p-53;
 }
 
+/* A normal deviate that the three numbers decide (Box and Muller 1958). */
+static inline double skg_deviate(int64_t seed, int64_t index, int64_t pixel) {
+    uint64_t state = (uint64_t)seed * 0x9E3779B97F4A7C15u ^ (uint64_t)index;
+    state = (uint64_t)(skg_draw(&state) * 0x1p53) ^ (uint64_t)pixel << 20;
+    skg_draw(&state);
+    const double u = 1 - skg_draw(&state), v = skg_draw(&state);
+    return sqrt(-2 * log(u)) * cos(2 * SKG_PI * v);
+}
+
 /* --- Vectors of three doubles and poses (4x4 affine matrices of doubles, row by row). *
  * Both are written here because cglm has float only. A float holds 24 bits: a vertex 500 mm from the origin would
  * be known to 0.03 micrometres, and the rounding of a few chained poses would be visible in path lengths. Poses

@@ -62,7 +62,7 @@ static skg_status check_scatter(const char *call, const skg_recipe *recipe, cons
 
 /* Images without noise are made with weights of energies that say nothing of the number of photons. */
 static skg_status check_variance(const char *call, const skg_recipe *recipe) {
-    if (skg_quantity_is_absolute(&recipe->options)) return SKG_OK;
+    if (skg_quantity_has_noise(&recipe->options)) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT,
                     "%s: the variance of the noise is asked for, but the plan has none; set "
                     "skg_plan_options.noise (Noise), and take SKG_OUTPUT_MEAN for the image without it",

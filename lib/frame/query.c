@@ -1,6 +1,7 @@
 /* What a plan answers about itself. */
 #include "core/text.h"
 #include "frame/plans.h"
+#include "frame/quiet.h"
 #include "plan/decisions.h"
 
 #include <inttypes.h>
@@ -71,6 +72,19 @@ skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel
                                   skg_channel_flat_field(&recipe->options, &recipe->model, &recipe->view,
                                                          skg_recipe_exposure(recipe, &recipe->view), index)};
     return skg_struct_write(&ours, sizeof ours, "skg_channel", channel);
+}
+
+skg_darkness skg_plan_darkness(const skg_plan *plan) {
+    const skg_recipe *recipe = plan->recipe;
+    const skg_plan_options *options = &recipe->options;
+    const double exposure = skg_recipe_exposure(recipe, &recipe->view);
+    skg_plan_options energy = *options;
+    energy.quantity = SKG_QUANTITY_ENERGY;
+    const double kev = skg_channel_flat_field(&energy, &recipe->model, &recipe->view, exposure, 0);
+    const double shown = skg_channel_flat_field(options, &recipe->model, &recipe->view, exposure, 0);
+    const double unit = kev > 0 ? shown / kev : 0;
+    return (skg_darkness){unit * options->electronic_kev, unit * options->quantum_step_kev,
+                          options->noise_seed};
 }
 
 skg_status skg_plan_node_count(const skg_plan *plan, int64_t *count) {

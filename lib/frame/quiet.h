@@ -1,4 +1,4 @@
-/* For callers who know that nothing falls on the detector. Private. */
+/* For callers who know that nothing falls on the detector: flat and dark fields. Private. */
 #ifndef SKG_QUIET_H
 #define SKG_QUIET_H
 
@@ -6,5 +6,14 @@
 
 /* Sets whether the plan has already warned that nothing falls on the detector, and returns whether it had. */
 int32_t skg_plan_warned_unseen_set(skg_plan *plan, int32_t warned);
+
+/* What a plan's images have without radiation, in their unit. Noise and steps of an attenuation are 0: its logarithm has no value
+ * there. */
+typedef struct {
+    double sigma, step; /* standard deviation of the electronic noise; the steps */
+    int64_t noise_seed;
+} skg_darkness;
+
+skg_darkness skg_plan_darkness(const skg_plan *plan);
 
 #endif

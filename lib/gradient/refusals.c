@@ -27,8 +27,8 @@ static skg_status check_wanted(const char *call, const skg_recipe *recipe, const
     SKG_TRY(skg_decide_detection(recipe, &detection, factors, &detects));
     if (detects && detection.over_flat_field)
         return skg_effect_no_gradient(
-            call, "a ratio to a flat field that differs from pixel to pixel, with noise or steps",
-            "make the plan without noise and steps");
+            call, "a ratio to a flat field that differs from pixel to pixel, with noise, steps or a blur",
+            "make the plan without them");
     if (wanted->attenuations && machine->images.ratio)
         return skg_effect_no_gradient(
             call, "a ratio to a flat field that differs from ray to ray, under attenuation coefficients,",

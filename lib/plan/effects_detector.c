@@ -178,8 +178,23 @@ static void find_escape(const skg_effect_facts *f, skg_effect_state *state) {
         skg_effect_set(state, 0, "the detector is ideal");
     else
         skg_effect_set(state, 0,
+                       skg_response_is_layer(response) ? "not asked for: fluorescence stays in the layer"
+                                                       : "the response is a table");
+}
+
+static void find_deposition(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_response *response = f->recipe->options.response;
+    if (skg_response_transports(response))
+        skg_effect_set(
+            state, 1,
+            "photons that the scintillator scatters leave it or are absorbed elsewhere in it: recorded "
+            "energies and Swank factors are those of what is left");
+    else if (!response)
+        skg_effect_set(state, 0, "the detector is ideal");
+    else
+        skg_effect_set(state, 0,
                        skg_response_is_layer(response)
-                           ? "not asked for: every photon that interacts is absorbed"
+                           ? "not asked for: every photon that interacts leaves all its energy"
                            : "the response is a table");
 }
 
@@ -394,6 +409,13 @@ const skg_effect_row skg_effect_escape = {
     .key = "Escape",
     .adjoint = "weights.cl",
     .find = find_escape,
+};
+
+const skg_effect_row skg_effect_deposition = {
+    .name = "scintillator scatter",
+    .key = "Deposition",
+    .adjoint = "weights.cl",
+    .find = find_deposition,
 };
 
 static void leave_out_depths(skg_plan_options *options) {

@@ -30,6 +30,7 @@ static skg_status copy_views(skg_recipe *recipe) {
 /* Retains the caller's handles, copies its arrays and structs, and drops the pointers that are read while the plan is made.
  * *spot: the caller's. */
 static skg_status copy_options(skg_recipe *recipe, const skg_plan_options *given, const skg_spot **spot) {
+    static const skg_detector_blur there_is_one; /* what it is was read by then */
     skg_plan_options *options = &recipe->options;
     SKG_TRY(skg_struct_read(given, "skg_plan_options", options, sizeof *options));
     *spot = options->spot;
@@ -38,7 +39,7 @@ static skg_status copy_options(skg_recipe *recipe, const skg_plan_options *given
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
     SKG_TRY(skg_effects_copy(recipe));
-    options->blur = NULL;
+    if (options->blur) options->blur = &there_is_one;
     return copy_views(recipe);
 }
 

@@ -2,6 +2,7 @@
 #include "spectral/shading.h"
 
 #include "core/maths.h"
+#include "material/material.h"
 
 #include <math.h>
 #include <string.h>
@@ -10,13 +11,27 @@
 static const double LEFT = 2e-4;
 /* The least weight of an energy in the squares, as a share of the greatest. */
 static const double MIN_WEIGHT = 1e-4;
+/* Energies count as in the open beam and behind so much water, g/cm2, in equal parts: matter leaves the high ones. */
+enum { DEPTHS = 3 };
+static const double WATER[DEPTHS] = {0, 10, 30};
 
 static void weigh(const skg_spectrum *spectrum, double *weight) {
+    static const skg_mass_fraction water[] = {{1, 0.111894}, {8, 0.888106}};
     double most = 0, sum = 0;
-    for (int64_t b = 0; b < spectrum->count; b++) {
-        weight[b] = spectrum->photons[b] * spectrum->energy_kev[b];
-        most = fmax(most, weight[b]);
+    for (int64_t b = 0; b < spectrum->count; b++) weight[b] = 0;
+    for (int d = 0; d < DEPTHS; d++) {
+        double all = 0;
+        for (int pass = 0; pass < 2; pass++)
+            for (int64_t b = 0; b < spectrum->count; b++) {
+                double sections[SKG_PROCESSES];
+                skg_mixed_sections(2, water, spectrum->energy_kev[b], sections);
+                const double kev = spectrum->photons[b] * spectrum->energy_kev[b] *
+                                   exp(-WATER[d] * skg_total_section(sections));
+                if (pass == 0) all += kev;
+                if (pass == 1 && all > 0) weight[b] += kev / all / DEPTHS;
+            }
     }
+    for (int64_t b = 0; b < spectrum->count; b++) most = fmax(most, weight[b]);
     for (int64_t b = 0; b < spectrum->count; b++) sum += weight[b] = fmax(weight[b], MIN_WEIGHT * most);
     for (int64_t b = 0; b < spectrum->count; b++) weight[b] = sqrt(weight[b] / sum);
 }

@@ -104,7 +104,11 @@ skg_status skg_mix_choose(int64_t parts, int32_t planes, const skg_contribution 
 
 /* --- The kind of quantity that the images of a plan hold. */
 
-/* Whether values have to be keV or photons in a pixel until noise has been added. */
+/* Whether images have noise or steps. */
+int skg_quantity_has_noise(const skg_plan_options *options);
+
+/* Whether values have to be keV or photons in a pixel until noise has been added, or until a blurred image is divided by its blurred flat
+ * field. */
 int skg_quantity_is_absolute(const skg_plan_options *options);
 
 /* Whether photons count alike, whatever their energy: where they are counted, and in ratios of bands unless these are

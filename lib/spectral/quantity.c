@@ -1,8 +1,16 @@
 /* What quantities are: ratios, counts, absolute. */
 #include "spectral/model.h"
 
-int skg_quantity_is_absolute(const skg_plan_options *options) {
+int skg_quantity_has_noise(const skg_plan_options *options) {
     return options->noise || options->electronic_kev > 0 || options->quantum_step_kev > 0;
+}
+
+/* A blurred ratio is that of a blurred image to a blurred flat field, which is not the blur of a ratio where the beam differs over the
+ * detector. With falloff alone it is taken ray by ray: docs/physics.md says what that costs. */
+int skg_quantity_is_absolute(const skg_plan_options *options) {
+    const int is_blurred = options->blur || options->depth_blur;
+    const int is_uneven = options->heel || options->bowtie || options->grid || options->oblique;
+    return skg_quantity_has_noise(options) || (skg_quantity_is_ratio(options) && is_blurred && is_uneven);
 }
 
 int skg_quantity_is_ratio(const skg_plan_options *options) {

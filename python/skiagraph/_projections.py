@@ -117,9 +117,11 @@ class _ToArray(_Job):
 
 
 class _ToFile(_Job):
-    def __init__(self, state: State, scan: Scan, wanted: Wanted, path: bytes, fields: tuple[int, int], overwrite: bool,
+    def __init__(self, state: State, scan: Scan, wanted: Wanted, path: bytes, fields: tuple[int | None, int | None], overwrite: bool,
                  anew: bool) -> None:
-        self.file, self.fields = ffi.NULL, fields
+        self.file = ffi.NULL
+        inside, asked = path.lower().endswith((b".h5", b".hdf5")), fields != (None, None)
+        self.fields = [1 if count is None else int(count) for count in fields]
         self.hash = _hash(state, scan, wanted)
         samples = ffi.new("int64_t *")
         call("skg_scan_file_samples_get", path, self.hash.encode(), samples)
@@ -127,7 +129,7 @@ class _ToFile(_Job):
         self._open(path, overwrite)
         self.run.file = self.file
         self.found = integer("skg_scan_file_done_count", self.file)
-        self.has_fields = path.lower().endswith((b".h5", b".hdf5")) and self.found < len(scan)
+        self.has_fields = asked if not inside else self.found < len(scan)
 
     def _open(self, path: bytes, overwrite: bool) -> None:
         options, channel = struct("skg_scan_file_options"), struct("skg_channel")
@@ -148,13 +150,15 @@ class _ToFile(_Job):
         return super().start()
 
     def _write_fields(self) -> None:
-        """Flat fields as the plan makes them, and dark fields of zeros."""
+        """Flat and dark fields as the plan makes them."""
         flats, darks = self.fields
         white, dark = (np.zeros((count, *self.view.shape), self.dtype) for count in self.fields)
         pointers = [ffi.cast("void *", array.__array_interface__["data"][0]) for array in (white, dark)]
         if flats:
             check(lib.skg_scan_flat_fields_render(self.plan, self.state.handle, self.scan._handle, self.run, flats,
                                                   pointers[0]))
+        if darks:
+            call("skg_scan_dark_fields_render", self.plan, self.scan._handle, self.run, darks, pointers[1])
         call("skg_scan_file_fields_write", self.file, flats, pointers[0], darks, pointers[1])
 
     def receive(self, batch: Any, done: int) -> None:
@@ -267,7 +271,7 @@ def compute(state: State, scan: Scan, wanted: Wanted, out: Any) -> NDArray[Any]:
     return job.target
 
 
-def write(state: State, scan: Scan, wanted: Wanted, path: str | os.PathLike[str], fields: tuple[int, int],
+def write(state: State, scan: Scan, wanted: Wanted, path: str | os.PathLike[str], fields: tuple[int | None, int | None],
           overwrite: bool) -> dict[str, Any]:
     """Projections to a file, which is continued if it has some of this scan already."""
     name = encode(path, "out")

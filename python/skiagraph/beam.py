@@ -173,7 +173,7 @@ class Response:
     """What a detector records of a photon: mean recorded energy in keV, and the fraction that is recorded.
 
     >>> round(Response.scintillator("CsI", 0.6).at(60)[0])
-    53
+    52
     """
 
     def __init__(self, kev: Any, recorded_kev: Any, efficiency: Any = None, swank: Any = None, meaning: str = "signal") -> None:
@@ -204,15 +204,30 @@ class Response:
         return made
 
     @classmethod
-    def scintillator(cls, material: Material | str, thickness_mm: float, packing: float = 1) -> Response:
-        """A scintillator of this thickness, of which the share `packing` is filled."""
+    def scintillator(cls, material: Material | str, thickness_mm: float, packing: float = 1, *,
+                     deposition: str = "transport", escape: bool = False) -> Response:
+        """A scintillator of this thickness, of which the share `packing` is filled. deposition: "transport" follows photons
+        that it scatters until they leave it; "all": every interaction leaves all its energy. escape: K fluorescence
+        leaves it.
+
+        >>> round(Response.scintillator("CsI", 0.6, deposition="all").at(60)[0])
+        53
+        """
         return cls._made("skg_response_create_scintillator", as_material(material)._handle, float(thickness_mm),
-                         float(packing))
+                         float(packing))._refined(deposition, escape)
 
     @classmethod
-    def screen(cls, material: Material | str, mg_cm2: float) -> Response:
-        """A scintillator of this mass per area."""
-        return cls._made("skg_response_create_screen", as_material(material)._handle, float(mg_cm2))
+    def screen(cls, material: Material | str, mg_cm2: float, *, deposition: str = "transport",
+               escape: bool = False) -> Response:
+        """A scintillator of this mass per area; the rest as of scintillator."""
+        return cls._made("skg_response_create_screen", as_material(material)._handle,
+                         float(mg_cm2))._refined(deposition, escape)
+
+    def _refined(self, deposition: str, escape: bool) -> Response:
+        if deposition not in ("transport", "all"):
+            raise ArgumentError(f"deposition {deposition!r} is unknown; give 'transport' or 'all'")
+        made = self._made("skg_response_create_escaping", self._handle) if escape else self
+        return made if deposition == "all" else self._made("skg_response_create_transporting", made._handle)
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], unit: str = "keV") -> Response:

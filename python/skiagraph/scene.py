@@ -257,7 +257,7 @@ class Scene(_gradient.Differentiable):
     @overload
     def scan(self, out: str | os.PathLike[str], quantity: str | None = None, *, only: Sequence[int] | None = None,
              breathing: bool = False, subframes: int = 1, precision: str | None = None, tolerance: float | None = None,
-             flats: int = 1, darks: int = 1, overwrite: bool = False, progress: Progress = False,
+             flats: int | None = None, darks: int | None = None, overwrite: bool = False, progress: Progress = False,
              **options: Any) -> dict[str, Any]: ...
 
     @overload
@@ -267,14 +267,15 @@ class Scene(_gradient.Differentiable):
 
     def scan(self, out: Any = None, quantity: str | None = None, *, only: Sequence[int] | None = None,
              breathing: bool = False, subframes: int = 1, precision: str | None = None, tolerance: float | None = None,
-             flats: int = 1, darks: int = 1, overwrite: bool = False, progress: Progress = False,
+             flats: int | None = None, darks: int | None = None, overwrite: bool = False, progress: Progress = False,
              **options: Any) -> Any:
         """The projections of the scene's trajectory, [n, row, column], or a file of them.
 
         out: None; an array to write to; or the path of a file (.h5, .mha, .raw, .tif, or a folder), as the command
         `skiagraph scan` writes it. A file of the same scan that is not finished is continued, a finished one is left as it
         is, and one of another scan is refused unless overwrite is true. Then the result says what was done: projections,
-        found, computed, finished, hash and file. flats, darks: fields in an .h5.
+        found, computed, finished, hash and file. flats, darks: numbers of flat and dark fields: in an .h5, 1 by default;
+        in a folder (flat-00000.tif) or beside a stack (scan-flats.mha), if one is given.
         only: numbers of projections, rising. breathing: poses the scene at the time of each projection. subframes: frames
         from which each projection is averaged over its exposure. The rest is as in images(). An interrupt (Ctrl-C) ends
         the scan at once, and what a file has by then it keeps.
@@ -297,7 +298,7 @@ class Scene(_gradient.Differentiable):
                              "projection, or images(views=scene.trajectory) for this pose")
         with self._state.calls():
             if isinstance(out, (str, os.PathLike)):
-                return _projections.write(self._state, self.trajectory, wanted, out, (int(flats), int(darks)), overwrite)
+                return _projections.write(self._state, self.trajectory, wanted, out, (flats, darks), overwrite)
             return _projections.compute(self._state, self.trajectory, wanted, out)
 
     def plan(self, **options: Any) -> Report:

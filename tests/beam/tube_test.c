@@ -65,6 +65,40 @@ START_TEST(output_per_mas) {
 }
 END_TEST
 
+/* SpekPy 2.5.4, W at 1 m in vacuum: industrial voltages. */
+START_TEST(industrial_beams) {
+    static const struct {
+        double kv, angle;
+        const char *filter;
+        double mm, kerma, hvl_al, hvl_cu;
+    } rows[] = {{160, 12, "Al", 2.5, 245.86, 5.7665, 0.27207}, {160, 12, "Cu", 0.5, 108.38, 11.068, 0.81605},
+                {160, 12, "Cu", 2, 36.408, 14.482, 1.5741},    {160, 20, "Al", 2.5, 278.74, 5.1868, 0.23143},
+                {160, 20, "Cu", 0.5, 113.61, 10.891, 0.78519}, {160, 20, "Cu", 2, 36.969, 14.36, 1.5336},
+                {200, 12, "Al", 2.5, 344.07, 7.2933, 0.41713}, {200, 12, "Cu", 0.5, 184.93, 12.385, 1.0994},
+                {200, 12, "Cu", 2, 77.703, 15.825, 2.0886},    {200, 20, "Al", 2.5, 393.27, 6.5273, 0.34565},
+                {200, 20, "Cu", 0.5, 195.66, 12.119, 1.0372},  {200, 20, "Cu", 2, 79.238, 15.66, 2.0199},
+                {250, 12, "Al", 2.5, 484.17, 9.085, 0.65223},  {250, 12, "Cu", 0.5, 305.22, 13.773, 1.4924},
+                {250, 12, "Cu", 2, 152.23, 17.129, 2.6801},    {250, 20, "Al", 2.5, 555.19, 8.131, 0.52871},
+                {250, 20, "Cu", 0.5, 325.26, 13.397, 1.3759},  {250, 20, "Cu", 2, 155.75, 16.914, 2.5756},
+                {300, 12, "Al", 2.5, 644.24, 10.701, 0.94305}, {300, 12, "Cu", 0.5, 451.01, 14.971, 1.9166},
+                {300, 12, "Cu", 2, 251.49, 18.189, 3.2064},    {300, 20, "Al", 2.5, 738.09, 9.6012, 0.75125},
+                {300, 20, "Cu", 0.5, 482.54, 14.491, 1.7353},  {300, 20, "Cu", 2, 257.82, 17.929, 3.0692}};
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++)
+        for (int32_t model = SKG_TUBE_MODEL_EBEL; model <= SKG_TUBE_MODEL_BIRCH; model++) {
+            const layer layers[] = {{rows[i].filter, rows[i].mm}, {NULL, 0}};
+            const skg_quality q = quality(model, rows[i].kv, rows[i].angle, layers);
+            const double kerma = q.air_kerma_ugy / rows[i].kerma - 1, al = q.hvl1_mm_al / rows[i].hvl_al - 1,
+                         cu = q.hvl1_mm_cu / rows[i].hvl_cu - 1;
+            /* What the calibration is asked to reach; at 20 degrees its output is 2 to 3 % high, also at 150 kV. */
+            ck_assert_msg(
+                fabs(kerma) <= (rows[i].angle > 12 ? 0.035 : 0.02) && fabs(al) <= 0.015 && fabs(cu) <= 0.016,
+                "model %d, %g kV, %g degrees, %g mm %s: kerma %+.1f %%, HVL1 %+.1f %% Al, %+.1f %% Cu",
+                (int)model, rows[i].kv, rows[i].angle, rows[i].mm, rows[i].filter, 100 * kerma, 100 * al,
+                100 * cu);
+        }
+}
+END_TEST
+
 /* SpekPy 2.5.4 at 12 degrees and 1 m, in vacuum: thin filters, where L lines count, and mammography. */
 START_TEST(soft_beams) {
     static const struct {
@@ -224,8 +258,10 @@ START_TEST(limits_are_warned_of) {
         {74, 60, 12, 2.5, NULL},
         {74, 25, 12, 0.5, NULL},
         {74, 25, 12, 0.05, "below 7 keV"},
-        {74, 19, 12, 1, "validated from 20 to 150 kV"},
-        {74, 160, 12, 4, "validated from 20 to 150 kV"},
+        {74, 19, 12, 1, "validated from 20 to 300 kV"},
+        {74, 160, 12, 4, NULL},
+        {74, 320, 12, 4,
+         "validated from 20 to 300 kV only, with an anode of W; output and half-value layers are not verified"},
         {74, 60, 5, 2.5, "validated from 6 to 20 degrees"},
         {74, 60, 25, 2.5, "validated from 6 to 20 degrees"},
         {42, 30, 12, 0.5, NULL},
@@ -292,6 +328,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, homogeneity_of_rqr);
     tcase_add_test(tests, output_per_mas);
+    tcase_add_test(tests, industrial_beams);
     tcase_add_test(tests, soft_beams);
     tcase_add_test(tests, k_lines_share);
     tcase_add_test(tests, heel_of_a_tube);

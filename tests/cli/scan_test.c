@@ -106,6 +106,70 @@ START_TEST(a_folder_and_a_geometry) {
 }
 END_TEST
 
+/* The mean and the standard deviation of the floats at the end of a file. */
+static void look_at_end(const char *name, int images, double *mean, double *deviation) {
+    const size_t count = (size_t)images * COLUMNS * ROWS, size = read_file(name, bytes);
+    ck_assert_uint_ge(size, count * sizeof(float));
+    double sum = 0, squares = 0;
+    for (size_t i = 0; i < count; i++) {
+        float value;
+        memcpy(&value, bytes + size - (count - i) * sizeof value, sizeof value);
+        sum += (double)value, squares += (double)value * (double)value;
+    }
+    *mean = sum / (double)count;
+    *deviation = sqrt(squares / (double)count - *mean * *mean);
+}
+
+/* Beside a stack stand stacks of fields: flat fields of I0 and dark fields of 0, both with the electronic noise of 300 keV. Means and
+ * deviations are known to five times their standard errors. */
+START_TEST(stacks_have_fields_beside) {
+    static const char noise[] = "--set Noise='{\"Quantum\":false,\"Electronic\":[300,\"keV\"]}'";
+    static const char *const endings[] = {"mha", "raw", "tif"};
+    char name[64];
+    double mean, deviation;
+    for (int e = 0; e < 3; e++) {
+        ck_run(0, "scan scene.json %s %s --flats 5 --darks 3 --only 0 -o scan.%s --geometry g.csv --quiet",
+               SCAN, noise, endings[e]);
+        snprintf(name, sizeof name, "scan-flats.%s", endings[e]);
+        look_at_end(name, 5, &mean, &deviation);
+        /* five standard errors */
+        ck_assert_double_eq_tol(mean, 60000, 5 * 300 / sqrt(5 * COLUMNS * ROWS));
+        ck_assert_double_eq_tol(deviation / 300, 1, 5 / sqrt(2 * 5 * COLUMNS * ROWS));
+        snprintf(name, sizeof name, "scan-darks.%s", endings[e]);
+        look_at_end(name, 3, &mean, &deviation);
+        /* five standard errors */
+        ck_assert_double_eq_tol(mean, 0, 5 * 300 / sqrt(3 * COLUMNS * ROWS));
+        ck_assert_double_eq_tol(deviation / 300, 1, 5 / sqrt(2 * 3 * COLUMNS * ROWS));
+        before[read_file("g.csv", before)] = '\0';
+        ck_assert_msg(strstr(before, name) != NULL, "%s", before);
+    }
+    ck_assert(has_file("scan-flats.mhd") && has_file("scan-darks.mhd"));
+    /* A finished scan gets other numbers of them; and another scan removes them. */
+    ck_run(0, "scan scene.json %s -o whole.mha --quiet --set Scan.Darks='{\"Number\":2}'", SCAN);
+    ck_assert_uint_lt(read_file("whole-darks.mha", bytes), 2 * COLUMNS * ROWS * sizeof(float) + 2048);
+    look_at_end("whole-darks.mha", 2, &mean, &deviation);
+    ck_assert(mean == 0 && deviation == 0);
+    ck_run(0, "scan scene.json %s -o whole.mha --quiet --overwrite", SCAN);
+    ck_assert(!has_file("whole-darks.mha") && !has_file("whole-flats.mha"));
+    ck_run(0, "scan scene.json %s -o whole.mha --quiet --flats 2 --darks 0", SCAN);
+    look_at_end("whole-flats.mha", 2, &mean, &deviation);
+    /* 6e-8 each, of floats */
+    ck_assert(fabs(mean - 60000) < 1 && !has_file("whole-darks.mha"));
+}
+END_TEST
+
+START_TEST(a_folder_has_fields) {
+    ck_run(0, "scan scene.json %s --flats 3 --darks 2 -o out --only 0 --quiet", SCAN);
+    ck_assert(has_file("out/flat-00000.tif") && has_file("out/flat-00002.tif") &&
+              has_file("out/dark-00001.tif"));
+    ck_run(0, "scan scene.json %s --flats 1 --darks 1 -o out --only 0 --quiet", SCAN);
+    ck_assert(has_file("out/flat-00000.tif") && !has_file("out/flat-00001.tif"));
+    ck_assert(has_file("out/dark-00000.tif") && !has_file("out/dark-00001.tif"));
+    ck_run(0, "scan scene.json %s -o none --only 0 --quiet", SCAN);
+    ck_assert(!has_file("none/flat-00000.tif") && !has_file("none/dark-00000.tif"));
+}
+END_TEST
+
 START_TEST(what_cannot_be_is_refused) {
     ck_run_fails(2, "-o FILE", "scan scene.json");
     ck_run_fails(2, ".png", "scan scene.json -o a.png");
@@ -389,6 +453,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, parts_of_a_scan_make_the_whole);
     tcase_add_test(tests, another_state_of_the_scene_is_another_scan);
     tcase_add_test(tests, a_folder_and_a_geometry);
+    tcase_add_test(tests, stacks_have_fields_beside);
+    tcase_add_test(tests, a_folder_has_fields);
     tcase_add_test(tests, what_cannot_be_is_refused);
     tcase_add_test(tests, a_volume_has_the_coefficients);
     tcase_add_loop_test(tests, shards_are_joined, 0, 2);

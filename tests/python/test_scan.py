@@ -209,6 +209,19 @@ def test_hdf5_has_fields(path, tmp_path):
         assert not file["/exchange/data_dark"][:].any()
 
 
+def test_other_files_have_fields_beside_if_asked(path, tmp_path):
+    scene = sk.Scene(path)
+    scene.scan(tmp_path / "plain.mha")
+    assert not (tmp_path / "plain-flats.mha").exists()
+    scene.scan(tmp_path / "scan.mha", flats=2)
+    size = 768 * 4
+    dark = (tmp_path / "scan-darks.mha").read_bytes()[-size:]
+    white = np.frombuffer((tmp_path / "scan-flats.mha").read_bytes()[-2 * size:], np.float32)
+    assert not any(dark) and white == pytest.approx(60e3, rel=1e-6)
+    scene.scan(tmp_path / "folder", darks=2)
+    assert (tmp_path / "folder" / "flat-00000.tif").exists() and (tmp_path / "folder" / "dark-00001.tif").exists()
+
+
 def test_an_interrupt_ends_a_scan_and_the_file_is_continued(path, tmp_path):
     scene = sk.Scene(path, settings={"Scan": {"NumberOfProjections": 20000, "FinalAngle": 360}})
     seen = []

@@ -214,14 +214,16 @@ START_TEST(responses) {
     ck_skg(load());
     r = options().response;
     ck_assert_ptr_null(r);
-    ck_skg(load_with("Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 600, \"Unit\": \"um\"}",
-                     NULL));
+    ck_skg(load_with(
+        "Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 600, \"Unit\": \"um\", \"Deposition\": \"all\"}",
+        NULL));
     r = options().response;
     ck_skg(skg_response_get(r, 60, 1, &kev, NULL));
     /* keV: the last digit in print. */
     ck_assert_double_eq_tol(kev, 52.97, 0.01);
     ck_skg(load_with(
-        "Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 270.6, \"Unit\": \"mg/cm2\"}", NULL));
+        "Detector.Scintillator={\"Material\": \"CsI\", \"Thickness\": 270.6, \"Unit\": \"mg/cm2\", \"Deposition\": \"all\"}",
+        NULL));
     r = options().response;
     ck_skg(skg_response_get(r, 60, 1, &kev, NULL));
     /* As above. */

@@ -34,11 +34,16 @@ const cli_flag cli_flag_scan_subframes = {
     "and the scene breathes. The default is 1.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_flats = {
-    "--flats", "N", "The number of flat fields in an .h5: the beam without parts. The default is 1.", NULL,
-    CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_darks = {"--darks", "N",
-                                      "The number of dark fields in an .h5, which are 0. The default is 1.",
-                                      NULL, CLI_NAMES_NOTHING};
+    "--flats", "N",
+    "The number of flat fields: the beam without parts. In an .h5 the default is 1. In a folder they are flat-00000.tif and on, and "
+    "beside a .mha, .raw or .tif they are a stack, scan-flats.mha for scan.mha: both only with --flats, --darks or Flats or Darks of Scan. "
+    "Geometry files name them in a comment.",
+    NULL, CLI_NAMES_NOTHING};
+const cli_flag cli_flag_scan_darks = {
+    "--darks", "N",
+    "The number of dark fields: no beam, but the electronic noise of the data. As --flats; "
+    "dark-00000.tif, scan-darks.mha.",
+    NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_scan_shard = {
     "--shard", "I/N",
     "Computes block I of N blocks of consecutive projections, I from 1 to N, and writes it to a file of its own: "

@@ -11,7 +11,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { PROJECTIONS_MAX = 10000000, SUBFRAMES_MAX = 1000, FIELDS_MAX = 1000 };
+enum { PROJECTIONS_MAX = 10000000, SUBFRAMES_MAX = 1000, FIELDS_MAX = 1000, NOTE_LENGTH = 1000 };
 
 /* Reads "3,7,12". */
 static int read_only(const cli_arguments *arguments, cli_acquisition *a) {
@@ -80,35 +80,6 @@ static int choose_samples(const cli_arguments *arguments, cli_acquisition *a) {
     return CLI_DONE;
 }
 
-/* Grey values of the fields, instead of energies. */
-static skg_status read_fields_out(cli_acquisition *a, void **white, void *dark) {
-    void *grey = calloc((size_t)a->flats + 1, (size_t)grey_bytes(a));
-    if (!grey) return SKG_ERR_MEMORY;
-    skg_status status = grey_fields(a, a->flats, *white, grey);
-    if (status == SKG_OK) status = grey_fields(a, a->darks, NULL, dark);
-    free(*white);
-    *white = grey;
-    return status;
-}
-
-/* Flat fields as the plan makes them, and dark fields of zeros, or their grey values. Files that have none ignore them. */
-static int write_fields(cli_acquisition *a) {
-    const skg_view *view = &a->session.view;
-    const size_t bytes = (size_t)(view->columns * view->rows) * (a->options.type == SKG_TYPE_FLOAT64 ? 8 : 4);
-    void *white = calloc((size_t)a->flats + 1, bytes), *dark = calloc((size_t)a->darks + 1, bytes);
-    skg_status status = SKG_OK;
-    int exit_status = white && dark ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for flat fields");
-    if (exit_status == CLI_DONE && a->flats > 0)
-        status =
-            skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, a->flats, white);
-    if (exit_status == CLI_DONE && status >= SKG_OK && a->is_grey) status = read_fields_out(a, &white, dark);
-    if (exit_status == CLI_DONE && status >= SKG_OK)
-        status = skg_scan_file_fields_write(a->file, a->flats, white, a->darks, dark);
-    free(white);
-    free(dark);
-    return exit_status != CLI_DONE || status >= SKG_OK ? exit_status : cli_fail(status);
-}
-
 /* The first rank lays the output out and holds its lock; the others open it when it has. */
 static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     skg_scan_file_options options;
@@ -143,17 +114,20 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     }
     status = skg_scan_file_done_count(a->file, &a->found);
     if (status != SKG_OK) return cli_fail(status);
-    const int is_hdf5 = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5");
-    const int has_fields = is_hdf5 || a->stem;
-    return has_fields && a->ranks.rank == 0 && (is_joined || a->found < a->projections) ? write_fields(a)
-                                                                                        : CLI_DONE;
+    const int is_open = is_joined || a->found < a->projections ||
+                        (a->fields_beside && !cli_given(arguments, &cli_flag_scan_verify));
+    return a->has_fields && a->ranks.rank == 0 && is_open ? fields_write(a) : CLI_DONE;
 }
 
 static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {
     const char *path;
+    char note[NOTE_LENGTH];
+    const int exit_status = fields_describe(a, note, sizeof note);
+    if (exit_status != CLI_DONE) return exit_status;
     for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
          i++) {
-        const skg_status status = skg_scan_geometry_save(a->record.known ? a->record.known : a->scan, path);
+        const skg_status status = skg_scan_geometry_save_noted(a->record.known ? a->record.known : a->scan,
+                                                               path, *note ? note : NULL);
         if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;
         if (status != SKG_OK) return cli_fail(status);
     }

@@ -19,6 +19,21 @@ static void mark_hash(char *hash) {
     for (int i = 0; i < 8; i++) hash[i] = digits[15 - (strchr(digits, hash[i]) - digits)];
 }
 
+/* The layout of CTSimU. */
+static int has_stem(const cli_acquisition *a) {
+    return a->record.ctsimu && a->is_grey;
+}
+
+/* An .h5 and the layout of CTSimU have fields; others have them beside, if one asks. A shard leaves those to the whole. */
+static void decide_fields(const cli_arguments *arguments, cli_acquisition *a) {
+    const int is_inside = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5") ||
+                          (has_stem(a) && cli_names_folder(a->place));
+    const int asked = a->record.fields || cli_given(arguments, &cli_flag_scan_flats) ||
+                      cli_given(arguments, &cli_flag_scan_darks);
+    a->fields_beside = !is_inside && asked && !cli_given(arguments, &cli_flag_scan_shard);
+    a->has_fields = is_inside || a->fields_beside;
+}
+
 int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
     const int asked = cli_given(arguments, &cli_flag_scan_grey16);
     const int has_quantity = cli_given(arguments, &cli_flag_image_quantity);
@@ -30,6 +45,7 @@ int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
     a->is_grey = asked || (a->record.grey_values && !has_quantity);
     if (asked) a->readout.bits = 16;
     if (a->is_grey) mark_hash(a->hash);
+    decide_fields(arguments, a);
     if (a->record.fields && !cli_given(arguments, &cli_flag_scan_flats)) a->flats = a->record.flats;
     if (a->record.fields && !cli_given(arguments, &cli_flag_scan_darks)) a->darks = a->record.darks;
     a->options.moving_count = a->record.moving_count;
@@ -39,7 +55,7 @@ int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
         cli_log(SKG_LOG_WARNING,
                 "the intensity of the beam changes in grey values only; this scan has another quantity",
                 NULL);
-    if (!a->record.ctsimu || !a->is_grey) return CLI_DONE;
+    if (!has_stem(a)) return CLI_DONE;
     a->stem = make_stem(a->session.path);
     return a->stem ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
 }
@@ -105,16 +121,17 @@ skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const voi
     return SKG_OK;
 }
 
-skg_status grey_fields(const cli_acquisition *a, int64_t count, const void *energies, void *to) {
+skg_status grey_fields(const cli_acquisition *a, int is_dark, const void *energies, void *to) {
     skg_readout readout = a->readout;
-    const int is_noisy = energies ? a->record.flat_noise : a->record.dark_noise;
+    const int is_noisy = is_dark ? a->record.dark_noise : a->record.flat_noise;
+    const int64_t count = is_dark ? a->darks : a->flats;
     if (!is_noisy) readout.snr = 0, readout.noise_count = 0;
-    readout.frames = energies ? a->record.flat_frames : a->record.dark_frames;
+    readout.frames = is_dark ? a->record.dark_frames : a->record.flat_frames;
     for (int64_t f = 0; f < count; f++) {
         /* Their numbers follow those of the projections: first the flat, then the dark fields. */
-        const int64_t index = a->whole_projections + f + (energies ? 0 : a->flats);
-        const char *from = energies ? (const char *)energies + f * raw_bytes(a) : NULL;
-        const skg_status status = skg_readout_image(&readout, pixels_of(a), a->options.type, from, 1, index,
+        const int64_t index = a->whole_projections + f + (is_dark ? a->flats : 0);
+        const skg_status status = skg_readout_image(&readout, pixels_of(a), a->options.type,
+                                                    (const char *)energies + f * raw_bytes(a), 1, index,
                                                     (char *)to + f * grey_bytes(a));
         if (status != SKG_OK) return status;
     }

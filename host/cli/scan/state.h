@@ -21,6 +21,8 @@ typedef struct {
     char hash[65];
     const char *place;
     int64_t projections, found, computed, flats, darks;
+    int has_fields;    /* 1: flat and dark fields are written */
+    int fields_beside; /* 1: as files of their own */
     double plan_ms, seconds;
     int range_warned;
     int is_stopped;        /* 1: a signal ended it before its last projection */

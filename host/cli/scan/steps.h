@@ -50,8 +50,14 @@ int64_t grey_bytes(const cli_acquisition *a);
 /* Reads a batch out. *images: what is written, in memory of the acquisition. */
 skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const void **images);
 
-/* Reads flat fields (energies) and dark fields (no energies) out, one after another in `to`. */
-skg_status grey_fields(const cli_acquisition *a, int64_t count, const void *energies, void *to);
+/* Reads all flat fields or all dark fields out, one after another in `to`. */
+skg_status grey_fields(const cli_acquisition *a, int is_dark, const void *energies, void *to);
+
+/* Makes and writes flat and dark fields. */
+int fields_write(cli_acquisition *a);
+
+/* A sentence that says where they are; "" without them. */
+int fields_describe(const cli_acquisition *a, char *text, size_t size);
 
 /* The projections as DICOM files beside the output: reads --dicom, and writes them when the scan is finished. */
 int pictures_read_flag(const cli_arguments *arguments, cli_acquisition *a);

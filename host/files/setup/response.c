@@ -17,9 +17,10 @@ static const skg_json_key pulse_keys[] = {
 };
 
 static const skg_json_key scintillator_keys[] = {
-    {"Material", NULL, SKG_KEY_READ}, {"Thickness", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
-    {"Density", NULL, SKG_KEY_READ},  {"Packing", NULL, SKG_KEY_READ},   {"Oblique", NULL, SKG_KEY_READ},
-    {"Escape", NULL, SKG_KEY_READ},   {"DQE", NULL, SKG_KEY_READ},       {"Depths", NULL, SKG_KEY_READ},
+    {"Material", NULL, SKG_KEY_READ},   {"Thickness", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
+    {"Density", NULL, SKG_KEY_READ},    {"Packing", NULL, SKG_KEY_READ},   {"Oblique", NULL, SKG_KEY_READ},
+    {"Escape", NULL, SKG_KEY_READ},     {"DQE", NULL, SKG_KEY_READ},       {"Depths", NULL, SKG_KEY_READ},
+    {"Deposition", NULL, SKG_KEY_READ},
 };
 
 /* The unit of energies, and what these mean for noise. */
@@ -177,6 +178,21 @@ static skg_status let_escape(skg_setup_reader *reader, const skg_json_object *ob
     return SKG_OK;
 }
 
+/* Scattered photons are followed unless one asks that they are not. */
+static skg_status follow_scattered(skg_setup_reader *reader, const skg_json_object *object) {
+    static const char *const ways[] = {"transport", "all"};
+    const skg_json_node node = skg_json_member(object, "Deposition");
+    skg_response *all = reader->setup->response, *transporting = NULL;
+    int64_t choice = 0;
+    if (node.value) SKG_TRY(skg_json_choice(&node, "deposition", ways, 2, &choice));
+    if (choice == 1) return SKG_OK;
+    SKG_TRY(
+        skg_json_at(node.value ? &node : object->node, skg_response_create_transporting(all, &transporting)));
+    skg_response_release(&all);
+    reader->setup->response = transporting;
+    return SKG_OK;
+}
+
 /* [[20, 0.8], [60, 0.7]]: keV and DQE at spatial frequency 0. */
 static skg_status read_dqe(skg_setup_reader *reader, const skg_json_object *object) {
     const skg_json_node node = skg_json_member(object, "DQE");
@@ -217,6 +233,7 @@ static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_nod
     const skg_json_node oblique = skg_json_member(&object, "Oblique");
     if (oblique.value) SKG_TRY(skg_json_flag(&oblique, &reader->setup->oblique));
     SKG_TRY(let_escape(reader, &object));
+    SKG_TRY(follow_scattered(reader, &object));
     SKG_TRY(read_dqe(reader, &object));
     const skg_json_node depths = skg_json_member(&object, "Depths");
     return skg_setup_read_depths(reader, &depths);

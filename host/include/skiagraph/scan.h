@@ -184,6 +184,11 @@ SKG_API skg_status skg_scan_short_range_get(const skg_view *view, const skg_scan
  *              or seen from behind (RTK), pixels of different sizes (TIGRE, CIL) */
 SKG_API skg_status skg_scan_geometry_save(const skg_scan *scan, const char *path);
 
+/** The same with a note at the end, such as where the flat fields are: a comment of .csv, .xml and .py; transforms.json has none.
+ *
+ *     note   one line of up to 1000 bytes; NULL: none */
+SKG_API skg_status skg_scan_geometry_save_noted(const skg_scan *scan, const char *path, const char *note);
+
 #ifdef __cplusplus
 }
 #endif

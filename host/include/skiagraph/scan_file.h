@@ -36,16 +36,16 @@ typedef struct {
     int32_t overwrite;
     /** 1: another process has laid out the file and holds its lock; this one only writes projections. */
     int32_t helper;
-    /** Number of flat fields, of HDF5 and folders with a stem; 1 by default. */
+    /** Number of flat fields that an HDF5 file has room for; 1 by default. */
     int64_t flats;
-    /** Number of dark fields, of the same; 1 by default. */
+    /** Number of dark fields, as above; 1 by default. */
     int64_t darks;
     /** First projection of the file, which then is a part of the scan. */
     int64_t from;
     /** Number of its projections; 0: all from `from` on. */
     int64_t count;
-    /** Of a folder: the files are STEM_0000.tif, STEM_flat_0000.tif and STEM_dark.tif; copied. NULL: projection-00000.tif
-     * without fields. */
+    /** Of a folder: the files are STEM_0000.tif, STEM_flat_0000.tif and STEM_dark.tif; copied. NULL: projection-00000.tif,
+     * flat-00000.tif and dark-00000.tif. */
     const char *stem;
 } skg_scan_file_options;
 
@@ -105,15 +105,26 @@ SKG_API skg_status skg_scan_file_verify(skg_scan_file *file);
 /** Number of projections that were found damaged since the file was opened. */
 SKG_API skg_status skg_scan_file_damaged_count(const skg_scan_file *file, int64_t *count);
 
-/** Writes the flat and dark fields of an HDF5 file or a folder with a stem; others have none, and ignore them.
+/** Writes the flat and dark fields: into an HDF5 file, as files in a folder, and of a .mha, .raw or .tif as a stack beside it,
+ * NAME-flats and NAME-darks with its extension. Fields of a folder or beside a stack that are there are replaced, and removed
+ * where the number is 0.
  *
- *     flats    number of flat fields, as in the options of the file
+ *     flats    number of flat fields; of HDF5 as in the options of the file
  *     white    [flats][row][column]; NULL if flats is 0
- *     darks    number of dark fields, as in the options of the file
+ *     darks    number of dark fields; of HDF5 as in the options of the file
  *     dark     [darks][row][column]; NULL if darks is 0
  *     errors   SKG_ERR_OUTPUT, SKG_ERR_ARGUMENT (number) */
 SKG_API skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const void *white,
                                               int64_t darks, const void *dark);
+
+/** Gets where the flat or dark fields of an output are: the dataset in an .h5 (/exchange/data_white), the first file in a folder without
+ * a stem (flat-00000.tif), or the name of the stack beside a stack (scan-flats.mha).
+ *
+ *     path     of the output
+ *     dark     1: the dark fields; 0: the flat fields
+ *     name     result: [size] bytes
+ *     errors   SKG_ERR_ARGUMENT (extension, size) */
+SKG_API skg_status skg_scan_fields_name_get(const char *path, int32_t dark, char *name, int64_t size);
 
 /** Writes projections, and marks them as finished once the disk has them.
  *

@@ -134,6 +134,18 @@ SKG_API skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *
                                                const skg_scan_run_options *options, int64_t count,
                                                void *images);
 
+/** Makes dark fields of a scan: images without the beam, with the electronic noise and the steps of the plan's images. Of an
+ * attenuation they are 0.
+ *
+ *     plan      of one channel
+ *     options   type and seed count; NULL: the defaults
+ *     count     number of dark fields, at least 1
+ *     images    result: [count][row][column] of the options' type
+ *     errors    SKG_ERR_ARGUMENT (count) */
+SKG_API skg_status skg_scan_dark_fields_render(const skg_plan *plan, const skg_scan *scan,
+                                               const skg_scan_run_options *options, int64_t count,
+                                               void *images);
+
 /** Gets the text that identifies a scan: the SHA-256 of the set-up (skg_setup_hash_get), of the options that
  * decide its images, and of the version of the library. Device, strategy, shard and batch do not change it.
  *

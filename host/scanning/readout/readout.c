@@ -70,15 +70,6 @@ static double sigma_of(const skg_readout *r, double full_sigma, double kev, doub
     return kev > 0 ? full_sigma * sqrt(kev / r->full_kev) : 0;
 }
 
-/* A normal deviate that the three numbers decide (Box and Muller). */
-static double deviate(int64_t seed, int64_t index, int64_t pixel) {
-    uint64_t state = (uint64_t)seed * 0x9E3779B97F4A7C15u ^ (uint64_t)index;
-    state = (uint64_t)(skg_draw(&state) * 0x1p53) ^ (uint64_t)pixel << 20;
-    skg_draw(&state);
-    const double u = 1 - skg_draw(&state), v = skg_draw(&state);
-    return sqrt(-2 * log(u)) * cos(2 * SKG_PI * v);
-}
-
 static double energy_at(int32_t type, const void *energies, int64_t i) {
     if (!energies) return 0;
     return type == SKG_TYPE_FLOAT64 ? ((const double *)energies)[i] : (double)((const float *)energies)[i];
@@ -99,7 +90,7 @@ skg_status skg_readout_image(const skg_readout *readout, int64_t pixels, int32_t
         const double kev = share * energy_at(type, energies, i);
         double value = grey_of(&r, kev);
         const double sigma = is_noisy ? averaged * sigma_of(&r, full_sigma, kev, value) : 0;
-        if (sigma > 0) value += sigma * deviate(r.seed, index, i);
+        if (sigma > 0) value += sigma * skg_deviate(r.seed, index, i);
         /* -1 marks a good pixel, exactly. */
         if (r.bad_pixels && !(r.bad_pixels[i] >= -1 && r.bad_pixels[i] <= -1))
             value = (double)r.bad_pixels[i];

@@ -110,6 +110,7 @@ static skg_status lay_out(skg_scan_file *file) {
         SKG_TRY(file->format->remove(file));
     else
         unlink(file->path);
+    SKG_TRY(skg_scan_fields_remove(file));
     SKG_TRY(begin_progress(file));
     if (file->format->write) return file->format->lay_out(file, NULL);
     SKG_TRY_CLEANUP(skg_alloc((int64_t)strlen(file->path) + SKG_PART_ENDING, 1, "file name", &temporary));
@@ -294,26 +295,6 @@ skg_status skg_scan_file_done_count(const skg_scan_file *file, int64_t *count) {
     SKG_NEEDS(count);
     *count = file->done_count;
     return SKG_OK;
-}
-
-/* Flat or dark fields, which stand side by side. */
-static skg_status write_fields(skg_scan_file *file, int64_t at, int64_t have, int64_t count,
-                               const void *images) {
-    if (!at) return SKG_OK;
-    if (count != have)
-        return skg_fail(SKG_ERR_ARGUMENT, "%s: has room for %" PRId64 " fields, not %" PRId64, file->path,
-                        have, count);
-    return skg_scan_write_at(file->path, file->data, images, count * file->bytes, at);
-}
-
-skg_status skg_scan_file_fields_write(skg_scan_file *file, int64_t flats, const void *white, int64_t darks,
-                                      const void *dark) {
-    SKG_NEEDS(file);
-    if (flats > 0) SKG_NEEDS(white);
-    if (darks > 0) SKG_NEEDS(dark);
-    if (file->format->write_fields) return file->format->write_fields(file, flats, white, darks, dark);
-    SKG_TRY(write_fields(file, file->white_at, file->options.flats, flats, white));
-    return write_fields(file, file->dark_at, file->options.darks, darks, dark);
 }
 
 skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index) {

@@ -1,4 +1,4 @@
-/* Flat fields: images of the beam without parts. */
+/* Flat fields, which are images of the beam without parts, and dark fields, which are images without the beam. */
 #include "core/core.h"
 #include "core/maths.h"
 #include "core/text.h"
@@ -6,6 +6,7 @@
 #include "scan/slot.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 /* Far beyond the edge of any detector, and below the largest coordinate. */
@@ -82,4 +83,33 @@ cleanup:
     skg_free(&gone.parts);
     skg_free(&gone.poses);
     return status;
+}
+
+skg_status skg_scan_dark_fields_render(const skg_plan *plan, const skg_scan *scan,
+                                       const skg_scan_run_options *options, int64_t count, void *images) {
+    SKG_PLAIN;
+    skg_view view;
+    skg_scan_run_options run;
+    SKG_NEEDS(plan);
+    SKG_NEEDS(scan);
+    SKG_NEEDS(images);
+    skg_scan_run_options_init(&run);
+    if (options) SKG_TRY(skg_struct_read(options, "skg_scan_run_options", &run, sizeof run));
+    if (count < 1) return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " dark fields; give 1 or more", count);
+    skg_view_init(&view);
+    SKG_TRY(skg_scan_view_get(scan, 0, &view));
+    const skg_darkness dark = skg_plan_darkness(plan);
+    const uint64_t seed = (uint64_t)dark.noise_seed + (uint64_t)run.noise_seed;
+    const int64_t pixels = view.columns * view.rows;
+    for (int64_t i = 0; i < count * pixels; i++) {
+        /* The numbers of flat fields are those after the projections; those of dark fields are below 0. */
+        double value = 0;
+        if (dark.sigma > 0) value = dark.sigma * skg_deviate((int64_t)seed, -1 - i / pixels, i % pixels);
+        if (dark.step > 0) value = rint(value / dark.step) * dark.step;
+        if (run.type == SKG_TYPE_FLOAT64)
+            ((double *)images)[i] = value;
+        else
+            ((float *)images)[i] = (float)value;
+    }
+    return SKG_OK;
 }

@@ -93,23 +93,43 @@ static skg_status write_one(skg_scan_file *file, int64_t index, const void *imag
     return status;
 }
 
-/* STEM_flat_0000.tif, or STEM_flat.tif if there is one. */
+/* flat-00000.tif; with a stem STEM_flat_0000.tif, or STEM_flat.tif if there is one. */
+static skg_status field_path(const skg_scan_file *file, const char *kind, int64_t field, int64_t count,
+                             char **result) {
+    char name[NAME_LENGTH], number[32] = "";
+    const char *stem = file->options.stem;
+    if (count > 1) snprintf(number, sizeof number, "_%04" PRId64, field);
+    const int length = stem ? snprintf(name, sizeof name, "%s_%s%s.tif", stem, kind, number)
+                            : snprintf(name, sizeof name, "%s-%05" PRId64 ".tif", kind, field);
+    if (length >= NAME_LENGTH) return skg_output_fail(file->path, ENAMETOOLONG, "");
+    return member(file->path, name, result);
+}
+
 static skg_status write_field(skg_scan_file *file, const char *kind, int64_t field, int64_t count,
                               const void *image) {
-    char name[NAME_LENGTH], number[32] = "", *path = NULL;
-    if (count > 1) snprintf(number, sizeof number, "_%04" PRId64, field);
-    if (snprintf(name, sizeof name, "%s_%s%s.tif", file->options.stem, kind, number) >= NAME_LENGTH)
-        return skg_output_fail(file->path, ENAMETOOLONG, "");
-    SKG_TRY(member(file->path, name, &path));
+    char *path = NULL;
+    SKG_TRY(field_path(file, kind, field, count, &path));
     skg_status status = write_picture(file, &file->view, image, path);
     skg_free(&path);
     return status;
 }
 
-/* Only folders with a stem have them. */
+/* Removes fields without a stem from number `from` on: an earlier scan may have had more. */
+static skg_status remove_fields(const skg_scan_file *file, const char *kind, int64_t from) {
+    int is_gone = 0;
+    for (int64_t f = from; !is_gone && !file->options.stem; f++) {
+        char *path = NULL;
+        SKG_TRY(field_path(file, kind, f, 0, &path));
+        is_gone = unlink(path) != 0;
+        skg_free(&path);
+    }
+    return SKG_OK;
+}
+
 static skg_status write_fields(skg_scan_file *file, int64_t flats, const void *white, int64_t darks,
                                const void *dark) {
-    if (!file->options.stem) return SKG_OK;
+    SKG_TRY(remove_fields(file, "flat", flats));
+    SKG_TRY(remove_fields(file, "dark", darks));
     for (int64_t f = 0; f < flats; f++)
         SKG_TRY(write_field(file, "flat", f, flats, (const char *)white + f * file->bytes));
     for (int64_t d = 0; d < darks; d++)
@@ -129,7 +149,8 @@ static skg_status remove_all(skg_scan_file *file) {
         unlink(path);
         skg_free(&path);
     }
-    return SKG_OK;
+    SKG_TRY(remove_fields(file, "flat", 0));
+    return remove_fields(file, "dark", 0);
 }
 
 const skg_scan_format skg_scan_format_folder = {.lay_out = lay_out,

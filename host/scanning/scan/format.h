@@ -60,6 +60,7 @@ struct skg_scan_format {
     /* Removes the file for one that replaces it; NULL: it is one file. */
     skg_status (*remove)(skg_scan_file *file);
     int has_progress_inside; /* 1: the bytes of NAME.progress stand in the file, and locate finds done_at */
+    int fields_beside;       /* 1: flat and dark fields are stacks of their own, NAME-flats and NAME-darks */
     int is_missing;          /* 1: this build cannot write it */
 };
 
@@ -81,6 +82,16 @@ skg_status skg_scan_read_identity(const char *path, skg_scan_identity *identity)
 
 /* Fails if a file does not have a projection of the scan. */
 skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index);
+
+/* "flat" or "dark"; and, with these, "scan-flats.mha" for "scan.mha", which the caller frees. */
+const char *skg_scan_field_kind(int32_t dark);
+skg_status skg_scan_path_beside(const char *path, const char *kind, char **result);
+
+/* Removes a stack of the format of a file if it is one of ours. */
+skg_status skg_scan_stack_remove(const skg_scan_file *file, char *path);
+
+/* Removes the fields beside a stack, which are those of another scan. */
+skg_status skg_scan_fields_remove(skg_scan_file *file);
 
 /* Reads all bytes at a place. */
 skg_status skg_scan_read_at(const skg_scan_file *file, void *to, int64_t count, int64_t at);

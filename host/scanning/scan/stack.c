@@ -196,14 +196,19 @@ static skg_status remove_raw(skg_scan_file *file) {
     return SKG_OK;
 }
 
-const skg_scan_format skg_scan_format_mha = {
-    .extensions = {".mha"}, .lay_out = lay_out_mha, .locate = locate_mha, .identify = skg_scan_read_identity};
+const skg_scan_format skg_scan_format_mha = {.extensions = {".mha"},
+                                             .lay_out = lay_out_mha,
+                                             .locate = locate_mha,
+                                             .identify = skg_scan_read_identity,
+                                             .fields_beside = 1};
 const skg_scan_format skg_scan_format_raw = {.extensions = {".raw"},
                                              .lay_out = lay_out_raw,
                                              .locate = locate_raw,
                                              .identify = identify_raw,
-                                             .remove = remove_raw};
+                                             .remove = remove_raw,
+                                             .fields_beside = 1};
 const skg_scan_format skg_scan_format_tiff = {.extensions = {".tif", ".tiff"},
                                               .lay_out = lay_out_tiff,
                                               .locate = locate_tiff,
-                                              .identify = skg_scan_read_identity};
+                                              .identify = skg_scan_read_identity,
+                                              .fields_beside = 1};

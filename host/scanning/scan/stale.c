@@ -39,11 +39,21 @@ void skg_scan_remove_stale(const skg_scan_file *file) {
     if (file->format == &skg_scan_format_folder) {
         clear(file->path, "scan.txt", "scan.txt");
         clear(file->path, file->options.stem ? file->options.stem : "projection-", ".tif");
+        if (file->options.stem) return;
+        clear(file->path, "flat-", ".tif");
+        clear(file->path, "dark-", ".tif");
         return;
     }
     if (skg_copy_text(file->path, &folder) != SKG_OK) return;
     char *slash = strrchr(folder, '/');
     if (slash) *slash = '\0';
-    clear_file(file, slash ? slash == folder ? "/" : folder : ".", slash ? slash + 1 : folder);
+    const char *in = slash ? slash == folder ? "/" : folder : ".";
+    clear_file(file, in, slash ? slash + 1 : folder);
+    for (int32_t dark = 0; dark < 2 && file->format->fields_beside; dark++) {
+        char *beside = NULL;
+        if (skg_scan_path_beside(slash ? slash + 1 : folder, skg_scan_field_kind(dark), &beside) == SKG_OK)
+            clear_file(file, in, beside);
+        skg_free(&beside);
+    }
     skg_free(&folder);
 }

@@ -5,6 +5,8 @@
 
 #include <string.h>
 
+enum { NOTE_LENGTH = 1024 };
+
 static skg_status write_table(const skg_scan *scan, FILE *stream) {
     fprintf(stream, "# source x y z, detector centre x y z, column step x y z, row step x y z (mm)\n");
     for (int64_t k = 0; k < scan->options.projections; k++) {
@@ -19,17 +21,34 @@ static skg_status write_table(const skg_scan *scan, FILE *stream) {
     return SKG_OK;
 }
 
+/* A comment of one line. Two hyphens would end a comment of XML. */
+static void write_note(const char *format, const char *note, FILE *stream) {
+    char line[NOTE_LENGTH];
+    size_t count = 0;
+    for (; note[count] && count + 1 < sizeof line; count++)
+        line[count] = (unsigned char)note[count] < ' ' || (note[count] == '-' && note[count + 1] == '-')
+                          ? '_'
+                          : note[count];
+    line[count] = '\0';
+    fprintf(stream, format, line);
+}
+
 /* In the order in which they are tried: a longer ending before one that it ends in. */
 static const struct {
     const char *ending;
     skg_status (*write)(const skg_scan *scan, FILE *stream);
-} formats[] = {{".tigre.py", skg_scan_write_tigre},
-               {".cil.py", skg_scan_write_cil},
-               {"transforms.json", skg_scan_write_nerf},
-               {".csv", write_table},
-               {".xml", skg_scan_write_rtk}};
+    const char *note; /* a comment at the end, as printf wants it; NULL: the format has none */
+} formats[] = {{".tigre.py", skg_scan_write_tigre, "# %s\n"},
+               {".cil.py", skg_scan_write_cil, "# %s\n"},
+               {"transforms.json", skg_scan_write_nerf, NULL},
+               {".csv", write_table, "# %s\n"},
+               {".xml", skg_scan_write_rtk, "<!-- %s -->\n"}};
 
 skg_status skg_scan_geometry_save(const skg_scan *scan, const char *path) {
+    return skg_scan_geometry_save_noted(scan, path, NULL);
+}
+
+skg_status skg_scan_geometry_save_noted(const skg_scan *scan, const char *path, const char *note) {
     SKG_PLAIN;
     skg_output_file file;
     size_t f = 0;
@@ -46,6 +65,7 @@ skg_status skg_scan_geometry_save(const skg_scan *scan, const char *path) {
                         path);
     SKG_TRY(skg_output_open(path, &file));
     skg_status status = formats[f].write(scan, file.stream);
+    if (status == SKG_OK && note && formats[f].note) write_note(formats[f].note, note, file.stream);
     if (status == SKG_OK) return skg_output_commit(&file);
     skg_output_discard(&file);
     return status;

@@ -66,7 +66,7 @@ def clearLSF() -> None:
 def setScintillator(aMaterial: str, aThickness: float, aUnitOfLength: str) -> None:
     clearDetectorEnergyResponse()
     thickness = aThickness * millimetres(aUnitOfLength)
-    world.response = Response.scintillator(_layer(aMaterial), thickness)
+    world.response = Response.scintillator(_layer(aMaterial), thickness, deposition="all")
     world.scintillator = aMaterial, thickness
 
 
@@ -103,7 +103,7 @@ def getEnergyResponse(*arguments: Any) -> tuple[tuple[float, float], ...]:
     (material, thickness, unit of length, unit of energy) of a scintillator."""
     if len(arguments) == 4:
         material, thickness, length, energy = arguments
-        response = Response.scintillator(_layer(material), thickness * millimetres(length))
+        response = Response.scintillator(_layer(material), thickness * millimetres(length), deposition="all")
         return _rows(_sampled(response), energy)
     if len(arguments) != 1:
         raise ArgumentError("give a unit of energy, or material, thickness, unit of length and unit of energy")
