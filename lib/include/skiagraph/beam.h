@@ -300,7 +300,8 @@ SKG_API skg_status skg_response_create_escaping(const skg_response *scintillator
  *                    square, so that the Swank factor follows. Free atoms; electrons stay where they are set free. The efficiency
  *                    stays the share of the photons that interact, of which some leave nothing.
  *     errors         SKG_ERR_BEAM if the response is a table; SKG_ERR_MATERIAL if the composition is unknown */
-SKG_API skg_status skg_response_create_transporting(const skg_response *scintillator, skg_response **response);
+SKG_API skg_status skg_response_create_transporting(const skg_response *scintillator,
+                                                    skg_response **response);
 
 /** Makes a response with a measured detective quantum efficiency at spatial frequency 0. What is recorded does not
  * change; the Swank factor becomes dqe / efficiency, both for photons that arrive straight.
