@@ -14,9 +14,9 @@ typedef struct {
 
 /* Photons under way: `order` is the number of interactions so far. */
 typedef struct {
-    skg_place3 at, way;
+    skg_place3 at, direction;
     skg_fv kev, weight;
-    skg_fv x, y;  /* where they meet the detector, in shares of its sides */
+    skg_fv x, y;  /* where they hit the detector, in shares of its sides */
     skg_fv share; /* of what they contribute where they fly on; the rest are the places on the detector */
     skg_fv reach; /* mm to the detector, if they fly to it: it stops them */
     skg_uv history, order;
@@ -39,9 +39,9 @@ static void skg_deposit(__global uint *sums, int place, float value) {
     if (high) atomic_add(word + 1, high);
 }
 
-/* Adds what photons bring to places (u, v) of the detector, 0 to 1, in the planes of their order and kind. */
-static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u,
-                      skg_fv v, skg_place3 way, skg_fv kev, skg_fv weight) {
+/* Tallies what photons bring to places (u, v) of the detector, 0 to 1, in the planes of their order and kind. */
+static void skg_tally(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u,
+                      skg_fv v, skg_place3 direction, skg_fv kev, skg_fv weight) {
     const skg_intv column = clamp(SKG_TO_INT_V(u * (skg_fv)((float)s->args->columns)), (skg_intv)(0),
                                   (skg_intv)(s->args->columns - 1));
     const skg_intv row =
@@ -49,13 +49,13 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
     const skg_intv plane = min(SKG_AS_INT_V(order), (skg_intv)(3)) - 1 + (changed & 3);
     const skg_intv cell = row * s->args->columns + column,
                    cells = (skg_intv)(s->args->rows * s->args->columns);
-    const skg_arrival arrival = skg_arrive(s->args, way, kev);
+    const skg_arrival arrival = skg_arrive(s->args, direction, kev);
     const int images = SKG_SCATTER_PLANES * s->args->rows * s->args->columns;
     skg_mixtures signal;
     float weights[SKG_WIDE];
     int places[SKG_WIDE], wanted[SKG_WIDE];
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_SIGNAL, arrival.place, &signal);
-    if (s->args->grid) weight *= skg_through_grid(s->args, &signal, u, v, way, arrival.facing);
+    if (s->args->grid) weight *= skg_through_grid(s->args, &signal, u, v, direction, arrival.facing);
     SKG_STORE_V(intv, plane * cells + cell, places);
     int powers[SKG_WIDE];
     SKG_STORE_V(intv, SKG_SCATTER_KINDS * cells + cell, powers);
@@ -79,7 +79,7 @@ static void skg_bring(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
 
 /* How likely a photon is scattered to an angle, per sr and interaction: by Compton scattering (Klein and Nishina, times S), which
  * leaves it *left keV, and by Rayleigh scattering (Thomson, times F^2). */
-static void skg_likely(const skg_scattering *s, const skg_interaction *i, skg_fv kev, skg_fv cosine,
+static void skg_differential(const skg_scattering *s, const skg_interaction *i, skg_fv kev, skg_fv cosine,
                        skg_fv *compton, skg_fv *rayleigh, skg_fv *left) {
     const skg_fv one = (skg_fv)(1.0f), less = max(one - cosine, (skg_fv)(0.0f));
     const skg_fv ratio = one / fma(kev * (skg_fv)(1.0f / SKG_ELECTRON_KEV), less, one);
@@ -105,7 +105,7 @@ static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, skg_
 }
 
 /* Contributions of an interaction to places of the detector, one in each of SKG_SCATTER_SIDE^2 equal pieces. */
-static void skg_contribute(const skg_scattering *s, const skg_photons *p, const skg_sight *sight,
+static void skg_next_event(const skg_scattering *s, const skg_photons *p, const skg_sight *sight,
                            const skg_interaction *i, skg_fv across, skg_fv down) {
     const float side = 1.0f / SKG_SCATTER_SIDE;
     for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
@@ -116,22 +116,22 @@ static void skg_contribute(const skg_scattering *s, const skg_photons *p, const 
         skg_sight_draw(sight, u, v, &x, &y);
         const skg_fv per_sr = skg_sight_per_sr(s->args, sight, x, y);
         const skg_fv distance = skg_root_v(fma(x, x, fma(y, y, sight->z * sight->z)));
-        const skg_place3 way = skg_sight_way(s->args, sight, x, y, distance);
+        const skg_place3 direction = skg_sight_direction(s->args, sight, x, y, distance);
         const skg_intv seen = p->alive & sight->ahead;
         const skg_fv pu = (x - sight->x0) / s->args->side_u, pv = (y - sight->y0) / s->args->side_v;
-        const skg_fv within = skg_within(s->args, p->at, way, distance, &enter);
+        const skg_fv within = skg_within(s->args, p->at, direction, distance, &enter);
         const skg_fv length = seen ? within : (skg_fv)(0.0f);
-        skg_march(s->args, &s->object, p->at, way, enter, length, &sums);
+        skg_optical_depth(s->args, &s->object, p->at, direction, enter, length, &sums);
         if (s->args->world_around) skg_add_world(&s->object, distance - length, &sums);
-        skg_likely(s, i, p->kev, skg_dot3(p->way, way), &compton, &rayleigh, &left);
+        skg_differential(s, i, p->kev, skg_dot3(p->direction, direction), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
         const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
         const skg_fv both = fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)),
                                 (compton + rayleigh) / max(albedo, (skg_fv)(1e-30f)));
         const skg_fv weight = p->weight / max(both, (skg_fv)(1e-30f));
-        skg_bring(s, seen, p->order, p->changed, pu, pv, way, p->kev,
+        skg_tally(s, seen, p->order, p->changed, pu, pv, direction, p->kev,
                   weight * rayleigh * skg_passes(s, &sums, p->kev));
-        skg_bring(s, seen, p->order, (skg_intv)(-1), pu, pv, way, left,
+        skg_tally(s, seen, p->order, (skg_intv)(-1), pu, pv, direction, left,
                   weight * compton * skg_passes(s, &sums, left));
     }
 }
@@ -153,16 +153,16 @@ static void skg_fly_on(const skg_scattering *s, __global const float *angles, sk
     const skg_fv width = SKG_LOAD_V(realv, wide);
     const skg_fv cosine = fma(place - SKG_TO_FLOAT_V(bin), width, SKG_LOAD_V(realv, low));
     skg_fv compton, rayleigh, left, u, v;
-    skg_likely(s, i, p->kev, cosine, &compton, &rayleigh, &left);
+    skg_differential(s, i, p->kev, cosine, &compton, &rayleigh, &left);
     const skg_fv sum = max(compton + rayleigh, (skg_fv)(1e-30f));
     p->weight *= sum * width * (skg_fv)(SKG_SCATTER_ANGLES * 6.28318531f);
-    p->way = skg_deflect(p->way, cosine, turn);
+    p->direction = skg_deflect(p->direction, cosine, turn);
     const skg_intv changes = process * sum < compton;
     p->kev = changes ? left : p->kev;
     p->changed |= changes;
     const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
     const skg_fv own = sum / max(albedo, (skg_fv)(1e-30f));
-    const skg_intv meets = skg_meet(s->args, sight, p->way, &u, &v);
+    const skg_intv meets = skg_hit_detector(s->args, sight, p->direction, &u, &v);
     const skg_fv per_sr = skg_sight_per_sr(s->args, sight, u, v);
     p->x = (u - sight->x0) / s->args->side_u;
     p->y = (v - sight->y0) / s->args->side_v;
@@ -179,6 +179,13 @@ static void skg_roulette(const skg_scatter_args *args, skg_photons *p, skg_fv wo
 }
 
 /* Number `dimension` of a history's point of a lattice, from 0 to below 1, shifted for each batch at random. */
+/* What the dimensions of the lattice are for: a photon's start, its first interaction, and the depth and places of the second one. */
+enum {
+    SKG_DIM_U, SKG_DIM_V, SKG_DIM_ENERGY,
+    SKG_DIM_DEPTH, SKG_DIM_SIGHT_U, SKG_DIM_SIGHT_V, SKG_DIM_ANGLE, SKG_DIM_TURN, SKG_DIM_PROCESS,
+    SKG_DIM_DEPTH_2, SKG_DIM_SIGHT_U_2, SKG_DIM_SIGHT_V_2,
+    SKG_DIM_SPOT
+};
 static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattice, uint batch, skg_uv history,
                           int dimension) {
     skg_uv bits = history;
@@ -195,10 +202,10 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
                      __global const float *profiles, __global const float4 *spots, uint batch, skg_intv fresh,
                      skg_photons *p) {
     const skg_scatter_args *args = s->args;
-    const skg_fv u = skg_lattice(s, lattice, batch, p->history, 0),
-                 v = skg_lattice(s, lattice, batch, p->history, 1);
-    const skg_fv energy = skg_lattice(s, lattice, batch, p->history, 2),
-                 spot = skg_lattice(s, lattice, batch, p->history, 12);
+    const skg_fv u = skg_lattice(s, lattice, batch, p->history, SKG_DIM_U),
+                 v = skg_lattice(s, lattice, batch, p->history, SKG_DIM_V);
+    const skg_fv energy = skg_lattice(s, lattice, batch, p->history, SKG_DIM_ENERGY),
+                 spot = skg_lattice(s, lattice, batch, p->history, SKG_DIM_SPOT);
     float at[SKG_WIDE], kev[SKG_WIDE], weight[SKG_WIDE], x[SKG_WIDE], y[SKG_WIDE], z[SKG_WIDE];
     int bins[SKG_WIDE];
     float per_mm[SKG_WIDE];
@@ -226,31 +233,31 @@ static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __
         fma((skg_fv)(args->field_u[1]), u, fma((skg_fv)(args->field_v[1]), v, (skg_fv)(args->field[1]))),
         fma((skg_fv)(args->field_u[2]), u, fma((skg_fv)(args->field_v[2]), v, (skg_fv)(args->field[2])))};
 #if SKG_PARALLEL
-    const skg_place3 way = source; /* the beam's direction */
-    skg_place3 begin = {fma(way.x, (skg_fv)(-args->far), on.x), fma(way.y, (skg_fv)(-args->far), on.y),
-                        fma(way.z, (skg_fv)(-args->far), on.z)};
-    if (args->world_around) begin = skg_on(begin, way, (skg_fv)(args->world_start) - skg_dot3(begin, way));
+    const skg_place3 direction = source; /* the beam's direction */
+    skg_place3 begin = {fma(direction.x, (skg_fv)(-args->far), on.x), fma(direction.y, (skg_fv)(-args->far), on.y),
+                        fma(direction.z, (skg_fv)(-args->far), on.z)};
+    if (args->world_around) begin = skg_on(begin, direction, (skg_fv)(args->world_start) - skg_dot3(begin, direction));
     const skg_fv share = (skg_fv)(1.0f);
 #else
     const skg_place3 to = {on.x - source.x, on.y - source.y, on.z - source.z}, begin = source;
     const skg_fv square = skg_dot3(to, to), one_over = (skg_fv)(1.0f) / skg_root_v(square);
-    const skg_place3 way = skg_times(to, one_over);
+    const skg_place3 direction = skg_times(to, one_over);
     /* Photons per sr: the field's area as the source sees it, over that at its middle. */
-    const skg_fv facing = way.x * args->normal[0] + way.y * args->normal[1] + way.z * args->normal[2];
+    const skg_fv facing = direction.x * args->normal[0] + direction.y * args->normal[1] + direction.z * args->normal[2];
     skg_fv share = facing * (skg_fv)(args->far * args->far) / square;
-    if (args->heel_rows > 0) share *= skg_heel_share(args, profiles, bins, way);
-    if (args->fan_rows > 0) share *= skg_filter_share(args, profiles, per_mm, way);
+    if (args->heel_rows > 0) share *= skg_heel_share(args, profiles, bins, direction);
+    if (args->fan_rows > 0) share *= skg_filter_share(args, profiles, per_mm, direction);
 #endif
     p->at.x = fresh ? begin.x : p->at.x, p->at.y = fresh ? begin.y : p->at.y,
     p->at.z = fresh ? begin.z : p->at.z;
-    p->way.x = fresh ? way.x : p->way.x, p->way.y = fresh ? way.y : p->way.y,
-    p->way.z = fresh ? way.z : p->way.z;
+    p->direction.x = fresh ? direction.x : p->direction.x, p->direction.y = fresh ? direction.y : p->direction.y,
+    p->direction.z = fresh ? direction.z : p->direction.z;
     p->kev = fresh ? SKG_LOAD_V(realv, kev) : p->kev;
     p->weight = fresh ? SKG_LOAD_V(realv, weight) * share : p->weight;
     p->order = fresh ? (skg_uv)(0) : p->order;
     p->changed &= ~fresh;
     p->share = fresh ? (skg_fv)(0.0f) : p->share;
-    p->reach = fresh ? skg_until_plane(args, begin, way) : p->reach;
+    p->reach = fresh ? skg_until_plane(args, begin, direction) : p->reach;
     p->alive |= fresh;
 }
 
@@ -260,9 +267,9 @@ static void skg_interact(const skg_scattering *s, skg_photons *p, const skg_mixt
     const skg_fv first = before * around, inside = depth - first, none = (skg_fv)(0.0f);
     const skg_intv ahead = inside < none, behind = ~ahead & (inside > within) & (around > none);
     const skg_intv here = p->alive & ~ahead & ~behind;
-    skg_fv on = enter + skg_collide(s->args, &s->object, p->at, p->way, enter, here ? length : none, mu, min(inside, within), medium);
+    skg_fv on = enter + skg_collide(s->args, &s->object, p->at, p->direction, enter, here ? length : none, mu, min(inside, within), medium);
     on = ahead ? depth / max(around, (skg_fv)(1e-30f)) : behind ? before + length + (inside - within) / max(around, (skg_fv)(1e-30f)) : on;
-    p->at = skg_on(p->at, p->way, on);
+    p->at = skg_on(p->at, p->direction, on);
     if (!skg_any(ahead | behind)) return;
     int outside[SKG_WIDE];
     SKG_STORE_V(intv, ahead | behind, outside);
@@ -273,7 +280,7 @@ static void skg_interact(const skg_scattering *s, skg_photons *p, const skg_mixt
     }
 }
 
-/* One flight of all photons: what they bring where they meet the detector, then to the next interaction. */
+/* One flight of all photons: what they tally where they hit the detector, then to the next interaction. */
 static void skg_flight(const skg_scattering *s, __constant const uint *lattice, __global const float *angles,
                        uint batch, skg_photons *p) {
     skg_uv a[4], b[4];
@@ -288,9 +295,9 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                         \
      : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                        \
               : skg_uniform(word))
-    const skg_fv within = skg_within(s->args, p->at, p->way, p->reach, &enter);
+    const skg_fv within = skg_within(s->args, p->at, p->direction, p->reach, &enter);
     const skg_fv length = p->alive ? within : (skg_fv)(0.0f);
-    skg_march(s->args, &s->object, p->at, p->way, enter, length, &sums);
+    skg_optical_depth(s->args, &s->object, p->at, p->direction, enter, length, &sums);
     const skg_fv place = skg_energy_place(s->args, p->kev);
     const skg_fv within_cells = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
     skg_fv depth = within_cells, around = (skg_fv)(0.0f), before = enter, behind = (skg_fv)(0.0f);
@@ -299,17 +306,17 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
         for (int l = 0; l < SKG_WIDE; l++) skg_mix_clear(&world.of[l]);
         skg_add_world(&s->object, (skg_fv)(1.0f), &world);
         around = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &world);
-        skg_around(s->args, p->at, p->way, p->reach, enter, length, &before, &behind);
+        skg_around(s->args, p->at, p->direction, p->reach, enter, length, &before, &behind);
         depth += around * (before + behind);
     }
     const skg_fv passed = skg_exp(-depth);
     const skg_fv arrives = s->args->world_around ? skg_exp(-fma(around, p->reach - length, within_cells)) : passed;
-    skg_bring(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->way, p->kev,
+    skg_tally(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->direction, p->kev,
               p->weight * p->share * arrives);
     /* Somewhere on the way. */
     skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
     p->alive &= depth > (skg_fv)(1e-7f);
-    const skg_fv chosen = SKG_DRAW(a[1], 3, 9), share = (skg_fv)(SKG_SCATTER_EVEN);
+    const skg_fv chosen = SKG_DRAW(a[1], SKG_DIM_DEPTH, SKG_DIM_DEPTH_2), share = (skg_fv)(SKG_SCATTER_EVEN);
     const skg_intv evenly = chosen < share;
     const skg_fv rest = evenly ? chosen / share : (chosen - share) / ((skg_fv)(1.0f) - share);
     const skg_fv until =
@@ -327,10 +334,10 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.medium);
     p->alive &= i.total > (skg_fv)(0.0f);
     skg_see(s->args, p->at, &sight);
-    skg_contribute(s, p, &sight, &i, SKG_DRAW(a[2], 4, 10), SKG_DRAW(a[3], 5, 11));
-    const skg_fv angle = first ? skg_lattice(s, lattice, batch, p->history, 6) : skg_uniform(b[0]);
-    const skg_fv turn = first ? skg_lattice(s, lattice, batch, p->history, 7) : skg_uniform(b[1]);
-    const skg_fv process = first ? skg_lattice(s, lattice, batch, p->history, 8) : skg_uniform(b[2]);
+    skg_next_event(s, p, &sight, &i, SKG_DRAW(a[2], SKG_DIM_SIGHT_U, SKG_DIM_SIGHT_U_2), SKG_DRAW(a[3], SKG_DIM_SIGHT_V, SKG_DIM_SIGHT_V_2));
+    const skg_fv angle = first ? skg_lattice(s, lattice, batch, p->history, SKG_DIM_ANGLE) : skg_uniform(b[0]);
+    const skg_fv turn = first ? skg_lattice(s, lattice, batch, p->history, SKG_DIM_TURN) : skg_uniform(b[1]);
+    const skg_fv process = first ? skg_lattice(s, lattice, batch, p->history, SKG_DIM_PROCESS) : skg_uniform(b[2]);
     skg_fly_on(s, angles, p, &sight, &i, angle, turn, process);
     skg_words(s->args, p->history, p->order, batch, 2, a);
     skg_roulette(s->args, p, skg_uniform(a[0]));

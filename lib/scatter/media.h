@@ -9,7 +9,7 @@
 typedef struct {
     const double *base; /* of skg_cell_parts, or NULL */
     int64_t count, capacity, slots;
-    skg_mixture *mixtures;       /* [count] */
+    skg_mixture *mixtures;    /* [count] */
     skg_cell_amount *amounts; /* [count] of those that were found by them */
     uint32_t *slot;           /* [slots] 1 + the number of a medium, 0: free */
 } skg_media;
@@ -32,6 +32,10 @@ void skg_face_cells(const double corners[9], const int64_t count[3], double marg
 
 /* Whether a line from one place to another crosses a triangle: 1 into the part, -1 out of it; 0: not. */
 int skg_face_crossed(const double corners[9], const double from[3], const double to[3], double *share);
+
+/* --- Leaps: so many cells on every side of a cell with a medium have the same word. Writes them into the words of the coarse cells. */
+
+skg_status skg_cells_leap(const skg_cells *cells, uint32_t *words);
 
 /* --- Growing lists. */
 
