@@ -309,6 +309,7 @@ START_TEST(thin_parts_in_a_room_have_their_lengths) {
     const double from[3] = {100, 0, 30}, to[3] = {100 + 60, 0, 30 + 80};
     double mm[SKG_SCATTER_RANK];
     along(&cells, from, to, mm);
+    /* The same floats */
     ck_assert_double_eq_tol(mm[0] / (10 * 0.025), 1, 5e-3);
     skg_cells_free(&cells);
     drop(&s);
@@ -347,7 +348,9 @@ START_TEST(many_faces_in_a_cell_make_a_brick) {
     const double from[3] = {-20, 0.01, 0.02}, to[3] = {20, 0.01, 0.02};
     double mm[SKG_SCATTER_RANK];
     along(&cells, from, to, mm);
+    /* The chord of a polyhedron of this many faces is up to .01 mm below the diameter of its ball. */
     ck_assert_double_eq_tol(mm[0], 12 - 4, 0.02);
+    /* Likewise, of twice the density */
     ck_assert_double_eq_tol(mm[1], 2 * 4, 0.02);
     skg_cells_free(&cells);
     skg_cells_free(&alone);

@@ -195,6 +195,7 @@ static void compare_room(subject *s, const room *r) {
     /* A half has 512 pixels, so that its error is below the one that is stated of them. */
     ck_assert_double_eq_tol(halves[0] / r->left, 1, 1.5 * own);
     ck_assert_double_eq_tol(halves[1] / r->right, 1, 1.5 * own);
+    /* Cells hold the faces: what is left is the rounding of floats. */
     ck_assert_double_le(report.cells_error, 1e-4);
     pictures_free(&p);
     subject_close(s);
