@@ -39,7 +39,7 @@ skg_cost_counts skg_costs_count(const skg_recipe *recipe, const skg_extent *exte
 double skg_cost_of_attenuation(const skg_model *model, double nodes, double planes);
 
 /* --- An effect of a plan: one row of a table. *
- * The rows stand by subject in effects_beam.c (the beam and what stands in it), effects_detector.c, effects_meshes.c and
+ * The rows stand by subject in effects_beam.c (the beam and what stands in it), effects_detector.c, effects_noise.c, effects_meshes.c and
  * effects_sampling.c. */
 
 /* What a plan reports of an effect. */
