@@ -104,6 +104,15 @@ static void share_out(const arrived *a, skg_scatter_report *report) {
     }
 }
 
+/* Divides the stated error among its parts. */
+static void divide(const arrived *a, skg_scatter_report *report) {
+    const skg_cosines *all = &a->all;
+    const double off = a->systematic * all->mean, per = all->sigma > 0 ? report->sigma / all->sigma : 0;
+    report->errors[0] = per * sqrt(fmax(all->sigma * all->sigma - all->bias, 0));
+    report->errors[1] = per * off;
+    report->errors[2] = per * sqrt(fmax(all->bias - off * off, 0));
+}
+
 static void free_components(skg_scatterer *s) {
     for (int32_t k = 0; k < s->channels * SKG_SCATTER_KINDS; k++) skg_cosines_free(&s->components[k]);
     skg_free(&s->components);
@@ -210,6 +219,7 @@ static skg_status compute(skg_context *context, const skg_scatter_work *work,
     s->report.mean = s->images.average;
     s->report.sigma = s->images.error;
     share_out(&a, &s->report);
+    divide(&a, &s->report);
     s->report.cosines = (int32_t)a.all.count;
 cleanup:
     drop(&a);
@@ -295,7 +305,7 @@ skg_status skg_scatterer_take(skg_context *context, skg_scatterer *s, const skg_
                                      .power = series->power};
     SKG_TRY_CLEANUP(skg_shown_scatter_send(context, &shown, &s->images));
     s->report.mean = s->images.average;
-    s->report.sigma = s->images.error;
+    s->report.sigma = s->report.errors[0] = s->images.error;
     s->report.cosines = (int32_t)mean.count;
     s->report.seconds = skg_seconds() - begun;
     s->key = key;

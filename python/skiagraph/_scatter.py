@@ -81,6 +81,7 @@ def _summary(report: Mapping[str, Any], total: Any, quantity: str | None) -> dic
     primary = float(np.mean(image, dtype=float)) - mean
     return {"mean": mean, "error": report["sigma"] / mean if mean > 0 else 0.0,
             "ratio": mean / primary if primary > 0 else float("inf") if mean > 0 else 0.0,
+            "errors": {name: share / mean if mean > 0 else 0.0 for name, share in zip(("histories", "cells", "smoothing"), report["errors"])},
             "orders": report["orders"],
             "kinds": {"rayleigh": report["rayleigh"], "compton": 1 - report["rayleigh"] if mean > 0 else 0.0},
             **{name: report[name] for name in ("histories", "seconds", "cosines", "cells", "mixture_error", "cells_error")}}

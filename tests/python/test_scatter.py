@@ -29,6 +29,9 @@ def test_the_scatter_of_a_slab_of_water(slab):
     np.testing.assert_allclose(found["total"], primary + found["image"], rtol=4 * np.finfo(np.float32).eps)
     assert found["mean"] == pytest.approx(found["image"].mean(dtype=float), rel=1e-5)
     assert 0 < found["error"] < 2 * 0.02
+    # Parts of one error, in doubles
+    assert sum(part ** 2 for part in found["errors"].values()) == pytest.approx(found["error"] ** 2, rel=1e-9)
+    assert found["errors"]["histories"] > 0 and min(found["errors"].values()) >= 0
     assert sum(found["orders"]) == pytest.approx(1, abs=1e-6)
     assert sum(found["kinds"].values()) == pytest.approx(1) and 0.1 < found["kinds"]["rayleigh"] < 0.2
     assert found["histories"] > 1000 and found["seconds"] > 0 and found["cosines"] > 0

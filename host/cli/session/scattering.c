@@ -85,12 +85,15 @@ static int has_report(const skg_plan *plan, skg_scatter_report *report) {
 json_t *cli_scattering_json(const skg_plan *plan, const skg_picture *image) {
     skg_scatter_report report;
     if (!has_report(plan, &report)) return json_null();
-    json_t *object = json_object(), *kinds = json_object();
+    static const char *const parts[] = {"histories", "cells", "smoothing"};
+    json_t *object = json_object(), *kinds = json_object(), *errors = json_object();
+    for (int k = 0; k < 3; k++) json_object_set_new(errors, parts[k], cli_json_number(report.errors[k]));
     json_object_set_new(kinds, "rayleigh", cli_json_number(report.rayleigh));
     json_object_set_new(kinds, "compton", cli_json_number(report.mean > 0 ? 1 - report.rayleigh : 0));
     json_object_set_new(object, "mean", cli_json_number(report.mean));
     json_object_set_new(object, "ratio", cli_json_number(ratio_of(&report, image)));
     json_object_set_new(object, "sigma", cli_json_number(report.sigma));
+    json_object_set_new(object, "errors", errors);
     json_object_set_new(object, "histories", json_integer(report.histories));
     json_object_set_new(object, "seconds", cli_json_number(report.seconds));
     json_object_set_new(object, "cosines", json_integer(report.cosines));

@@ -127,6 +127,9 @@ typedef struct {
      * detector, over what passes or what is stopped of the rays that meet parts, whichever is less. Four tenths of it are in the stated error.
      * 0 for a frame of a series, and where a part reaches behind the source. */
     double cells_error;
+    /** Parts of `sigma`, in its unit, whose squares add up to its own: that of the number of histories; that of cells and materials,
+     * which no number of histories takes away; and what the smoothing may have lost. A frame of a series has them in the first. */
+    double errors[3];
 } skg_scatter_report;
 
 SKG_INIT(skg_scatter_report)
