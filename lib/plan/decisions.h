@@ -29,6 +29,9 @@ int skg_effects_refuse_half(const skg_recipe *recipe, size_t size, char *names);
 /* Fails if an effect of a recipe has no derivatives. by_view: by source and detector. call: the public function */
 skg_status skg_effects_check_gradient(const char *call, const skg_recipe *recipe, int by_view);
 
+/* The material around the parts that photons scatter in; NULL: none. */
+skg_material *skg_scatter_world(const skg_recipe *recipe);
+
 /* Leaves out of the options what the prediction of scatter does without. */
 void skg_effects_leave_out(skg_plan_options *options);
 

@@ -55,13 +55,19 @@ static int refuses_half(const skg_recipe *recipe) {
     return recipe->options.scatter != NULL;
 }
 
+skg_material *skg_scatter_world(const skg_recipe *recipe) {
+    const skg_scatter *scatter = recipe->options.scatter;
+    return scatter && !scatter->world_off ? recipe->options.world : NULL;
+}
+
 /* The world scatters in the box around source, parts and detector, and what comes back into it is left out: it has to be little. */
 static skg_status check_world(const skg_recipe *recipe) {
     const skg_spectrum *spectrum = recipe->spectrum;
     const char *name = "";
     double way[3], signals = 0, met = 0;
-    if (!recipe->options.world) return SKG_OK;
-    SKG_TRY(skg_material_name_get(recipe->options.world, &name));
+    skg_material *world = skg_scatter_world(recipe);
+    if (!world) return SKG_OK;
+    SKG_TRY(skg_material_name_get(world, &name));
     if (recipe->view.projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
@@ -74,8 +80,8 @@ static skg_status check_world(const skg_recipe *recipe) {
         double per_cm = 0, signal = 0;
         if (!(spectrum->photons[i] > 0)) continue;
         skg_coefficients_init(&c);
-        SKG_TRY(skg_material_attenuation_get(recipe->options.world, spectrum->energy_kev[i], &per_cm));
-        SKG_TRY(skg_material_coefficients_get(recipe->options.world, spectrum->energy_kev[i], &c));
+        SKG_TRY(skg_material_attenuation_get(world, spectrum->energy_kev[i], &per_cm));
+        SKG_TRY(skg_material_coefficients_get(world, spectrum->energy_kev[i], &c));
         SKG_TRY(skg_signal_get(&recipe->options, spectrum->energy_kev[i], &signal));
         signal *= spectrum->photons[i];
         signals += signal;
@@ -86,7 +92,7 @@ static skg_status check_world(const skg_recipe *recipe) {
         SKG_ERR_UNSUPPORTED,
         "scatter: a World of %s scatters %.3g %% of the beam between source and detector, which is followed in "
         "the box around source, parts and detector alone, and may do so up to %g %%; make it a part that holds the "
-        "others, or leave it out",
+        "others, or set WorldScatter to false (skg_scatter.world_off)",
         name, 100 * met / signals, 100 * WORLD_SCATTERS);
 }
 
@@ -104,7 +110,7 @@ skg_status skg_scatter_check(const skg_recipe *recipe) {
                 "the scatter",
                 scene->parts[i].label);
     }
-    if (recipe->options.world && skg_scattering_check(recipe->options.world) != SKG_OK)
+    if (skg_scatter_world(recipe) && skg_scattering_check(skg_scatter_world(recipe)) != SKG_OK)
         return skg_fail(SKG_ERR_MATERIAL, "scatter: World: %s", skg_last_error());
     SKG_TRY(check_world(recipe));
     for (int64_t i = 0; i < recipe->spectrum->count; i++)

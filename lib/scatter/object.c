@@ -5,6 +5,7 @@
 #include "core/maths.h"
 #include "geometry/overlaps.h"
 #include "material/material.h"
+#include "plan/decisions.h"
 
 #include <math.h>
 
@@ -47,7 +48,8 @@ static skg_status find_palette(const skg_recipe *recipe, palette *p) {
     SKG_TRY(skg_alloc(scene->count + 1, sizeof *p->materials, "materials", &p->materials));
     SKG_TRY(skg_alloc(scene->count, sizeof *p->of_part, "materials", &p->of_part));
     for (int64_t i = 0; i < scene->count; i++) p->of_part[i] = place_in(p, scene->parts[i].material);
-    p->of_world = recipe->options.world ? place_in(p, recipe->options.world) : -1;
+    skg_material *world = skg_scatter_world(recipe);
+    p->of_world = world ? place_in(p, world) : -1;
     return SKG_OK;
 }
 

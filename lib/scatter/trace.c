@@ -4,6 +4,7 @@
 #include "core/clock.h"
 #include "core/log.h"
 #include "core/maths.h"
+#include "plan/decisions.h"
 #include "scatter/interactions.h"
 
 #include <math.h>
@@ -185,7 +186,7 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     fill_tables(&object->physics, tables, &t->args);
     fill_profile(&tables->profile, t);
     fill_images(work->recipe, tables, t);
-    t->args.world_around = work->recipe->options.world != NULL;
+    t->args.world_around = skg_scatter_world(work->recipe) != NULL;
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
     SKG_TRY(send_lattice(context, seed, &t->lattice));

@@ -26,6 +26,7 @@ static const skg_json_key top_keys[] = {
     {"Scatter", NULL, SKG_KEY_READ},
     {"BandWeight", NULL, SKG_KEY_READ},
     {"World", NULL, SKG_KEY_READ},
+    {"WorldScatter", NULL, SKG_KEY_READ},
     {"Repair", NULL, SKG_KEY_READ},
     {"Clip", NULL, SKG_KEY_READ},
 };
@@ -130,6 +131,15 @@ static skg_status read_world(skg_setup_reader *reader, const skg_json_object *to
     return skg_setup_read_material(reader, &material, &density, "world", &reader->setup->world);
 }
 
+/* Whether the world scatters. It says nothing where there is no world, or no scatter. */
+static skg_status read_world_scatter(skg_setup *setup, const skg_json_object *top) {
+    const skg_json_node node = skg_json_member(top, "WorldScatter");
+    int32_t scatters = 1;
+    if (node.value) SKG_TRY(skg_json_flag(&node, &scatters));
+    setup->scatter.world_off = !scatters;
+    return SKG_OK;
+}
+
 /* A section that a file has to have. A partial text may leave it out together with `twin`. */
 static skg_status need(const skg_setup_reader *reader, const skg_json_object *top, const char *name,
                        const char *twin, const char *example, skg_json_node *section) {
@@ -166,6 +176,7 @@ static skg_status read_all(skg_setup_reader *reader) {
     const skg_json_node scatter = skg_json_member(&top, "Scatter");
     SKG_TRY(skg_setup_read_scatter(reader, &scatter));
     SKG_TRY(read_world(reader, &top));
+    SKG_TRY(read_world_scatter(reader->setup, &top));
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
     SKG_TRY(skg_setup_bin_counts(reader));

@@ -296,8 +296,9 @@ SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy
 typedef struct {
     /** Set by skg_scatter_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** 1: photons that are followed do not meet the world of the plan's options at all; the primary does. 0 (default): it scatters and
+     * stops them, everywhere between source and detector. */
+    int32_t world_off;
     /** Standard error aimed at, smoothing included, over the mean of the scatter: root mean square over the detector. 0.01
      * by default; 0: `histories` decides. */
     double tolerance;
