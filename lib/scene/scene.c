@@ -8,6 +8,7 @@
 #include <float.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 #include <string.h>
 
 void skg_part_init_sized(void *part, int32_t size) {
@@ -221,6 +222,21 @@ skg_status skg_scene_part_label_get(const skg_scene *scene, int64_t id, const ch
     return SKG_OK;
 }
 
+/* The first labels of a scene, as many as fit: "; the scene has skin, bone and 3 others". */
+static void list_labels(const skg_scene *scene, size_t size, char *text) {
+    size_t length = 0;
+    int64_t i = 0;
+    text[0] = '\0';
+    for (; i < scene->count; i++) {
+        const char *label = scene->parts[i].label;
+        if (length + strlen(label) + 32 > size) break;
+        length +=
+            (size_t)snprintf(text + length, size - length, "%s%s", i ? ", " : "; the scene has ", label);
+    }
+    if (i > 0 && i < scene->count)
+        snprintf(text + length, size - length, " and %" PRId64 " others", scene->count - i);
+}
+
 skg_status skg_scene_part_find(const skg_scene *scene, const char *label, int64_t *id) {
     SKG_NEEDS(scene);
     SKG_NEEDS(label);
@@ -238,7 +254,9 @@ skg_status skg_scene_part_find(const skg_scene *scene, const char *label, int64_
     SKG_TRY(skg_alloc(scene->count, sizeof *labels, "labels", &labels));
     for (int64_t i = 0; i < scene->count; i++) labels[i] = scene->parts[i].label;
     const char *near = skg_nearest_name(label, labels, scene->count);
-    skg_fail(SKG_ERR_SCENE, "no part has the label %s%s%s", label, near ? "; did you mean " : "",
+    char all[256];
+    list_labels(scene, sizeof all, all);
+    skg_fail(SKG_ERR_SCENE, "no part has the label %s%s%s", label, near ? "; did you mean " : all,
              near ? near : "");
     skg_free(&labels);
     return SKG_ERR_SCENE;

@@ -105,6 +105,8 @@ START_TEST(labels_are_found) {
     ck_skg(skg_scene_part_find(scene, "SPINE", &id)); /* the exact one first */
     ck_assert_int_eq(id, 3);
     ck_skg_fails(skg_scene_part_find(scene, "Spine", &id), SKG_ERR_SCENE, "no part has the label Spine");
+    ck_skg_fails(skg_scene_part_find(scene, "aortic arch", &id), SKG_ERR_SCENE,
+                 "no part has the label aortic arch; the scene has liver, Lung, spine, SPINE");
     ck_skg_fails(skg_scene_part_find(scene, "livre", &id), SKG_ERR_SCENE, "did you mean liver");
 }
 END_TEST

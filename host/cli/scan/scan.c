@@ -32,8 +32,9 @@ static int print(const cli_arguments *arguments, const cli_acquisition *a) {
         cli_print("%s is finished: it has all %" PRId64 " projections\n", a->place, a->projections);
         return CLI_DONE;
     }
-    cli_print("%" PRId64 " projections in %.1f s, %.3g per second; %s has %" PRId64 " of %" PRId64 "\n",
-              a->computed, a->seconds, rate, a->place, there, a->projections);
+    cli_print("%" PRId64 " %s in %.1f s, %.3g per second; %s has %" PRId64 " of %" PRId64 "\n", a->computed,
+              a->computed == 1 ? "projection" : "projections", a->seconds, rate, a->place, there,
+              a->projections);
     return CLI_DONE;
 }
 
