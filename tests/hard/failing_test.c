@@ -57,9 +57,10 @@ static void set_up(void) {
 static int clear(int all) {
     static const char *const inputs[] = {"scene.json", "body.json", "response.txt",
                                          "bone.obj",   "plate.obj", "sheet.stl"};
-    static const char *const results[] = {"image.mha", "image.tif",   "image.png",  "bone.ply",
-                                          "map.ply",   "fitted.json", "checkpoint", "scan.mha",
-                                          "scan.tif",  "scan.h5",     "packed.h5",  "geometry.csv"};
+    static const char *const results[] = {
+        "image.mha",      "image.tif",      "image.png",      "bone.ply",      "map.ply",   "fitted.json",
+        "checkpoint",     "scan.mha",       "scan.tif",       "scan.h5",       "packed.h5", "geometry.csv",
+        "scan-flats.mha", "scan-darks.mha", "scan-flats.tif", "scan-darks.tif"};
     const int result_count = sizeof results / sizeof *results, input_count = sizeof inputs / sizeof *inputs;
     int strange = 0;
     DIR *files = opendir(folder);
