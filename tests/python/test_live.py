@@ -12,6 +12,7 @@ import numpy as np
 import pytest
 
 import skiagraph as sk
+from skiagraph import _command
 from skiagraph._live import hub as hubs
 from skiagraph._live import page, widget
 
@@ -365,7 +366,7 @@ def test_the_command_says_the_same(command, solid, tmp_path):
     one.wish(**keys)
     looks = [{"size": [320, 240], "distance": distance, "grey": [0, 2], "cut": [0, 0, 1, 3], "parts": {"0": [90, 160, 200, 120]}} for distance in (200, 2500)]
     try:
-        server = client.Server("skiagraph", str(tmp_path / "scene.json"))
+        server = client.Server(_command.path(), str(tmp_path / "scene.json"))
     except RuntimeError as error:
         pytest.skip(str(error))
     with server:
