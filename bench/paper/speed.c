@@ -1,4 +1,4 @@
-/* Frames a second of the paper's scene, by strategy. */
+/* Frames a second of the paper's scene, by precision and repair. */
 #include "paper/speed.h"
 #include "common/thorax.h"
 

@@ -80,7 +80,7 @@ static void skg_tally(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
 /* How likely a photon is scattered to an angle, per sr and interaction: by Compton scattering (Klein and Nishina, times S), which
  * leaves it *left keV, and by Rayleigh scattering (Thomson, times F^2). */
 static void skg_differential(const skg_scattering *s, const skg_interaction *i, skg_fv kev, skg_fv cosine,
-                       skg_fv *compton, skg_fv *rayleigh, skg_fv *left) {
+                             skg_fv *compton, skg_fv *rayleigh, skg_fv *left) {
     const skg_fv one = (skg_fv)(1.0f), less = max(one - cosine, (skg_fv)(0.0f));
     const skg_fv ratio = one / fma(kev * (skg_fv)(1.0f / SKG_ELECTRON_KEV), less, one);
     const skg_fv momentum =
@@ -178,7 +178,6 @@ static void skg_roulette(const skg_scatter_args *args, skg_photons *p, skg_fv wo
     p->alive &= stays & (p->kev > (skg_fv)(args->min_kev)) & (p->order < (skg_uv)(SKG_SCATTER_ORDERS));
 }
 
-/* Number `dimension` of a history's point of a lattice, from 0 to below 1, shifted for each batch at random. */
 /* What the dimensions of the lattice are for: a photon's start, its first interaction, and the depth and places of the second one. */
 enum {
     SKG_DIM_U, SKG_DIM_V, SKG_DIM_ENERGY,
@@ -186,6 +185,8 @@ enum {
     SKG_DIM_DEPTH_2, SKG_DIM_SIGHT_U_2, SKG_DIM_SIGHT_V_2,
     SKG_DIM_SPOT
 };
+
+/* Number `dimension` of a history's point of a lattice, from 0 to below 1, shifted for each batch at random. */
 static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattice, uint batch, skg_uv history,
                           int dimension) {
     skg_uv bits = history;

@@ -24,9 +24,8 @@ struct skg_deposition {
     const skg_escape *escape;     /* borrowed; NULL: none */
     double mm, bounds[CELLS + 1], middles[CELLS];
     double way[WAYS], share[WAYS]; /* direction cosines from -1 to 1, and their weights, which add up to 1 */
-    double x[2][ANGLES],
-        step[2]
-            [ANGLES]; /* sine of half the angle, of Compton and Rayleigh scattering; weights over its cosine */
+    /* Of Compton and Rayleigh scattering: the sine of half the angle, and weights over its cosine. */
+    double x[2][ANGLES], step[2][ANGLES];
     int64_t count;
     double *kev; /* [count] rising */
     row *rows;   /* [count] */
@@ -37,8 +36,8 @@ typedef struct {
     double kev, photo, compton, rayleigh, pair;
     double weight[2][ANGLES]; /* add up to 1 for each kind */
     double after[ANGLES];     /* keV of the photon after Compton scattering */
-    double first[CELLS],
-        second[CELLS]; /* moments of what absorption and pair production leave in each cell */
+    /* Moments of what absorption and pair production leave in each cell. */
+    double first[CELLS], second[CELLS];
 } collision;
 
 /* Probabilities of the directions [kind][angle][new direction] for one direction. */
@@ -68,15 +67,15 @@ static void find_grids(skg_deposition *d) {
     for (int b = 0; b <= CELLS; b++) d->bounds[b] = 0.5 * d->mm * (1 - cos(SKG_PI * b / CELLS));
     for (int c = 0; c < CELLS; c++) d->middles[c] = 0.5 * (d->bounds[c] + d->bounds[c + 1]);
     find_gauss(HALF, points, weights);
-    for (int i = 0; i < HALF;
-         i++) { /* paths along the layer are long, so that directions near 0 differ most: the cosine is y^2 */
+    /* Paths along the layer are long, so that directions near 0 differ most. */
+    for (int i = 0; i < HALF; i++) {
         const double y = points[i];
         d->way[HALF + i] = y, d->way[HALF - 1 - i] = -y;
         d->share[HALF + i] = d->share[HALF - 1 - i] = weights[i] / 2;
     }
     find_gauss(ANGLES, points, weights);
-    for (int q = 0; q < ANGLES;
-         q++) { /* the cosine is 1 - 2 x^2; form factors are sharp at small angles, where x = y^3 is fine */
+    /* The cosine is 1 - 2 x^2; form factors are sharp at small angles, where x = y^3 is fine. */
+    for (int q = 0; q < ANGLES; q++) {
         const double y = points[q];
         d->x[0][q] = y, d->step[0][q] = 4 * y * weights[q];
         d->x[1][q] = y * y * y, d->step[1][q] = 4 * y * y * y * 3 * y * y * weights[q];

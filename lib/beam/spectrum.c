@@ -1,4 +1,4 @@
-/* The inside of spectra and responses. */
+/* Spectra: energies and photons, made, checked and asked. */
 #include "beam/spectrum.h"
 #include "core/text.h"
 #include "material/material.h"

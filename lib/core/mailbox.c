@@ -1,4 +1,4 @@
-/* A value that one process leaves for another of the same program. */
+/* Sentences of the threads of a driver, kept until the thread that uses the context can log them. */
 #include "core/log.h"
 
 #include <inttypes.h>

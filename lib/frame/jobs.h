@@ -12,9 +12,9 @@
 
 /* The scene at the time of a submission, for frames that are enqueued later. All NULL: every frame was enqueued at once. */
 typedef struct {
-    skg_mesh *
-        meshes; /* [meshes] of the recipe: copies of the structs. Their arrays may have other contents by now,
-                              * and the device has those of the submission */
+    /* [meshes] of the recipe: copies of the structs. Their arrays may have other contents by now, and the device has those of the
+     * submission */
+    skg_mesh *meshes;
     double *poses;     /* [parts][16] */
     skg_frame *frames; /* [count - first] copies with arrays of their own; NULL: as plan and scene stood */
     int64_t first;     /* number of frames[0] */
@@ -27,8 +27,8 @@ typedef struct {
     skg_status (*begin)(skg_job *job, const skg_frame *frames, const double **poses);
     /* Enqueues a step of a frame. work: of the frame; what it is to show is filled in */
     skg_status (*step)(skg_job *job, int64_t frame, int64_t step, skg_frame_work *work);
-    skg_status (*finish)(
-        skg_job *job); /* hands out results when all steps are done; NULL: they are in place */
+    /* Hands out results when all steps are done. NULL: they are in place. */
+    skg_status (*finish)(skg_job *job);
     skg_status (*cancelled)(const skg_job *job); /* fails, and says what is in place */
     void (*release)(void **state);               /* NULL: there is no state */
 } skg_job_kind;
@@ -56,7 +56,7 @@ struct skg_job {
     cl_event last;       /* of the last command; NULL until all that will be enqueued was */
     int32_t finished;    /* 1: everything enqueued is done */
     atomic_int cancelled, references;
-    atomic_int over;    /* 1: the job was waited for, and nothing of it is left but these three */
+    atomic_int over;    /* 1: the job was waited for, and nothing of it is left but this and the two above */
     skg_status failure; /* of a frame that was to be enqueued after the submission */
     char *sentence;     /* of the failure */
 };

@@ -1,4 +1,4 @@
-/* Faces without area, found. */
+/* How many faces of a mesh are flat: one large triangle, or several in one plane. */
 #include "core/maths.h"
 #include "mesh/mesh.h"
 

@@ -56,8 +56,7 @@ static int refuses_half(const skg_recipe *recipe) {
 }
 
 skg_material *skg_scatter_world(const skg_recipe *recipe) {
-    const skg_scatter *scatter = recipe->options.scatter;
-    return scatter && !scatter->world_off ? recipe->options.world : NULL;
+    return recipe->options.world_scatter_off ? NULL : recipe->options.world;
 }
 
 /* The world scatters in the box around source, parts and detector, and what comes back into it is left out: it has to be little. */
@@ -92,7 +91,7 @@ static skg_status check_world(const skg_recipe *recipe) {
         SKG_ERR_UNSUPPORTED,
         "scatter: a World of %s scatters %.3g %% of the beam between source and detector, which is followed in "
         "the box around source, parts and detector alone, and may do so up to %g %%; make it a part that holds the "
-        "others, or set WorldScatter to false (skg_scatter.world_off)",
+        "others, or set WorldScatter to false (skg_plan_options.world_scatter_off)",
         name, 100 * met / signals, 100 * WORLD_SCATTERS);
 }
 

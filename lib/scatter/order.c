@@ -1,4 +1,4 @@
-/* The order in which places of the detector are taken. */
+/* How many cosines the smoothing of scatter keeps: up to the order at which noise outweighs what they hold. */
 #include "scatter/smoothing.h"
 
 #include <math.h>

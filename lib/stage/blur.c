@@ -1,4 +1,4 @@
-/* Stage `blur`: the point spread function, as sums of exponentials and Gaussians. */
+/* Stage `blur`: an image convolved with the detector's line spread functions or its point spread function. */
 #include "core/maths.h"
 #include "stage/readout.h"
 

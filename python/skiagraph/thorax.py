@@ -29,11 +29,11 @@ def thorax(folder: str | os.PathLike[str] | None = None, triangles: int | None =
     if folder is None:
         made = tempfile.mkdtemp(prefix="skiagraph-thorax-")
         atexit.register(shutil.rmtree, made, ignore_errors=True)
-        return Scene(write(made, triangles, simple))
-    return write(folder, triangles, simple)
+        return Scene(_write(made, triangles, simple))
+    return _write(folder, triangles, simple)
 
 
-def write(folder: str | os.PathLike[str], triangles: int | None, simple: bool) -> str:
+def _write(folder: str | os.PathLike[str], triangles: int | None, simple: bool) -> str:
     os.makedirs(folder, exist_ok=True)
     options = struct("skg_thorax_options")
     fill(options, "skg_thorax_options", {"triangles": triangles, "simple": simple}, [], "option")

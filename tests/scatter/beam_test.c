@@ -276,7 +276,7 @@ START_TEST(a_world_attenuates_both_ways) {
                 s.jaws.low[k] = -middle - WORLD_RADIUS, s.jaws.high[k] = -middle + WORLD_RADIUS;
             }
             s.scatter.histories = 1 << 18;
-            s.scatter.world_off = run == 3;
+            s.options.world_scatter_off = run == 3;
             use(&s, &e, which);
             subject_plan(&s);
             for (int k = 0; k < 2; k++)

@@ -104,12 +104,27 @@ START_TEST(refused) {
 }
 END_TEST
 
+/* It is kept without the key Scatter, too: flags and programs may ask for scatter later. */
+START_TEST(the_world_may_be_left_out) {
+    static const char *const settings[] = {"Tolerance=0", "WorldScatter=true", "WorldScatter=false"};
+    for (int i = 0; i < 3; i++) {
+        skg_plan_options o;
+        skg_plan_options_init(&o);
+        ck_skg(load_with(settings[i], NULL));
+        ck_skg(skg_setup_options_get(setup, &o));
+        ck_assert_int_eq(o.world_scatter_off, i == 2);
+    }
+    ck_skg_fails(load_with("WorldScatter=3", NULL), SKG_ERR_FORMAT, "WorldScatter");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, absent_unless_asked_for);
     tcase_add_test(tests, short_forms);
     tcase_add_test(tests, every_key);
     tcase_add_test(tests, the_text_keeps_it);
+    tcase_add_test(tests, the_world_may_be_left_out);
     tcase_add_loop_test(tests, refused, 0, sizeof bad / sizeof *bad);
 }
 

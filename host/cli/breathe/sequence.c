@@ -1,4 +1,4 @@
-/* Poses of the parts along a sequence. */
+/* Poses a moving scene for a frame of a sequence. */
 #include "breathe/outputs.h"
 
 #include "common/say.h"

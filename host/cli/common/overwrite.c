@@ -1,4 +1,4 @@
-/* Refuses outputs that would replace inputs or each other. */
+/* Refuses an output that is an input, or that exists beside one and is not of this command. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "common/values.h"
 

@@ -1,4 +1,4 @@
-/* Points with fewer source samples and coarser meshes together. */
+/* The coarse pass of a study: the size of each source of error, from few images and without times. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

@@ -1,4 +1,4 @@
-/* The study of a scene that moves: what the worst phase needs. */
+/* A scene that breathes with another relaxation or hysteresis, at the phases of a breath. */
 #include "cost/measuring.h"
 
 #include "common/progress.h"

@@ -1,4 +1,4 @@
-/* Answers a page that measures in the image. */
+/* Measures what each dial of a page would change of the image, and in what time. */
 #include "live/ask.h"
 
 #include "common/encode.h"

@@ -1,4 +1,4 @@
-/* What stands beside projections: geometry, spectrum, units, as JSON. */
+/* The metadata file of a scan in the layout of CTSimU. */
 #define _XOPEN_SOURCE 700 /* realpath */
 
 #include "scan/steps.h"

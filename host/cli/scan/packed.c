@@ -1,4 +1,4 @@
-/* Packs a scan that was written into one file of another format. */
+/* A finished .h5 again, compressed. */
 #include "scan/steps.h"
 
 #include "common/file.h"

@@ -1,4 +1,4 @@
-/* The sign of coordinates in a corner of a view. */
+/* Writes into a PNG which program made it. */
 #include "view/picture.h"
 
 #include "common/say.h"

@@ -136,7 +136,7 @@ static skg_status read_world_scatter(skg_setup *setup, const skg_json_object *to
     const skg_json_node node = skg_json_member(top, "WorldScatter");
     int32_t scatters = 1;
     if (node.value) SKG_TRY(skg_json_flag(&node, &scatters));
-    setup->scatter.world_off = !scatters;
+    setup->world_scatter_off = !scatters;
     return SKG_OK;
 }
 
@@ -367,6 +367,7 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->has_repair) ours.repair = setup->repair;
     if (setup->clip) ours.clip = 1;
     if (setup->unite) ours.unite = 1;
+    if (setup->world_scatter_off) ours.world_scatter_off = 1;
     if (setup->has_band_weight) ours.band_weight = setup->band_weight;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
     if (setup->has_heel) ours.heel = &setup->heel;

@@ -135,7 +135,7 @@ struct skg_setup {
     skg_scan_section scan;
     skg_breathing_section breathing;
     int32_t precision, has_precision;
-    int32_t repair, has_repair, clip, unite;
+    int32_t repair, has_repair, clip, unite, world_scatter_off;
     int32_t orient;   /* 1: inverted components of meshes are turned */
     int32_t as_wound; /* 1: triangles that are wound otherwise than their neighbours are not */
     int32_t band_weight, has_band_weight;

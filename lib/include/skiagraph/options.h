@@ -296,9 +296,8 @@ SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy
 typedef struct {
     /** Set by skg_scatter_init. */
     int32_t size;
-    /** 1: photons that are followed do not meet the world of the plan's options at all; the primary does. 0 (default): it scatters and
-     * stops them, everywhere between source and detector. */
-    int32_t world_off;
+    /** 0 */
+    int32_t reserved;
     /** Standard error aimed at, smoothing included, over the mean of the scatter: root mean square over the detector. 0.01
      * by default; 0: `histories` decides. */
     double tolerance;
@@ -424,8 +423,9 @@ typedef struct {
      * of what it encloses: where the winding number is above 0. The hits of all closed parts are listed, which costs what priorities
      * cost. The lengths SKG_LENGTHS_SURFACE stay sums, and there are no derivatives. 0 (default): lengths of components add, and a warning names them. */
     int32_t unite;
-    /** 0 */
-    int32_t reserved_2;
+    /** 1: the photons of `scatter` do not meet the world at all; the primary does. 0 (default): the world scatters and stops them,
+     * everywhere between source and detector. */
+    int32_t world_scatter_off;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.
