@@ -7,7 +7,7 @@
 typedef struct {
     const skg_scatter_args *args;
     skg_object object;
-    __global const float4 *energies, *momenta;
+    __global const skg_mix *energies, *momenta;
     __global const float *detector;
     __global uint *sums; /* of the batch */
 } skg_scattering;
@@ -39,6 +39,16 @@ static void skg_deposit(__global uint *sums, int place, float value) {
     if (high) atomic_add(word + 1, high);
 }
 
+/* The first four numbers of column SKG_OF_SIGNAL, which has no more. */
+static void skg_find_signal(const skg_scattering *s, skg_fv place, float4 *signal) {
+    const skg_rows rows = skg_rows_at(place);
+    for (int l = 0; l < SKG_WIDE; l++) {
+        __global const float4 *at =
+            (__global const float4 *)(s->energies + rows.row[l] * SKG_SCATTER_COLUMNS + SKG_OF_SIGNAL);
+        signal[l] = at[0] + (at[SKG_SCATTER_COLUMNS * SKG_FOURS] - at[0]) * rows.share[l];
+    }
+}
+
 /* Tallies what photons bring to places (u, v) of the detector, 0 to 1, in the planes of their order and kind. */
 static void skg_tally(const skg_scattering *s, skg_intv who, skg_uv order, skg_intv changed, skg_fv u,
                       skg_fv v, skg_place3 direction, skg_fv kev, skg_fv weight) {
@@ -51,11 +61,11 @@ static void skg_tally(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
                    cells = (skg_intv)(s->args->rows * s->args->columns);
     const skg_arrival arrival = skg_arrive(s->args, direction, kev);
     const int images = SKG_SCATTER_PLANES * s->args->rows * s->args->columns;
-    skg_mixtures signal;
+    float4 signal[SKG_WIDE];
     float weights[SKG_WIDE];
     int places[SKG_WIDE], wanted[SKG_WIDE];
-    skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_SIGNAL, arrival.place, &signal);
-    if (s->args->grid) weight *= skg_through_grid(s->args, &signal, u, v, direction, arrival.facing);
+    skg_find_signal(s, arrival.place, signal);
+    if (s->args->grid) weight *= skg_through_grid(s->args, signal, u, v, direction, arrival.facing);
     SKG_STORE_V(intv, plane * cells + cell, places);
     int powers[SKG_WIDE];
     SKG_STORE_V(intv, SKG_SCATTER_KINDS * cells + cell, powers);
@@ -71,8 +81,8 @@ static void skg_tally(const skg_scattering *s, skg_intv who, skg_uv order, skg_i
             if (!wanted[l]) continue;
             if (bands[l] < 0) continue;
             image += bands[l];
-            skg_deposit(s->sums, image * images + places[l], weights[l] * signal.of[l].of[0].x);
-            if (s->args->noise) skg_deposit(s->sums, image * images + powers[l], weights[l] * signal.of[l].of[0].y);
+            skg_deposit(s->sums, image * images + places[l], weights[l] * signal[l].x);
+            if (s->args->noise) skg_deposit(s->sums, image * images + powers[l], weights[l] * signal[l].y);
         }
     }
 }
@@ -90,24 +100,25 @@ static void skg_differential(const skg_scattering *s, const skg_interaction *i, 
                              (skg_fv)((float)s->args->momenta - 1.001f));
     const skg_fv klein = (skg_fv)(0.5f) * ratio * ratio * (ratio + one / ratio - less * (one + cosine));
     const skg_fv thomson = (skg_fv)(0.5f) * fma(cosine, cosine, one);
-    const skg_fv s_of = skg_value(s->momenta, 2, 0, place, &i->medium),
-                 f_of = skg_value(s->momenta, 2, 1, place, &i->medium);
+    const skg_rows rows = skg_rows_at(place);
+    const skg_fv s_of = skg_value(s->momenta, 2, 0, &rows, &i->medium),
+                 f_of = skg_value(s->momenta, 2, 1, &rows, &i->medium);
     const skg_fv tiny = (skg_fv)(1e-30f);
     *compton = i->compton * klein * s_of / max(i->compton_shape * i->total, tiny);
     *rayleigh = i->rayleigh * thomson * f_of / max(i->rayleigh_shape * i->total, tiny);
     *left = kev * ratio;
 }
 
-/* The share of photons that come through a mixture of coefficients times mm. */
-static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, skg_fv kev) {
-    return skg_exp(
-        -skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, skg_energy_place(s->args, kev), sums));
+/* The share of photons that come through sums of coefficients times mm. rows: of their energy */
+static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, const skg_rows *rows) {
+    return skg_exp(-skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, rows, sums));
 }
 
 /* Contributions of an interaction to places of the detector, one in each of SKG_SCATTER_SIDE^2 equal pieces. */
 static void skg_next_event(const skg_scattering *s, const skg_photons *p, const skg_sight *sight,
                            const skg_interaction *i, skg_fv across, skg_fv down) {
     const float side = 1.0f / SKG_SCATTER_SIDE;
+    const skg_rows own = skg_rows_at(skg_energy_place(s->args, p->kev));
     for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
         const skg_fv u = (across + (skg_fv)((float)(k % SKG_SCATTER_SIDE))) * side;
         const skg_fv v = (down + (skg_fv)((float)(k / SKG_SCATTER_SIDE))) * side;
@@ -129,10 +140,11 @@ static void skg_next_event(const skg_scattering *s, const skg_photons *p, const 
         const skg_fv both = fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)),
                                 (compton + rayleigh) / max(albedo, (skg_fv)(1e-30f)));
         const skg_fv weight = p->weight / max(both, (skg_fv)(1e-30f));
+        const skg_rows lower = skg_rows_at(skg_energy_place(s->args, left));
         skg_tally(s, seen, p->order, p->changed, pu, pv, direction, p->kev,
-                  weight * rayleigh * skg_passes(s, &sums, p->kev));
+                  weight * rayleigh * skg_passes(s, &sums, &own));
         skg_tally(s, seen, p->order, (skg_intv)(-1), pu, pv, direction, left,
-                  weight * compton * skg_passes(s, &sums, left));
+                  weight * compton * skg_passes(s, &sums, &lower));
     }
 }
 
@@ -276,8 +288,7 @@ static void skg_interact(const skg_scattering *s, skg_photons *p, const skg_mixt
     SKG_STORE_V(intv, ahead | behind, outside);
     for (int l = 0; l < SKG_WIDE; l++) {
         if (!outside[l]) continue;
-        skg_mix_clear(&medium->of[l]);
-        skg_mix_add(s->object.media, 0, 1.0f, &medium->of[l]);
+        medium->of[l] = s->object.media[0];
     }
 }
 
@@ -300,13 +311,14 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     const skg_fv length = p->alive ? within : (skg_fv)(0.0f);
     skg_optical_depth(s->args, &s->object, p->at, p->direction, enter, length, &sums);
     const skg_fv place = skg_energy_place(s->args, p->kev);
-    const skg_fv within_cells = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &sums);
+    const skg_rows rows = skg_rows_at(place);
+    const skg_fv within_cells = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, &rows, &sums);
     skg_fv depth = within_cells, around = (skg_fv)(0.0f), before = enter, behind = (skg_fv)(0.0f);
     if (s->args->world_around) {
         skg_mixtures world;
-        for (int l = 0; l < SKG_WIDE; l++) skg_mix_clear(&world.of[l]);
+        for (int l = 0; l < SKG_WIDE; l++) world.of[l] = (skg_mix)(0.0f);
         skg_add_world(&s->object, (skg_fv)(1.0f), &world);
-        around = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &world);
+        around = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, &rows, &world);
         skg_around(s->args, p->at, p->direction, p->reach, enter, length, &before, &behind);
         depth += around * (before + behind);
     }
@@ -315,7 +327,7 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     skg_tally(s, p->alive & (p->share > (skg_fv)(0.0f)), p->order, p->changed, p->x, p->y, p->direction, p->kev,
               p->weight * p->share * arrives);
     /* Somewhere on the way. */
-    skg_rows_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &mu);
+    for (int l = 0; l < SKG_WIDE; l++) mu.of[l] = skg_mix_at(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, &rows, l);
     p->alive &= depth > (skg_fv)(1e-7f);
     const skg_fv chosen = SKG_DRAW(a[1], SKG_DIM_DEPTH, SKG_DIM_DEPTH_2), share = (skg_fv)(SKG_SCATTER_EVEN);
     const skg_intv evenly = chosen < share;
@@ -328,11 +340,11 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
                          ((skg_fv)(1.0f) - share) * fall / max((skg_fv)(1.0f) - passed, (skg_fv)(1e-7f)));
     skg_interact(s, p, &mu, around, before, enter, length, within_cells, min(until, depth), &i.medium);
     p->order += 1;
-    i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, place, &i.medium);
-    i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, place, &i.medium);
-    i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, place, &i.medium);
-    i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, place, &i.medium);
-    i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, place, &i.medium);
+    i.total = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, &rows, &i.medium);
+    i.compton = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON, &rows, &i.medium);
+    i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, &rows, &i.medium);
+    i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, &rows, &i.medium);
+    i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, &rows, &i.medium);
     p->alive &= i.total > (skg_fv)(0.0f);
     skg_see(s->args, p->at, &sight);
     skg_next_event(s, p, &sight, &i, SKG_DRAW(a[2], SKG_DIM_SIGHT_U, SKG_DIM_SIGHT_U_2), SKG_DRAW(a[3], SKG_DIM_SIGHT_V, SKG_DIM_SIGHT_V_2));
@@ -354,8 +366,8 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
  * detector  [args.edges] edges of the bands, keV; then with args.cosines what layers record (arrive.clh); else NULL
  * sums      [batches][args.layers][bands][SKG_SCATTER_PLANES][rows][columns] 64-bit sums, low word first
  * Work-items: those of a batch, then batches. */
-__kernel void skg_scatter(skg_scatter_args args, __global const float4 *media, __global const uint *tree, __global const float4 *faces,
-                          __global const float4 *energies, __global const float4 *momenta,
+__kernel void skg_scatter(skg_scatter_args args, __global const skg_mix *media, __global const uint *tree, __global const float4 *faces,
+                          __global const skg_mix *energies, __global const skg_mix *momenta,
                           __global const float *angles, __global const float4 *beam,
                           __global const float *profiles, __global const float4 *spots, __constant const uint *lattice, __global const float *detector,
                           __global uint *sums) {

@@ -27,6 +27,7 @@ typedef struct {
     skg_words tree;
     int64_t *first;     /* [cells + 1] */
     uint32_t *faces_of; /* of each cell */
+    uint8_t *settled;   /* [cells] 1: parts compete there, and no face is met */
 } planting;
 
 static int64_t cells_of(const skg_cells *cells) {
@@ -300,10 +301,10 @@ static skg_status make_word(planting *p, int64_t cell, uint32_t *word) {
     const int64_t count = p->first[cell + 1] - p->first[cell];
     const uint32_t *faces = p->faces_of + p->first[cell];
     uint32_t medium = 0;
-    if (count && (p->parts->priority || !(contrast_of(p, cell) > p->limit))) {
+    if (count && (p->settled[cell] || !(contrast_of(p, cell) > p->limit))) {
         SKG_TRY(skg_media_add(&p->media, p->cells->mixtures[cell], &medium));
         *word = word_of(SKG_CELL_MEDIUM, medium);
-        p->cells->smeared++;
+        if (!p->settled[cell]) p->cells->smeared++;
         return SKG_OK;
     }
     if (count > FACES) {
@@ -338,6 +339,7 @@ static skg_status prepare(planting *p) {
         }
         SKG_TRY(skg_media_add(&p->media, more, &p->more[i]));
     }
+    SKG_TRY(skg_cells_settled(p->parts, p->cells, &p->settled));
     SKG_TRY(find_faces(p));
     return sort_faces(p);
 }
@@ -409,5 +411,6 @@ cleanup:
     skg_free(&p.seen);
     skg_free(&p.first);
     skg_free(&p.faces_of);
+    skg_free(&p.settled);
     return status;
 }

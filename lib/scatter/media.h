@@ -37,6 +37,10 @@ int skg_face_crossed(const double corners[9], const double from[3], const double
 
 skg_status skg_cells_leap(const skg_cells *cells, uint32_t *words);
 
+/* settled: [cells] 1 where a part may displace others, or, if children are clipped or parts united, where any part may be. Freed by the
+ * caller. */
+skg_status skg_cells_settled(const skg_cell_parts *parts, const skg_cells *cells, uint8_t **settled);
+
 /* --- Growing lists. */
 
 typedef struct {

@@ -2,7 +2,6 @@
  * small dense parts do to photons. Batches share the cells, so their spread does not show it. */
 #include "scatter/voxels.h"
 
-#include "beam/spectrum.h"
 #include "core/maths.h"
 #include "core/threads.h"
 
@@ -11,20 +10,22 @@
 /* RAYS x RAYS rays in blocks of BLOCK x BLOCK, large enough that edges which cells blur without a bias count little. */
 enum { RAYS = 48, BLOCK = 4, BLOCKS = RAYS / BLOCK };
 
+/* Ways through the parts. */
+enum { CELLS, SURFACES, MATERIALS, WAYS };
+
 typedef struct {
     const skg_cell_parts *parts;
-    const skg_cell_amount *amounts;
+    skg_cell_amount *amounts[2]; /* of coefficients; of lines */
     const skg_view *view;
     const skg_cells *cells;
     skg_column_rows *rows;
     skg_columns grid;    /* in columns, rows and depths */
     double direction[3]; /* of parallel rays */
     int is_point;
-    double sign;                    /* -1: columns, rows and depths are a mirrored frame */
-    int64_t energies;               /* of the beam */
-    double (*mu)[SKG_SCATTER_RANK]; /* [energies] 1/mm per coefficient */
-    double *weight;                 /* [energies] share of the beam's energy */
-    double (*passed)[2];            /* [RAYS * RAYS] shares of the energy: through surfaces, through cells */
+    double sign; /* -1: columns, rows and depths are a mirrored frame */
+    const skg_beam_lines *lines;
+    double mu[SKG_SCATTER_RANK][SKG_SCATTER_RANK]; /* [lines] 1/mm per coefficient */
+    double (*passed)[WAYS];                        /* [RAYS * RAYS] shares of the energy */
 } judge;
 
 /* --- rays */
@@ -92,14 +93,18 @@ static void add_change(void *user, double depth, const int64_t *more, int64_t fa
     for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= (double)more[k] * mm;
 }
 
-static double share_of(const judge *j, const double mm[SKG_SCATTER_RANK]) {
+/* depth: of each line */
+static double share_of(const judge *j, const double depth[SKG_SCATTER_RANK]) {
     double passed = 0;
-    for (int64_t e = 0; e < j->energies; e++) {
-        double depth = 0;
-        for (int k = 0; k < SKG_SCATTER_RANK; k++) depth += j->mu[e][k] * mm[k];
-        passed += j->weight[e] * exp(-fmax(depth, 0));
-    }
+    for (int64_t e = 0; e < j->lines->count; e++) passed += j->lines->weight[e] * exp(-fmax(depth[e], 0));
     return passed;
+}
+
+static double share_mixed(const judge *j, const double mm[SKG_SCATTER_RANK]) {
+    double depth[SKG_SCATTER_RANK] = {0};
+    for (int64_t e = 0; e < j->lines->count; e++)
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) depth[e] += j->mu[e][k] * mm[k];
+    return share_of(j, depth);
 }
 
 /* The stretch of a ray within the box of the cells. Returns 0 if there is none. */
@@ -129,20 +134,23 @@ static skg_status judge_row(void *user, int64_t row) {
     for (int64_t c = 0; c < RAYS; c++) {
         const ray r = ray_at(j, skg_column_place(&grid, 0, c), skg_column_place(&grid, 1, row));
         double from, to, *passed = j->passed[row * RAYS + c];
-        sum s = {.j = j, .length = skg_length(r.way)};
-        passed[0] = passed[1] = 1;
+        passed[CELLS] = passed[SURFACES] = passed[MATERIALS] = 1;
         if (!enter(j->cells, &r, &from, &to)) continue;
-        skg_cells_walk(j->parts, j->amounts, &grid, c, work, add_change, &s);
-        for (int k = 0; k < SKG_SCATTER_RANK && j->parts->base; k++)
-            s.mm[k] += j->parts->base[k] * (to - from) * s.length;
-        passed[0] = share_of(j, s.mm);
+        for (int exact = 0; exact < 2; exact++) {
+            const double *base = exact ? j->lines->world : j->parts->base;
+            sum s = {.j = j, .length = skg_length(r.way)};
+            skg_cells_walk(j->parts, (const skg_cell_amount *)j->amounts[exact], &grid, c, work, add_change,
+                           &s);
+            for (int k = 0; k < SKG_SCATTER_RANK && base; k++) s.mm[k] += base[k] * (to - from) * s.length;
+            passed[exact ? MATERIALS : SURFACES] = exact ? share_of(j, s.mm) : share_mixed(j, s.mm);
+        }
         double ends[2][3], mm[SKG_SCATTER_RANK];
         for (int k = 0; k < 3; k++) {
             ends[0][k] = r.on[k] + from * r.way[k] - j->cells->low[k];
             ends[1][k] = r.on[k] + to * r.way[k] - j->cells->low[k];
         }
         skg_cells_along(j->cells, ends[0], ends[1], mm);
-        passed[1] = share_of(j, mm);
+        passed[CELLS] = share_mixed(j, mm);
     }
 cleanup:
     skg_columns_free(&grid);
@@ -152,39 +160,36 @@ cleanup:
 
 /* --- the beam, and the verdict */
 
-static skg_status find_beam(const skg_scatter_physics *physics, const skg_spectrum *spectrum, judge *j) {
+/* 1/mm per coefficient at the lines. */
+static void find_coefficients(const skg_scatter_physics *physics, judge *j) {
     const double points = (double)(physics->energies - 1);
-    double all = 0;
-    j->energies = spectrum->count;
-    SKG_TRY(skg_alloc(j->energies, sizeof *j->mu, "cells", &j->mu));
-    SKG_TRY(skg_alloc(j->energies, sizeof *j->weight, "cells", &j->weight));
-    for (int64_t e = 0; e < j->energies; e++) {
-        const double kev = spectrum->energy_kev[e];
-        const double at =
-            fmin(fmax(points * log(kev / physics->low_kev) / log(physics->high_kev / physics->low_kev), 0),
-                 points);
+    for (int64_t e = 0; e < j->lines->count; e++) {
+        const double at = fmin(fmax(points * log(j->lines->kev[e] / physics->low_kev) /
+                                        log(physics->high_kev / physics->low_kev),
+                                    0),
+                               points);
         const int64_t i = (int64_t)fmin(at, points - 1);
         for (int k = 0; k < SKG_SCATTER_RANK; k++)
             j->mu[e][k] = (1 - (at - (double)i)) * (double)physics->total[i][k] +
                           (at - (double)i) * (double)physics->total[i + 1][k];
-        j->weight[e] = spectrum->photons[e] * kev;
-        all += j->weight[e];
     }
-    for (int64_t e = 0; e < j->energies; e++) j->weight[e] /= all;
-    return SKG_OK;
 }
 
-static double verdict(const judge *j) {
+/* Rays that are stopped less than this meet nothing: the lines' shares add to 1 but for rounding. */
+static const double OPEN = 1 - 1e-9;
+
+/* How far the cells are from one of the ways through surfaces. */
+static double verdict(const judge *j, int way) {
     double off = 0, passed = 0, stopped = 0;
     for (int b = 0; b < BLOCKS * BLOCKS; b++) {
-        double means[2] = {0, 0};
+        double difference = 0;
         for (int i = 0; i < BLOCK * BLOCK; i++) {
             const double *of =
                 j->passed[(b / BLOCKS * BLOCK + i / BLOCK) * RAYS + b % BLOCKS * BLOCK + i % BLOCK];
-            means[0] += of[0], means[1] += of[1];
-            if (of[0] < 1 || of[1] < 1) passed += of[0], stopped += 1 - of[0]; /* in the shadow */
+            difference += of[CELLS] - of[way];
+            if (fmin(of[CELLS], of[way]) < OPEN) passed += of[way], stopped += 1 - of[way];
         }
-        off += fabs(means[1] - means[0]);
+        off += fabs(difference);
     }
     const double least = fmin(passed, stopped);
     return least > 0 ? off / least : 0;
@@ -223,40 +228,44 @@ static void find_frame(judge *j) {
     }
 }
 
+static skg_status find_amounts(const skg_cell_parts *parts, judge *j) {
+    skg_cell_parts exact = *parts;
+    exact.coefficients = j->lines->parts;
+    SKG_TRY(skg_cells_amounts(parts, &j->amounts[0]));
+    return skg_cells_amounts(&exact, &j->amounts[1]);
+}
+
 skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physics *physics,
-                           const skg_spectrum *spectrum, const skg_view *view, const skg_cells *cells,
-                           double *error) {
-    judge j = {.view = view, .cells = cells};
+                           const skg_beam_lines *lines, const skg_view *view, const skg_cells *cells,
+                           skg_judged *judged) {
+    judge j = {.view = view, .cells = cells, .lines = lines, .parts = parts};
     skg_cell_parts projected = *parts;
-    skg_cell_amount *amounts = NULL;
     skg_solid *solids = NULL;
     double *positions = NULL;
     int in_front = 0;
     skg_status status = SKG_OK;
-    *error = 0;
+    *judged = (skg_judged){0};
     if (!cells->mixtures) return SKG_OK;
     find_frame(&j);
-    j.parts = parts;
     SKG_TRY_CLEANUP(skg_alloc(parts->count, sizeof *solids, "cells", &solids));
     SKG_TRY_CLEANUP(project_solids(&j, solids, &positions, &in_front));
     if (!in_front) goto cleanup;
     projected.solids = solids;
     j.parts = &projected;
-    SKG_TRY_CLEANUP(skg_cells_amounts(parts, &amounts));
-    j.amounts = (const skg_cell_amount *)amounts;
-    SKG_TRY_CLEANUP(find_beam(physics, spectrum, &j));
+    SKG_TRY_CLEANUP(find_amounts(parts, &j));
+    find_coefficients(physics, &j);
     SKG_TRY_CLEANUP(skg_alloc(RAYS * RAYS, sizeof *j.passed, "cells", &j.passed));
     j.grid.rows = RAYS;
     SKG_TRY_CLEANUP(skg_columns_span(&j.grid, parts->count, solids, &j.rows));
     SKG_TRY_CLEANUP(skg_parallel(RAYS, judge_row, &j));
-    *error = verdict(&j);
+    judged->cells = verdict(&j, SURFACES);
+    judged->all = verdict(&j, MATERIALS);
 cleanup:
     skg_free(&solids);
     skg_free(&positions);
-    skg_free(&amounts);
+    skg_free(&j.amounts[0]);
+    skg_free(&j.amounts[1]);
     skg_free(&j.rows);
-    skg_free(&j.mu);
-    skg_free(&j.weight);
     skg_free(&j.passed);
     return status;
 }

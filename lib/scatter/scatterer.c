@@ -13,10 +13,8 @@ enum { FIRST = 512 };
 /* Of the attenuation or of angles in a material, above which a scene is warned of. */
 static const double MIXTURE_ERROR = 0.05;
 
-/* Of the primary, above which cells are warned of: 2 % of the scatter. */
+/* Of the primary, above which cells where parts compete are warned of. */
 static const double CELLS_ERROR = 0.05;
-
-static const double MOST_OF_IT = 0.7;
 
 /* What the scatter of a frame depends on. */
 static skg_digest key_of(const skg_scatter_work *work) {
@@ -71,12 +69,18 @@ static skg_status fit(arrived *a, skg_cosines *cosines) {
     return SKG_OK;
 }
 
+/* What histories have to reach. What cells and materials are off by leaves them little or nothing of what is asked for; then they stop
+ * where they add little to it. */
+static double within_reach(double tolerance, double systematic) {
+    const double most = SKG_SCATTER_MOST * tolerance;
+    return systematic <= most ? tolerance : hypot(systematic, sqrt(tolerance * tolerance - most * most));
+}
+
 /* Follows histories until the error is what was asked for. */
 static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tracing *t, arrived *a) {
     const int64_t batches = SKG_SCATTER_BATCHES;
     int64_t end = asked->histories ? (asked->histories + batches - 1) / batches : FIRST;
-    /* If cells and materials are off by nearly all that is asked for, histories do not make up for it. */
-    const double tolerance = hypot(asked->tolerance, fmax(a->systematic - MOST_OF_IT * asked->tolerance, 0));
+    const double tolerance = within_reach(asked->tolerance, a->systematic);
     for (;;) {
         SKG_TRY(skg_trace_until(context, t, end));
         SKG_TRY(skg_trace_read(context, t, a->sums));
@@ -240,15 +244,15 @@ static void warn_of_mixtures(const skg_context *context, const skg_scatter_physi
 
 static void warn_of_cells(const skg_context *context, const skg_scatter_object *object, skg_scatterer *s) {
     const skg_cells *cells = &object->cells;
-    if (s->cells_warned || !(object->primary_error > CELLS_ERROR)) return;
+    if (s->cells_warned || !(object->settled_error > CELLS_ERROR)) return;
     s->cells_warned = 1;
     skg_log(
         context, SKG_LOG_WARNING,
         "scatter: cells of %.3g x %.3g x %.3g mm pass %.2g %% more or less of the primary than the parts do, because parts of "
-        "different priority, or clipped ones, are thinner or smaller; the scatter may be wrong by half as much, which is in its stated "
+        "different priority, or clipped ones, are thinner or smaller; the scatter may be wrong by as much, which is in its stated "
         "error. Give these parts one priority where they do not overlap, or Scatter a smaller Voxel",
         cells->size[0] / (double)cells->count[0], cells->size[1] / (double)cells->count[1],
-        cells->size[2] / (double)cells->count[2], 100 * object->primary_error);
+        cells->size[2] / (double)cells->count[2], 100 * object->settled_error);
 }
 
 skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_scatter_work *work) {
@@ -263,7 +267,7 @@ skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_s
     if (status == SKG_OK) status = compute(context, work, &object, s);
     if (status == SKG_OK) warn_of_mixtures(context, &object.physics, s);
     if (status == SKG_OK) warn_of_cells(context, &object, s);
-    s->report.cells_error = object.primary_error;
+    s->report.cells_error = object.judged.cells;
     s->report.mixture_error = object.physics.error;
     memcpy(s->report.cells, object.cells.count, sizeof s->report.cells);
     s->report.seconds = skg_seconds() - begun;

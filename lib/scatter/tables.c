@@ -51,7 +51,7 @@ cleanup:
 
 static void fill_energies(const skg_scatter_physics *p, skg_scatter_tables *t) {
     const skg_mixture *const columns[] = {p->total, p->compton, p->rayleigh, p->compton_shape,
-                                       p->rayleigh_shape};
+                                          p->rayleigh_shape};
     for (int64_t i = 0; i < p->energies; i++)
         for (int c = TOTAL; c <= RAYLEIGH_SHAPE; c++)
             memcpy(t->energies[i * SKG_SCATTER_COLUMNS + c], columns[c][i], sizeof *t->energies);

@@ -16,8 +16,10 @@ static const double UNIT = 0x1p-36;
 /* A launch takes about this long, s: drivers of screens give up after some seconds. */
 static const double LAUNCH_S = 0.3;
 
-/* A round may have so many times the histories of the last one. */
-static const double GROWTH_MAX = 16;
+/* A round may have so many times the histories of the last one, after the first: by then the error is known, but for the number of
+ * cosines, by which chance makes it too large. */
+static const double GROWTH_MAX = 4, GROWTH_FIRST = 16;
+enum { FIRST_END = 4096 };
 
 /* The error falls with this root of the histories or faster: more slowly than noise alone, because more cosines are kept then. A
  * round that ends near what was asked for would end by luck, with too small an error stated. */
@@ -54,7 +56,8 @@ void skg_trace_places(const skg_scatter_work *work, int64_t *columns, int64_t *r
 }
 
 int64_t skg_trace_next(int64_t end, double error, double tolerance) {
-    const double more = fmin(pow(error / tolerance, ROOT), GROWTH_MAX);
+    const double most = end < FIRST_END ? GROWTH_FIRST : GROWTH_MAX,
+                 more = fmin(pow(error / tolerance, ROOT), most);
     end *= 2; /* powers of two, of which the lattice is best */
     for (double factor = 2; factor < more && end < SKG_SCATTER_HISTORIES; factor *= 2) end *= 2;
     return end;
@@ -81,14 +84,16 @@ static skg_status send_spots(skg_context *context, const skg_scatter_work *work,
     return status;
 }
 
-/* Sends mixtures with as many coefficients as there are. */
+/* Sends mixtures with as many coefficients as there are, one vector each: twelve take the place of sixteen. */
 static skg_status send_mixtures(skg_context *context, int64_t count, const skg_mixture *mixtures,
-                                int32_t rank, skg_buffer *buffer, const char *what) {
-    const size_t bytes = (size_t)rank * sizeof(float);
+                                int32_t fours, skg_buffer *buffer, const char *what) {
+    const int64_t each = (int64_t)fours * SKG_SCATTER_FOUR,
+                  held = each < SKG_SCATTER_RANK ? each : SKG_SCATTER_RANK;
     float *packed = NULL;
-    SKG_TRY(skg_alloc(count * rank, sizeof *packed, "scatter", &packed));
-    for (int64_t i = 0; i < count; i++) memcpy(packed + i * rank, mixtures[i], bytes);
-    const skg_status status = skg_buffer_write(context, buffer, count * (int64_t)bytes, packed, what);
+    SKG_TRY(skg_alloc(count * each, sizeof *packed, "scatter", &packed));
+    for (int64_t i = 0; i < count; i++) memcpy(packed + i * each, mixtures[i], (size_t)held * sizeof *packed);
+    const skg_status status =
+        skg_buffer_write(context, buffer, count * each * (int64_t)sizeof *packed, packed, what);
     skg_free(&packed);
     return status;
 }
@@ -98,17 +103,17 @@ static skg_status send_tables(skg_context *context, const skg_scatter_object *ob
     const skg_scatter_physics *p = &object->physics;
     const skg_cells *cells = &object->cells;
     const int64_t four = 4 * (int64_t)sizeof(float);
-    t->fours = p->rank / SKG_SCATTER_FOUR;
-    SKG_TRY(send_mixtures(context, cells->media_count, (const skg_mixture *)cells->media, p->rank, &t->media,
+    t->fours = p->rank > 2 * SKG_SCATTER_FOUR ? 4 : p->rank / SKG_SCATTER_FOUR;
+    SKG_TRY(send_mixtures(context, cells->media_count, (const skg_mixture *)cells->media, t->fours, &t->media,
                           "cells"));
     SKG_TRY(skg_buffer_write(context, &t->tree, cells->tree_count * (int64_t)sizeof *cells->tree, cells->tree,
                              "cells"));
     SKG_TRY(skg_buffer_write(context, &t->faces, cells->face_count * (int64_t)sizeof *cells->faces,
                              cells->faces, "cells"));
     SKG_TRY(send_mixtures(context, p->energies * SKG_SCATTER_COLUMNS, (const skg_mixture *)tables->energies,
-                          p->rank, &t->energies, "energies"));
-    SKG_TRY(send_mixtures(context, p->momenta * 2, (const skg_mixture *)tables->momenta, p->rank, &t->momenta,
-                          "momenta"));
+                          t->fours, &t->energies, "energies"));
+    SKG_TRY(send_mixtures(context, p->momenta * 2, (const skg_mixture *)tables->momenta, t->fours,
+                          &t->momenta, "momenta"));
     SKG_TRY(skg_buffer_write(context, &t->angles,
                              SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1) * (int64_t)sizeof *tables->angles,
                              tables->angles, "angles"));

@@ -40,15 +40,16 @@ typedef int64_t skg_cell_amount[SKG_SCATTER_RANK];
 typedef struct {
     int64_t count[3];              /* cells along x, y, z; along x and y as many */
     double low[3], size[3];        /* mm, of the box of all parts */
-    skg_mixture *mixtures;            /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    skg_mixture *mixtures;         /* [z][y][x] coefficients of skg_scatter_physics per mm */
     skg_cell_amount *known;        /* [z][y][x] what is at one place of each, beyond the base: SKG_KNOWN */
     double mean[SKG_SCATTER_RANK]; /* over the cells */
     /* As photons read them (walk.clh), by skg_cells_trace: */
     skg_mixture *media; /* [media_count] mixtures per mm, and what faces of each part add */
-    uint32_t *tree;  /* [tree_count] words of the cells; bricks of finer cells; lists of faces */
+    uint32_t *tree;     /* [tree_count] words of the cells; bricks of finer cells; lists of faces */
     float (*faces)[16];
     int64_t media_count, tree_count, face_count;
-    int64_t smeared, traced; /* cells that hold the mixture of several media, and those whose faces are met */
+    int64_t smeared,
+        traced; /* cells that hold the mixture of media which differ little, and those whose faces are met */
 } skg_cells;
 
 /* The place of a cell where its medium is known, in shares of its sides: a column that was walked, at an odd height, so that faces
@@ -82,7 +83,7 @@ void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts,
 skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cells *cells);
 
 /* Makes of cells what photons read. Where media meet whose difference, over a side of the cell, is an optical depth above `limit`, the
- * cell gets the faces of the parts; else, and where priorities decide, its mixture stands for it. mu: 1/mm per coefficient. */
+ * cell gets the faces of the parts; else, and where parts compete, its mixture stands for it. mu: 1/mm per coefficient. */
 skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK], double limit,
                            skg_cells *cells);
 
@@ -91,11 +92,30 @@ void skg_cells_along(const skg_cells *cells, const double from[3], const double 
                      double mm[SKG_SCATTER_RANK]);
 void skg_cells_free(skg_cells *cells);
 
+/* A beam as few lines, as many as there are coefficients at most, so that parts are walked as with these. */
+typedef struct {
+    int64_t count;
+    double kev[SKG_SCATTER_RANK], weight[SKG_SCATTER_RANK]; /* weight: share of the beam's energy */
+    double world[SKG_SCATTER_RANK];                         /* 1/mm at each line */
+    const double (*parts)[SKG_SCATTER_RANK]; /* of each part less that of its parent, 1/mm at each line */
+} skg_beam_lines;
+
+/* Groups of neighbouring energies with about the same share each. */
+void skg_beam_lines_find(const skg_spectrum *spectrum, skg_beam_lines *lines);
+
+/* mu: [count] 1/mm of materials at the lines */
+void skg_beam_lines_attenuated(const skg_beam_lines *lines, int64_t count, skg_material *const *materials,
+                               double (*mu)[SKG_SCATTER_RANK]);
+
 /* How far the primary through the cells, read as photons read them, is from that through the surfaces: the sum of the absolute differences
- * over blocks of the detector, over what passes or over what is stopped, whichever is less. 0 if a part reaches behind the source. */
+ * over blocks of the detector, over what passes or over what is stopped, whichever is less. All 0 if a part reaches behind the source. */
+typedef struct {
+    double cells; /* if the coefficients stand for the materials on both ways */
+    double all;   /* with the materials themselves through the surfaces */
+} skg_judged;
 skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physics *physics,
-                           const skg_spectrum *spectrum, const skg_view *view, const skg_cells *cells,
-                           double *error);
+                           const skg_beam_lines *lines, const skg_view *view, const skg_cells *cells,
+                           skg_judged *judged);
 
 /* --- What stands in the beam, as cells. */
 
@@ -117,11 +137,15 @@ typedef struct {
     skg_scatter_physics physics;    /* of the materials of parts and world */
     double world[SKG_SCATTER_RANK]; /* coefficients of the world; 0: vacuum */
     skg_cells cells;
-    double primary_error; /* skg_cells_judge */
+    skg_judged judged;
+    double settled_error; /* judged.all if no other cells than those where parts compete hold mixtures */
 } skg_scatter_object;
 
-/* How far the scatter may be off for what stands for the object, over its mean: cells with the mixture of several media, whose primary is
- * off by two to three times as much, and coefficients that stand for more compositions. */
+/* The share of a tolerance that the object may use up. */
+#define SKG_SCATTER_MOST 0.5
+
+/* How far the scatter may be off for what stands for the object, over its mean: cells with the mixture of several media, and coefficients
+ * that stand for more compositions. */
 double skg_scatter_systematic(const skg_scatter_object *object);
 
 /* Makes both. Free the object also after a failure. */

@@ -169,12 +169,16 @@ START_TEST(components) {
 }
 END_TEST
 
-/* Water and, behind half of it, a sheet of lead that is far thinner than a cell; the sheet has this priority. */
-static double error_of_sheet(int32_t priority) {
+/* Water and, behind half of it, a sheet of lead that is far thinner than a cell; the sheet has this priority. tolerance: 0: the subject's
+ * histories. beam: NULL: the subject's */
+static skg_scatter_report report_of_sheet(int32_t priority, double tolerance, skg_spectrum *beam) {
     subject s;
     skg_mesh *sheet = NULL;
     skg_part part;
     subject_open(&s);
+    s.beam = beam;
+    s.scatter.tolerance = tolerance;
+    if (tolerance > 0) s.scatter.histories = 0;
     subject_add_box(&s, 200, 160, 100, "Water, Liquid");
     ck_skg(skg_mesh_create_cuboid(100, 160, 0.5, &sheet));
     skg_part_init(&part);
@@ -187,17 +191,41 @@ static double error_of_sheet(int32_t priority) {
     skg_mesh_release(&sheet);
     subject_plan(&s);
     pictures p = subject_pictures(&s, NULL);
-    const double error = subject_report(&s).cells_error;
+    const skg_scatter_report report = subject_report(&s);
     pictures_free(&p);
     subject_close(&s);
-    return error;
+    return report;
 }
 
 /* Photons meet the faces of thin parts, so that their primary is that of the image; but where priorities decide, a cell stands for
  * what is in it, and the report says how wrong that is. */
 START_TEST(cells_that_are_too_large_are_told) {
-    ck_assert_double_le(error_of_sheet(0), 1e-5); /* faces are floats: 1e-5 mm of .5 */
-    ck_assert_double_gt(error_of_sheet(1), 0.01);
+    ck_assert_double_le(report_of_sheet(0, 0, NULL).cells_error, 1e-5); /* faces are floats: 1e-5 mm of .5 */
+    ck_assert_double_gt(report_of_sheet(1, 0, NULL).cells_error, 0.01);
+}
+END_TEST
+
+/* Rays beside all parts are no part of the shadow, whatever the shares of the beam's energies add to: 67 energies, all but equal, are as
+ * one. */
+START_TEST(the_error_of_cells_does_not_depend_on_rounding) {
+    enum { ENERGIES = 67 };
+    double kev[ENERGIES], photons[ENERGIES];
+    skg_spectrum *beam = NULL;
+    for (int i = 0; i < ENERGIES; i++) kev[i] = 60 + 1e-6 * i, photons[i] = 1e5 * (0.3 + 0.01 * i);
+    ck_skg(skg_spectrum_create_bins(ENERGIES, kev, photons, &beam));
+    const double one = report_of_sheet(1, 0, NULL).cells_error;
+    /* Attenuation changes by 3e-6 at most over these energies. */
+    ck_assert_double_eq_tol(report_of_sheet(1, 0, beam).cells_error / one, 1, 1e-4);
+    skg_spectrum_release(&beam);
+}
+END_TEST
+
+/* No number of histories makes up for what cells are off by: they end where they add little to it, and the stated error is not what was
+ * asked for. */
+START_TEST(histories_end_where_cells_decide) {
+    const skg_scatter_report report = report_of_sheet(1, 0.02, NULL);
+    ck_assert_double_gt(report.sigma / report.mean, 0.02);
+    ck_assert_int_le(report.histories, (int64_t)1 << 20);
 }
 END_TEST
 
@@ -240,6 +268,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_test(tests, cells_that_are_too_large_are_told);
+    tcase_add_test(tests, the_error_of_cells_does_not_depend_on_rounding);
+    tcase_add_test(tests, histories_end_where_cells_decide);
     tcase_add_test(tests, a_void_scatters_as_thin_air_does);
     tcase_add_test(tests, voids_alone_scatter_nothing);
     tcase_add_test(tests, numbers);
