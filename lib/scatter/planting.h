@@ -1,0 +1,43 @@
+/* What becomes of the faces of parts while cells are made of them. Private. */
+#ifndef SKG_PLANTING_H
+#define SKG_PLANTING_H
+
+#include "scatter/media.h"
+
+typedef struct {
+    const skg_cell_parts *parts;
+    skg_cells *cells;
+    const double *mu;
+    double limit;
+    double (*corners)[9];     /* [faces] in cells */
+    int32_t *part;            /* [faces] */
+    skg_cell_amount *amounts; /* [parts] with the sign of the solid */
+    uint32_t *more;           /* [parts] the medium that a face adds */
+    int64_t *seen;            /* [parts] 1 + the cell that a part was last seen in */
+    skg_media media;
+    skg_words tree;
+    int64_t *first;     /* [cells + 1] */
+    uint32_t *faces_of; /* of each cell */
+    uint8_t *settled;   /* [cells] 1: parts compete there, and no face is met */
+} skg_planting;
+
+static inline uint32_t skg_cell_word(uint32_t kind, int64_t place) {
+    return kind << 30 | (uint32_t)place;
+}
+
+/* The lowest corner of a coarse cell, in cells. */
+static inline void skg_cell_place(const skg_cells *cells, int64_t cell, double place[3]) {
+    place[0] = (double)(cell % cells->count[0]);
+    place[1] = (double)(cell / cells->count[0] % cells->count[1]);
+    place[2] = (double)(cell / cells->count[0] / cells->count[1]);
+}
+
+/* A list of faces, and its word. at: where the medium is known, in coarse cells */
+skg_status skg_plant_list(skg_planting *p, uint32_t medium, const double at[3], int64_t count,
+                          const uint32_t *faces, uint32_t *word);
+
+/* A brick of the faces of a cell, and its word. */
+skg_status skg_plant_brick(skg_planting *p, int64_t cell, int64_t count, const uint32_t *faces,
+                           uint32_t *word);
+
+#endif
