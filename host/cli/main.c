@@ -9,6 +9,7 @@
 #include "common/values.h"
 #include "manual/manual.h"
 #include "verb_table.h"
+#include "version.h"
 
 #include <errno.h>
 #include <stdio.h>
@@ -76,12 +77,7 @@ static int run(int count, char **words) {
         return CLI_USAGE;
     }
     if (strcmp(words[1], CLI_PROBE_WORD) == 0) return cli_probe_child(count - 2, words + 2);
-    if (is_one_of(words[1], "version", "--version", NULL) && count > 2 && wants_json(count, words))
-        return cli_json_print(json_pack("{s:s}", "version", skg_version()));
-    if (is_one_of(words[1], "version", "--version", NULL)) {
-        printf("skiagraph %s\n", skg_version());
-        return CLI_DONE;
-    }
+    if (is_one_of(words[1], "version", "--version", NULL)) return cli_version(count > 2 && wants_json(count, words));
     int help = is_one_of(words[1], "help", "--help", "-h");
     if (help && count == 2) {
         cli_help_overview(stdout);

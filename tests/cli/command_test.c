@@ -34,9 +34,13 @@ START_TEST(help_is_everywhere) {
     ck_assert_int_eq(strncmp(said, "skiagraph ", 10), 0);
     char version[64] = "";
     ck_assert_int_eq(sscanf(said, "skiagraph %63s", version), 1);
+    ck_assert_ptr_nonnull(strstr(said, "\nbuilt by "));
+    ck_assert_ptr_nonnull(strstr(said, ", with Assimp "));
     ck_run(0, "--version --json");
     json_t *object = said_json();
     ck_assert_str_eq(json_string_value(member(object, "version")), version);
+    ck_assert(json_is_string(member(member(object, "libraries"), "Assimp")));
+    ck_assert(json_is_string(member(object, "compiler")));
     json_decref(object);
 }
 END_TEST

@@ -20,7 +20,7 @@ const char *const cli_text[] = {
     NULL};
 
 const cli_item cli_other_verbs[] = {{"help", "this text, or that of a VERB"},
-                                    {"version", "the version (also --version; with --json as JSON)"},
+                                    {"version", "the version, and what it was built with (also --version; with --json as JSON)"},
                                     {NULL, NULL}};
 
 const cli_item cli_exit_statuses[] = {
