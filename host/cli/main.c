@@ -77,7 +77,8 @@ static int run(int count, char **words) {
         return CLI_USAGE;
     }
     if (strcmp(words[1], CLI_PROBE_WORD) == 0) return cli_probe_child(count - 2, words + 2);
-    if (is_one_of(words[1], "version", "--version", NULL)) return cli_version(count > 2 && wants_json(count, words));
+    if (is_one_of(words[1], "version", "--version", NULL))
+        return cli_version(count > 2 && wants_json(count, words));
     int help = is_one_of(words[1], "help", "--help", "-h");
     if (help && count == 2) {
         cli_help_overview(stdout);

@@ -19,9 +19,10 @@ const char *const cli_text[] = {
     "A file that exists beside an input, or in a folder below it, is overwritten only if skiagraph wrote it.",
     NULL};
 
-const cli_item cli_other_verbs[] = {{"help", "this text, or that of a VERB"},
-                                    {"version", "the version, and what it was built with (also --version; with --json as JSON)"},
-                                    {NULL, NULL}};
+const cli_item cli_other_verbs[] = {
+    {"help", "this text, or that of a VERB"},
+    {"version", "the version, and what it was built with (also --version; with --json as JSON)"},
+    {NULL, NULL}};
 
 const cli_item cli_exit_statuses[] = {
     {"0", "The work is done."},
