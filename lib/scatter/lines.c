@@ -4,6 +4,8 @@
 #include "beam/spectrum.h"
 #include "material/scattering.h"
 
+#include <math.h>
+
 /* From 1/cm. */
 static const double PER_MM = 0.1;
 
@@ -13,8 +15,9 @@ void skg_beam_lines_find(const skg_spectrum *spectrum, skg_beam_lines *lines) {
     for (int64_t e = 0; e < spectrum->count; e++) all += spectrum->photons[e] * spectrum->energy_kev[e];
     for (int64_t e = 0; e < spectrum->count; e++) {
         const double share = spectrum->photons[e] * spectrum->energy_kev[e] / all;
-        const int64_t line = (int64_t)((so_far + 0.5 * share) * SKG_SCATTER_RANK);
         if (!(share > 0)) continue;
+        /* Shares may add to a little more than 1. */
+        const int64_t line = (int64_t)fmin((so_far + 0.5 * share) * SKG_SCATTER_RANK, SKG_SCATTER_RANK - 1);
         lines->kev[line] += share * spectrum->energy_kev[e];
         lines->weight[line] += share;
         so_far += share;

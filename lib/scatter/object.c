@@ -137,7 +137,7 @@ static void find_typical(const skg_spectrum *spectrum, const skg_scatter_physics
     for (int k = 0; k < SKG_SCATTER_RANK; k++) mu[k] = (double)p->total[row][k];
 }
 
-/* What the parts attenuate of each line. mu: [materials] of the palette */
+/* What the parts attenuate of each line. */
 static skg_status find_lines(const skg_scatter_work *work, const palette *p, placed *parts,
                              skg_beam_lines *lines) {
     static const double none[SKG_SCATTER_RANK];
@@ -168,7 +168,7 @@ static skg_status trace(const skg_scatter_work *work, const skg_cell_parts *part
     double limit = sqrt(tolerance * SMEARED);
     if (parts->priority) {
         SKG_TRY(trace_to(work, parts, lines, 0, object));
-        object->settled_error = object->judged.all;
+        object->settled_error = object->judged.cells;
     }
     for (;;) {
         SKG_TRY(trace_to(work, parts, lines, limit, object));

@@ -138,7 +138,7 @@ typedef struct {
     double world[SKG_SCATTER_RANK]; /* coefficients of the world; 0: vacuum */
     skg_cells cells;
     skg_judged judged;
-    double settled_error; /* judged.all if no other cells than those where parts compete hold mixtures */
+    double settled_error; /* judged.cells if no other cells than those where parts compete hold mixtures */
 } skg_scatter_object;
 
 /* The share of a tolerance that the object may use up. */
