@@ -40,7 +40,8 @@ typedef struct {
     int64_t columns, rows;
     int32_t channels, images;
     double systematic; /* share of the mean that no number of histories takes away: skg_scatter_systematic */
-    skg_cosines all;   /* of all images together */
+    skg_rounds rounds;
+    skg_cosines all;       /* of all images together */
     skg_cosines *channel;  /* [channels] of its layers together */
     skg_cosines *image;    /* [images] with several layers */
     skg_cosines *variance; /* [images] with noise */
@@ -78,18 +79,16 @@ static double within_reach(double tolerance, double systematic) {
 
 /* Follows histories until the error is what was asked for. */
 static skg_status follow(skg_context *context, const skg_scatter *asked, skg_tracing *t, arrived *a) {
-    const int64_t batches = SKG_SCATTER_BATCHES;
-    int64_t end = asked->histories ? (asked->histories + batches - 1) / batches : FIRST;
-    const double tolerance = within_reach(asked->tolerance, a->systematic);
-    for (;;) {
-        SKG_TRY(skg_trace_until(context, t, end));
+    double error = 0;
+    a->rounds = skg_rounds_begin(asked, FIRST, within_reach(asked->tolerance, a->systematic));
+    do {
+        SKG_TRY(skg_trace_until(context, t, a->rounds.end));
         SKG_TRY(skg_trace_read(context, t, a->sums));
         add_planes(a, 0, 1, 0, SKG_SCATTER_KINDS);
         SKG_TRY(fit(a, &a->all));
-        const double error = a->all.mean > 0 ? a->all.sigma / a->all.mean : 0;
-        if (asked->histories || error <= tolerance || end >= SKG_SCATTER_HISTORIES) break;
-        end = skg_trace_next(end, error, tolerance);
-    }
+        error = a->all.mean > 0 ? a->all.sigma / a->all.mean : 0;
+    } while (skg_rounds_next(&a->rounds, error));
+    skg_rounds_warn(context, &a->rounds, asked, error);
     return SKG_OK;
 }
 

@@ -32,7 +32,8 @@ typedef struct {
     void *user;
     int64_t count, columns, rows; /* of frames; of the grid */
     int32_t noise;
-    int64_t intervals, end;
+    int64_t intervals;
+    skg_rounds rounds;
     knot *knots; /* [intervals + 1] */
     knot checks[CHECKS];
     int64_t *sums;     /* as skg_trace_read */
@@ -73,7 +74,7 @@ static skg_status trace(maker *m, const skg_scatter_work *work, const skg_scatte
     SKG_TRY_CLEANUP(skg_scatter_tables_make(work, object, &tables));
     SKG_TRY_CLEANUP(skg_trace_begin(m->context, work, object, &tables, m->columns, m->rows, &m->tracing));
     m->tracing.args.end = (SKG_INT)k->end;
-    SKG_TRY_CLEANUP(skg_trace_until(m->context, &m->tracing, m->end));
+    SKG_TRY_CLEANUP(skg_trace_until(m->context, &m->tracing, m->rounds.end));
     SKG_TRY_CLEANUP(skg_trace_read(m->context, &m->tracing, m->sums));
     add_sums(m, k);
     k->photons = tables.photons * skg_sight_photons(work, &m->tracing.args) / (double)m->tracing.args.scale;
@@ -88,17 +89,17 @@ static skg_status find_cosines(const maker *m, knot *k) {
     const int64_t all = SKG_SCATTER_BATCHES * places_of(m);
     for (int i = 0; i <= m->noise; i++) {
         SKG_TRY(skg_cosines_of(m->columns, m->rows, SKG_SCATTER_BATCHES, k->sums + i * all, k->found[i]));
-        for (int64_t p = 0; p < all; p++) k->found[i][p] *= k->photons / (double)m->end;
+        for (int64_t p = 0; p < all; p++) k->found[i][p] *= k->photons / (double)m->rounds.end;
     }
     return SKG_OK;
 }
 
-/* Follows histories of a frame up to m->end. */
+/* Follows histories of a frame up to m->rounds.end. */
 static skg_status follow(maker *m, knot *k) {
     const int64_t all = SKG_SCATTER_BATCHES * places_of(m);
     skg_scatter_work work = {.recipe = m->series->recipe};
     skg_scatter_object object = {0};
-    if (k->end >= m->end) return SKG_OK;
+    if (k->end >= m->rounds.end) return SKG_OK;
     if (!k->sums) {
         SKG_TRY(skg_alloc(2 * all, sizeof *k->sums, "series", &k->sums));
         SKG_TRY(skg_alloc(all, sizeof *k->found[0], "series", &k->found[0]));
@@ -111,8 +112,8 @@ static skg_status follow(maker *m, knot *k) {
     if (status == SKG_OK) m->systematic = fmax(m->systematic, skg_scatter_systematic(&object));
     skg_scatter_object_free(&object);
     if (status != SKG_OK) return status;
-    m->series->report.histories += (m->end - k->end) * SKG_SCATTER_BATCHES;
-    k->end = m->end;
+    m->series->report.histories += (m->rounds.end - k->end) * SKG_SCATTER_BATCHES;
+    k->end = m->rounds.end;
     return find_cosines(m, k);
 }
 
@@ -188,9 +189,8 @@ static skg_status follow_all(maker *m) {
 /* Follows more frames, or more histories of each, until the error is what was asked for. */
 static skg_status converge(maker *m, int32_t *is_smooth) {
     const skg_scatter *asked = m->series->recipe->options.scatter;
-    const int64_t batches = SKG_SCATTER_BATCHES;
     const double tolerance = asked->histories ? 0 : asked->tolerance;
-    m->end = asked->histories ? (asked->histories + batches - 1) / batches : FIRST;
+    m->rounds = skg_rounds_begin(asked, FIRST, tolerance);
     SKG_TRY(place_knots(m, INTERVALS));
     place_checks(m);
     for (;;) {
@@ -210,8 +210,9 @@ static skg_status converge(maker *m, int32_t *is_smooth) {
         const double error = mean->mean > 0 ? sigma / mean->mean : 0;
         m->series->mean.sigma = sigma;
         *is_smooth = 1;
-        if (asked->histories || error <= tolerance || m->end >= SKG_SCATTER_HISTORIES) return SKG_OK;
-        m->end = skg_trace_next(m->end, error, tolerance);
+        if (skg_rounds_next(&m->rounds, error)) continue;
+        skg_rounds_warn(m->context, &m->rounds, asked, error);
+        return SKG_OK;
     }
 }
 

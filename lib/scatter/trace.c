@@ -2,7 +2,6 @@
 #include "scatter/tracing.h"
 
 #include "core/clock.h"
-#include "core/log.h"
 #include "core/maths.h"
 #include "plan/decisions.h"
 #include "scatter/interactions.h"
@@ -15,15 +14,6 @@ static const double UNIT = 0x1p-36;
 
 /* A launch takes about this long, s: drivers of screens give up after some seconds. */
 static const double LAUNCH_S = 0.3;
-
-/* A round may have so many times the histories of the last one, after the first: by then the error is known, but for the number of
- * cosines, by which chance makes it too large. */
-static const double GROWTH_MAX = 4, GROWTH_FIRST = 16;
-enum { FIRST_END = 4096 };
-
-/* The error falls with this root of the histories or faster: more slowly than noise alone, because more cosines are kept then. A
- * round that ends near what was asked for would end by luck, with too small an error stated. */
-static const double ROOT = 2.5;
 
 /* Places along the longer side of the detector. */
 enum { PLACES = 32 };
@@ -53,14 +43,6 @@ void skg_trace_places(const skg_scatter_work *work, int64_t *columns, int64_t *r
     *rows = asked->rows ? asked->rows : (int64_t)ceil(PLACES * down / longer - 1e-9);
     if (*columns > view->columns) *columns = view->columns;
     if (*rows > view->rows) *rows = view->rows;
-}
-
-int64_t skg_trace_next(int64_t end, double error, double tolerance) {
-    const double most = end < FIRST_END ? GROWTH_FIRST : GROWTH_MAX,
-                 more = fmin(pow(error / tolerance, ROOT), most);
-    end *= 2; /* powers of two, of which the lattice is best */
-    for (double factor = 2; factor < more && end < SKG_SCATTER_HISTORIES; factor *= 2) end *= 2;
-    return end;
 }
 
 static skg_status send_lattice(skg_context *context, int64_t seed, skg_buffer *buffer) {

@@ -51,8 +51,22 @@ typedef struct {
 /* The grid on which photons are counted. */
 void skg_trace_places(const skg_scatter_work *work, int64_t *columns, int64_t *rows);
 
-/* How many histories of each batch follow `end` of them, whose error is above the tolerance. */
-int64_t skg_trace_next(int64_t end, double error, double tolerance);
+/* Rounds of histories, each of which says how many the next one needs. */
+typedef struct {
+    int32_t is_fixed, gave_up; /* is_fixed: one round; gave_up: the tolerance is out of reach */
+    double tolerance, last_error;
+    int64_t end, last_end; /* histories of each batch: after this round; after the one before */
+} skg_rounds;
+
+/* first: histories of each batch in the first round; tolerance: of histories, over the mean */
+skg_rounds skg_rounds_begin(const skg_scatter *asked, int64_t first, double tolerance);
+
+/* Whether another round follows one that has reached an error, up to rounds->end. */
+int skg_rounds_next(skg_rounds *rounds, double error);
+
+/* Warns of rounds that gave up. error: what is stated */
+void skg_rounds_warn(const skg_context *context, const skg_rounds *rounds, const skg_scatter *asked,
+                     double error);
 
 /* Uploads what a frame needs and clears the sums. columns, rows: places of the detector. */
 skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
