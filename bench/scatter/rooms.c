@@ -51,7 +51,8 @@ static void add_body(const subject *s, const room_body *b, int number) {
 }
 
 static subject open_room(skg_context *context, const room *r) {
-    subject s = {.name = r->name, .context = context, .rays = 2};
+    /* The truth has no lines. */
+    subject s = {.name = r->name, .context = context, .rays = 2, .fluorescence = SKG_FLUORESCENCE_OFF};
     skg_view_init(&s.view);
     s.view.source[2] = r->source, s.view.centre[2] = r->plane;
     s.view.columns = s.view.rows = ROOM_SIDE * BLOCK_PIXELS;

@@ -108,6 +108,7 @@ static skg_plan *plan_of(const subject *s, double tolerance, int64_t histories, 
     skg_plan_options_init(&options);
     skg_scatter_init(&scatter);
     scatter.tolerance = tolerance, scatter.histories = histories, scatter.seed = seed;
+    scatter.fluorescence = s->fluorescence;
     options.scatter = &scatter;
     options.falloff = SKG_FALLOFF_ON;
     options.supersampling = s->rays;

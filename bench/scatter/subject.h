@@ -11,7 +11,8 @@ typedef struct {
     skg_spectrum *beam;
     skg_material *world; /* NULL: vacuum */
     skg_view view;
-    int32_t rays; /* rays x rays in a pixel */
+    int32_t rays;         /* rays x rays in a pixel */
+    int32_t fluorescence; /* enum skg_fluorescence */
 } subject;
 
 /* 20 cm of water at 60 keV, 32 x 32 pixels, the detector `plane` mm behind the slab's middle. density: g/cm3 */

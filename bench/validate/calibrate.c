@@ -3,6 +3,7 @@
 #include "beam/spectrum.h"
 #include "common/bench.h"
 #include "material/material.h"
+#include "material/shells.h"
 #include "spectral/compression.h"
 
 #include <inttypes.h>

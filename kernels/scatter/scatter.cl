@@ -10,6 +10,7 @@ typedef struct {
     __global const skg_mix *energies, *momenta;
     __global const float *detector;
     __global uint *sums; /* of the batch */
+    __global const float4 *lines; /* of shells that emit; with args.shells > 0 */
 } skg_scattering;
 
 /* Photons under way: `order` is the number of interactions so far. */
@@ -27,6 +28,7 @@ typedef struct {
 typedef struct {
     skg_mixtures medium;
     skg_fv total, compton, rayleigh, compton_shape, rayleigh_shape;
+    skg_fv emitted, line; /* fluorescence: photons, and the keV of one */
 } skg_interaction;
 
 /* Adds to 64-bit sums, low word first, of one lane. */
@@ -109,6 +111,15 @@ static void skg_differential(const skg_scattering *s, const skg_interaction *i, 
     *left = kev * ratio;
 }
 
+/* Fluorescence, per sr and interaction; and the share of interactions after which there is a photon. */
+static skg_fv skg_glow(const skg_interaction *i) {
+    return i->emitted * (skg_fv)(0.0795774715f) / max(i->total, (skg_fv)(1e-30f)); /* 1 / (4 pi) */
+}
+
+static skg_fv skg_albedo(const skg_interaction *i) {
+    return (i->compton + i->rayleigh + i->emitted) / max(i->total, (skg_fv)(1e-30f));
+}
+
 /* The share of photons that come through sums of coefficients times mm. rows: of their energy */
 static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, const skg_rows *rows) {
     return skg_exp(-skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_TOTAL, rows, sums));
@@ -118,7 +129,8 @@ static skg_fv skg_passes(const skg_scattering *s, const skg_mixtures *sums, cons
 static void skg_next_event(const skg_scattering *s, const skg_photons *p, const skg_sight *sight,
                            const skg_interaction *i, skg_fv across, skg_fv down) {
     const float side = 1.0f / SKG_SCATTER_SIDE;
-    const skg_rows own = skg_rows_at(skg_energy_place(s->args, p->kev));
+    const skg_rows own = skg_rows_at(skg_energy_place(s->args, p->kev)),
+                   line = skg_rows_at(skg_energy_place(s->args, i->line));
     for (int k = 0; k < SKG_SCATTER_SIDE * SKG_SCATTER_SIDE; k++) {
         const skg_fv u = (across + (skg_fv)((float)(k % SKG_SCATTER_SIDE))) * side;
         const skg_fv v = (down + (skg_fv)((float)(k / SKG_SCATTER_SIDE))) * side;
@@ -136,20 +148,23 @@ static void skg_next_event(const skg_scattering *s, const skg_photons *p, const 
         if (s->args->world_around) skg_add_world(&s->object, distance - length, &sums);
         skg_differential(s, i, p->kev, skg_dot3(p->direction, direction), &compton, &rayleigh, &left);
         /* The likelihood over those of both ways to get there: of all places, and of flying on. */
-        const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
+        const skg_fv glow = skg_glow(i);
         const skg_fv both = fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)),
-                                (compton + rayleigh) / max(albedo, (skg_fv)(1e-30f)));
+                                (compton + rayleigh + glow) / max(skg_albedo(i), (skg_fv)(1e-30f)));
         const skg_fv weight = p->weight / max(both, (skg_fv)(1e-30f));
         const skg_rows lower = skg_rows_at(skg_energy_place(s->args, left));
         skg_tally(s, seen, p->order, p->changed, pu, pv, direction, p->kev,
                   weight * rayleigh * skg_passes(s, &sums, &own));
         skg_tally(s, seen, p->order, (skg_intv)(-1), pu, pv, direction, left,
                   weight * compton * skg_passes(s, &sums, &lower));
+        if (s->args->shells > 0)
+            skg_tally(s, seen, p->order, (skg_intv)(-1), pu, pv, direction, i->line,
+                      weight * glow * skg_passes(s, &sums, &line));
     }
 }
 
-/* Lets photons fly on: the direction from a table of equally likely angles for the whole object, the weight by the cell's own
- * likelihood over the table's. */
+/* Lets photons fly on: emitted ones in any direction; the others in one from a table of equally likely angles for the whole object, the
+ * weight by the cell's own likelihood over the table's. */
 static void skg_fly_on(const skg_scattering *s, __global const float *angles, skg_photons *p,
                        const skg_sight *sight, const skg_interaction *i, skg_fv angle, skg_fv turn,
                        skg_fv process) {
@@ -163,17 +178,20 @@ static void skg_fly_on(const skg_scattering *s, __global const float *angles, sk
     SKG_STORE_V(intv, row * (SKG_SCATTER_ANGLES + 1) + bin, from);
     for (int l = 0; l < SKG_WIDE; l++) low[l] = angles[from[l]], wide[l] = angles[from[l] + 1] - low[l];
     const skg_fv width = SKG_LOAD_V(realv, wide);
-    const skg_fv cosine = fma(place - SKG_TO_FLOAT_V(bin), width, SKG_LOAD_V(realv, low));
+    const skg_fv one = (skg_fv)(1.0f), albedo = skg_albedo(i);
+    const skg_fv glows = i->emitted / max(i->compton + i->rayleigh + i->emitted, (skg_fv)(1e-30f)), scatters = max(one - glows, (skg_fv)(1e-6f));
+    const skg_intv emits = process < glows;
+    process = (process - glows) / scatters;
+    const skg_fv cosine = emits ? fma(angle, (skg_fv)(2.0f), -one) : fma(place - SKG_TO_FLOAT_V(bin), width, SKG_LOAD_V(realv, low));
     skg_fv compton, rayleigh, left, u, v;
     skg_differential(s, i, p->kev, cosine, &compton, &rayleigh, &left);
     const skg_fv sum = max(compton + rayleigh, (skg_fv)(1e-30f));
-    p->weight *= sum * width * (skg_fv)(SKG_SCATTER_ANGLES * 6.28318531f);
+    p->weight *= emits ? albedo : sum * width * (skg_fv)(SKG_SCATTER_ANGLES * 6.28318531f) / scatters;
     p->direction = skg_deflect(p->direction, cosine, turn);
     const skg_intv changes = process * sum < compton;
-    p->kev = changes ? left : p->kev;
-    p->changed |= changes;
-    const skg_fv albedo = (i->compton + i->rayleigh) / max(i->total, (skg_fv)(1e-30f));
-    const skg_fv own = sum / max(albedo, (skg_fv)(1e-30f));
+    p->kev = emits ? i->line : changes ? left : p->kev;
+    p->changed |= changes | emits;
+    const skg_fv own = (sum + skg_glow(i)) / max(albedo, (skg_fv)(1e-30f));
     const skg_intv meets = skg_hit_detector(s->args, sight, p->direction, &u, &v);
     const skg_fv per_sr = skg_sight_per_sr(s->args, sight, u, v);
     p->x = (u - sight->x0) / s->args->side_u;
@@ -190,35 +208,15 @@ static void skg_roulette(const skg_scatter_args *args, skg_photons *p, skg_fv wo
     p->alive &= stays & (p->kev > (skg_fv)(args->min_kev)) & (p->order < (skg_uv)(SKG_SCATTER_ORDERS));
 }
 
-/* What the dimensions of the lattice are for: a photon's start, its first interaction, and the depth and places of the second one. */
-enum {
-    SKG_DIM_U, SKG_DIM_V, SKG_DIM_ENERGY,
-    SKG_DIM_DEPTH, SKG_DIM_SIGHT_U, SKG_DIM_SIGHT_V, SKG_DIM_ANGLE, SKG_DIM_TURN, SKG_DIM_PROCESS,
-    SKG_DIM_DEPTH_2, SKG_DIM_SIGHT_U_2, SKG_DIM_SIGHT_V_2,
-    SKG_DIM_SPOT
-};
-
-/* Number `dimension` of a history's point of a lattice, from 0 to below 1, shifted for each batch at random. */
-static skg_fv skg_lattice(const skg_scattering *s, __constant const uint *lattice, uint batch, skg_uv history,
-                          int dimension) {
-    skg_uv bits = history;
-    bits = bits >> 16 | bits << 16;
-    bits = (bits & (skg_uv)(0xff00ff00u)) >> 8 | (bits & (skg_uv)(0x00ff00ffu)) << 8;
-    bits = (bits & (skg_uv)(0xf0f0f0f0u)) >> 4 | (bits & (skg_uv)(0x0f0f0f0fu)) << 4;
-    bits = (bits & (skg_uv)(0xccccccccu)) >> 2 | (bits & (skg_uv)(0x33333333u)) << 2;
-    bits = (bits & (skg_uv)(0xaaaaaaaau)) >> 1 | (bits & (skg_uv)(0x55555555u)) << 1;
-    return skg_uniform(bits * lattice[dimension] + lattice[SKG_SCATTER_DIMENSIONS * (batch + 1) + dimension]);
-}
-
 /* Photons that leave the source: the place in the field, the energy, the point of the focal spot. */
 static void skg_emit(const skg_scattering *s, __constant const uint *lattice, __global const float4 *beam,
                      __global const float *profiles, __global const float4 *spots, uint batch, skg_intv fresh,
                      skg_photons *p) {
     const skg_scatter_args *args = s->args;
-    const skg_fv u = skg_lattice(s, lattice, batch, p->history, SKG_DIM_U),
-                 v = skg_lattice(s, lattice, batch, p->history, SKG_DIM_V);
-    const skg_fv energy = skg_lattice(s, lattice, batch, p->history, SKG_DIM_ENERGY),
-                 spot = skg_lattice(s, lattice, batch, p->history, SKG_DIM_SPOT);
+    const skg_fv u = skg_lattice(lattice, batch, p->history, SKG_DIM_U),
+                 v = skg_lattice(lattice, batch, p->history, SKG_DIM_V);
+    const skg_fv energy = skg_lattice(lattice, batch, p->history, SKG_DIM_ENERGY),
+                 spot = skg_lattice(lattice, batch, p->history, SKG_DIM_SPOT);
     float at[SKG_WIDE], kev[SKG_WIDE], weight[SKG_WIDE], x[SKG_WIDE], y[SKG_WIDE], z[SKG_WIDE];
     int bins[SKG_WIDE];
     float per_mm[SKG_WIDE];
@@ -304,8 +302,8 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     skg_words(s->args, p->history, p->order, batch, 1, b);
     const skg_intv first = p->order == (skg_uv)(0), second = p->order == (skg_uv)(1);
 #define SKG_DRAW(word, of_first, of_second)                                                                  \
-    (first    ? skg_lattice(s, lattice, batch, p->history, of_first)                                         \
-     : second ? skg_lattice(s, lattice, batch, p->history, of_second)                                        \
+    (first    ? skg_lattice(lattice, batch, p->history, of_first)                                         \
+     : second ? skg_lattice(lattice, batch, p->history, of_second)                                        \
               : skg_uniform(word))
     const skg_fv within = skg_within(s->args, p->at, p->direction, p->reach, &enter);
     const skg_fv length = p->alive ? within : (skg_fv)(0.0f);
@@ -345,21 +343,25 @@ static void skg_flight(const skg_scattering *s, __constant const uint *lattice, 
     i.rayleigh = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, &rows, &i.medium);
     i.compton_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, &rows, &i.medium);
     i.rayleigh_shape = skg_value(s->energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, &rows, &i.medium);
+    i.emitted = (skg_fv)(0.0f), i.line = p->kev;
+    if (s->args->shells > 0)
+        i.emitted = skg_fluorescence(s->args, s->energies + s->args->energies * SKG_SCATTER_COLUMNS, s->lines, &rows, &i.medium, skg_uniform(a[0]), &i.line);
     p->alive &= i.total > (skg_fv)(0.0f);
     skg_see(s->args, p->at, &sight);
     skg_next_event(s, p, &sight, &i, SKG_DRAW(a[2], SKG_DIM_SIGHT_U, SKG_DIM_SIGHT_U_2), SKG_DRAW(a[3], SKG_DIM_SIGHT_V, SKG_DIM_SIGHT_V_2));
-    const skg_fv angle = first ? skg_lattice(s, lattice, batch, p->history, SKG_DIM_ANGLE) : skg_uniform(b[0]);
-    const skg_fv turn = first ? skg_lattice(s, lattice, batch, p->history, SKG_DIM_TURN) : skg_uniform(b[1]);
-    const skg_fv process = first ? skg_lattice(s, lattice, batch, p->history, SKG_DIM_PROCESS) : skg_uniform(b[2]);
+    const skg_fv angle = first ? skg_lattice(lattice, batch, p->history, SKG_DIM_ANGLE) : skg_uniform(b[0]);
+    const skg_fv turn = first ? skg_lattice(lattice, batch, p->history, SKG_DIM_TURN) : skg_uniform(b[1]);
+    const skg_fv process = first ? skg_lattice(lattice, batch, p->history, SKG_DIM_PROCESS) : skg_uniform(b[2]);
     skg_fly_on(s, angles, p, &sight, &i, angle, turn, process);
     skg_words(s->args, p->history, p->order, batch, 2, a);
     skg_roulette(s->args, p, skg_uniform(a[0]));
 }
 
 /* media, tree, faces   the object (walk.clh)
- * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy; momenta: [momenta][2] S and F^2
+ * energies  [energies][SKG_SCATTER_COLUMNS] what photons meet, by energy, then [energies][args.shells] what shells emit; momenta:
+ *           [momenta][2] S and F^2
  * angles    [rows][SKG_SCATTER_ANGLES + 1] cosines between which scattering is equally likely
- * beam      [bins] energy, share of the bins up to this one, weight, 1/mm of a bow-tie filter
+ * beam      [bins] energy, share of the bins up to this one, weight, 1/mm of a bow-tie filter; then lines of shells
  * profiles  of the heel effect and a bow-tie filter: their tables (profile.clh); else NULL
  * spots     [spots] points of the source, or the direction of a parallel beam
  * lattice   [SKG_SCATTER_DIMENSIONS] generating vector; then for each batch its shift
@@ -375,7 +377,7 @@ __kernel void skg_scatter(skg_scatter_args args, __global const skg_mix *media, 
     uint next = (uint)args.first + (uint)get_global_id(0) * (uint)args.each;
     const uint end = min(next + (uint)args.each, (uint)args.end);
     const int images = args.layers * args.bands * SKG_SCATTER_PLANES * args.rows * args.columns;
-    const skg_scattering s = {&args, {media, tree, faces}, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images};
+    const skg_scattering s = {&args, {media, tree, faces}, energies, momenta, detector, sums + (size_t)batch * 2 * (size_t)images, beam + args.bins};
     skg_photons p = {
         .alive = (skg_intv)(0), .changed = (skg_intv)(0), .history = (skg_uv)(0), .order = (skg_uv)(0)};
     uint numbers[SKG_WIDE];

@@ -278,6 +278,7 @@ typedef struct {
     6 /* planes of sums: orders 1, 2, higher of Rayleigh scattering alone, then with Compton */
 #define SKG_SCATTER_PLANES (SKG_SCATTER_KINDS + 1) /* the last: what adds to the variance */
 #define SKG_SCATTER_COLUMNS 6                      /* of the table by energy */
+#define SKG_SCATTER_LINES 12                       /* of a shell that emits, at most */
 #define SKG_SCATTER_ORDERS 64                      /* interactions after which a photon is given up */
 #define SKG_SCATTER_EVEN 0.5f  /* share of interactions whose place is even in the optical depth */
 #define SKG_SCATTER_LEAST 0.2f /* weights below this play roulette */
@@ -325,6 +326,7 @@ typedef struct {
     SKG_INT layers;       /* of the scintillator, each of which has an image of scattered photons */
     SKG_INT grid, noise;  /* 1: there is an anti-scatter grid; the variance of the signal is added up, too */
     SKG_INT world_around; /* 1: the cells stand in a material */
+    SKG_INT shells;       /* that emit fluorescence */
     SKG_INT first, end, each; /* histories of a batch; of a work-item */
     SKG_INT seed[2];          /* low word first */
 } skg_scatter_args;
@@ -395,7 +397,7 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 24 * 4 && sizeof(skg_scattered_args) == 80,
+_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 25 * 4 && sizeof(skg_scattered_args) == 80,
                "layout of scatter");
 #endif
 #endif

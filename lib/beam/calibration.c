@@ -13,6 +13,7 @@
  */
 #include "beam/spectrum.h"
 #include "material/material.h"
+#include "material/shells.h"
 
 #include <math.h>
 

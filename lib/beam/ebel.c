@@ -5,6 +5,7 @@
 #include "beam/spectrum.h"
 #include "core/maths.h"
 #include "material/material.h"
+#include "material/shells.h"
 
 #include <math.h>
 
@@ -41,16 +42,8 @@ double skg_ebel_continuum(const skg_anode *anode, double energy_kev, double deep
     return 1.35e9 * MM2_AT_1M * anode->z * pow(u - 1, x) * escape(anode, energy_kev, u, deeper);
 }
 
-static const skg_shell_row *find_shell(int32_t z, int32_t shell) {
-    const skg_shell_row *rows = shell == SKG_SHELL_K ? skg_k_shells : skg_l_shells;
-    const int32_t count = shell == SKG_SHELL_K ? skg_k_shell_count : skg_l_shell_count;
-    for (int32_t i = 0; i < count; i++)
-        if (rows[i].z == z) return &rows[i];
-    return NULL;
-}
-
 double skg_ebel_overvoltage(const skg_anode *anode, int32_t shell) {
-    const skg_shell_row *row = find_shell(anode->z, shell);
+    const skg_shell_row *row = skg_shell_lines(anode->z, shell);
     return row ? anode->kvp / row->edge_kev : 0;
 }
 
@@ -67,7 +60,7 @@ static double excited(const skg_anode *anode, const skg_shell_row *row, int32_t 
 }
 
 double skg_ebel_line(const skg_anode *anode, int32_t shell, int line, double deeper, double *energy_kev) {
-    const skg_shell_row *row = find_shell(anode->z, shell);
+    const skg_shell_row *row = skg_shell_lines(anode->z, shell);
     *energy_kev = row ? row->line_kev[line] : 0;
     if (!row || !(row->share[line] > 0) || !(anode->kvp > row->edge_kev)) return 0;
     return excited(anode, row, shell) * row->share[line] *

@@ -2,6 +2,7 @@
 #include "beam/escape.h"
 #include "core/maths.h"
 #include "material/material.h"
+#include "material/shells.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -11,10 +12,8 @@ enum { CELLS = 256 };
 
 /* An element that has a K shell in the tables. */
 typedef struct {
-    const skg_shell_row *shell;
+    skg_shell shell;
     double fraction;    /* by mass */
-    double edge_kev;    /* of the cross sections; the table of lines rounds differently */
-    double k_share;     /* of photoelectric absorption above the edge */
     double left[CELLS]; /* of a vacancy in a cell: sum over lines of probability to leave times energy, keV */
     double left_squares[CELLS]; /* ... times its square */
 } emitter;
@@ -62,44 +61,27 @@ static double through_surface(double per_mm, double low, double high) {
     return 0.5 * (integral_3(per_mm * low) - integral_3(per_mm * high)) / (per_mm * (high - low));
 }
 
-/* The K edge of the cross sections, and the share of absorption above it that is the K shell's. */
-static int find_edge(emitter *e) {
-    const skg_element_row *row = &skg_elements[e->shell->z];
-    double nearest = 0.01 * e->shell->edge_kev; /* tables differ by a thousandth at most */
-    for (int32_t k = row->first + 1; k < row->last; k++) {
-        const double kev = skg_knots[k].energy_kev;
-        if (kev > skg_knots[k - 1].energy_kev || !(fabs(kev - e->shell->edge_kev) < nearest)) continue;
-        nearest = fabs(kev - e->shell->edge_kev);
-        e->edge_kev = kev;
-        e->k_share = -expm1(skg_knots[k - 1].value[SKG_PHOTO] - skg_knots[k].value[SKG_PHOTO]);
-    }
-    return e->edge_kev > 0;
-}
-
 static int by_edge(const void *a, const void *b) {
     const emitter *x = a, *y = b;
-    return (x->edge_kev > y->edge_kev) - (x->edge_kev < y->edge_kev);
+    return (x->shell.edge_kev[0] > y->shell.edge_kev[0]) - (x->shell.edge_kev[0] < y->shell.edge_kev[0]);
 }
 
 static void find_emitters(skg_escape *escape) {
     const skg_material *material = escape->material;
-    for (int64_t p = 0; p < material->count; p++)
-        for (int32_t s = 0; s < skg_k_shell_count; s++) {
-            if (skg_k_shells[s].z != material->parts[p].z) continue;
-            emitter *e = &escape->emitters[escape->count];
-            e->shell = &skg_k_shells[s];
-            e->fraction = material->parts[p].fraction;
-            escape->count += find_edge(e);
-        }
+    for (int64_t p = 0; p < material->count; p++) {
+        emitter *e = &escape->emitters[escape->count];
+        e->fraction = material->parts[p].fraction;
+        escape->count += skg_shell_find(material->parts[p].z, SKG_SHELL_K, &e->shell);
+    }
     qsort(escape->emitters, (size_t)escape->count, sizeof *escape->emitters, by_edge);
 }
 
 /* The share of the photons that interact which leave a vacancy in the K shell of an element. */
 static double vacancies(const emitter *e, double kev, double cm2_g) {
     double sections[SKG_PROCESSES];
-    if (!(kev >= e->edge_kev)) return 0;
-    skg_element_sections(e->shell->z, kev, sections);
-    return e->fraction * sections[SKG_PHOTO] * e->k_share / cm2_g;
+    if (!(kev >= e->shell.edge_kev[0])) return 0;
+    skg_element_sections(e->shell.row->z, kev, sections);
+    return e->fraction * sections[SKG_PHOTO] * skg_shell_vacancies(&e->shell, kev) / cm2_g;
 }
 
 /* Adds a line of e, of which all elements with lower edges are known. */
@@ -150,10 +132,11 @@ skg_status skg_escape_create(const skg_material *material, double mm, skg_escape
     made->material = material, made->mm = mm;
     for (int b = 0; b <= CELLS; b++) made->bounds[b] = 0.5 * mm * (1 - cos(SKG_PI * b / CELLS));
     find_emitters(made);
-    for (emitter *e = made->emitters; e < made->emitters + made->count; e++)
+    for (emitter *e = made->emitters; e < made->emitters + made->count; e++) {
+        const skg_shell_row *row = e->shell.row;
         for (int l = 0; l < SKG_K_LINES; l++)
-            if (e->shell->share[l] > 0)
-                add_line(made, e, e->shell->line_kev[l], e->shell->yield * e->shell->share[l]);
+            if (row->share[l] > 0) add_line(made, e, row->line_kev[l], row->yield * row->share[l]);
+    }
     *escape = made;
     return SKG_OK;
 }

@@ -63,9 +63,6 @@ typedef struct {
     double kvp, angle_deg;
 } skg_anode;
 
-/* Shells whose lines a tube emits. */
-enum { SKG_SHELL_K = 0, SKG_SHELL_L = 1 };
-
 /* Bremsstrahlung photons per keV, mAs and mm2 at 1 m, without filters, as published if deeper is 1. deeper: factor on the
  * depth at which photons are made. Birch's has an unknown unit, which the calibration knows. */
 double skg_ebel_continuum(const skg_anode *anode, double energy_kev, double deeper);

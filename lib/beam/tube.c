@@ -3,6 +3,7 @@
 #include "core/context.h"
 #include "core/text.h"
 #include "material/material.h"
+#include "material/shells.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -1,7 +1,9 @@
 /* The effect of scattered photons. */
 #include "beam/spectrum.h"
 #include "core/maths.h"
+#include "material/material.h"
 #include "material/scattering.h"
+#include "material/shells.h"
 #include "plan/decisions.h"
 #include "plan/rules.h"
 #include "spectral/model.h"
@@ -36,6 +38,8 @@ static skg_status check_numbers(const skg_scatter *s) {
     if (!(s->voxel_mm >= 0 && isfinite(s->voxel_mm)))
         return skg_fail(SKG_ERR_ARGUMENT, "scatter: cells of %g mm; above 0, or 0 for 64 along each side",
                         s->voxel_mm);
+    if (s->fluorescence < SKG_FLUORESCENCE_AUTO || s->fluorescence > SKG_FLUORESCENCE_OFF)
+        return skg_fail(SKG_ERR_ARGUMENT, "scatter: there is no fluorescence %d", (int)s->fluorescence);
     if (s->columns < 0 || s->columns > PLACES_MAX || s->rows < 0 || s->rows > PLACES_MAX)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "scatter: %" PRId64 " x %" PRId64 " places of the detector; 0 to %d along each side",
@@ -152,4 +156,59 @@ const skg_effect_row skg_effect_scatter = {
     .leave_out = leave_out_scatter,
     .predicted = 1,
     .find = find_scatter,
+};
+
+/* --- fluorescence of the parts */
+
+static int32_t fluorescence_of(const skg_recipe *recipe) {
+    return recipe->options.scatter ? recipe->options.scatter->fluorescence : SKG_FLUORESCENCE_AUTO;
+}
+
+/* The heaviest element of the parts whose K or L edge is in the beam; 0: none. */
+static int32_t find_emitter(const skg_recipe *recipe, skg_shell *shell) {
+    const int32_t lightest = fluorescence_of(recipe) == SKG_FLUORESCENCE_ON ? 1 : SKG_FLUORESCENCE_LIGHTEST;
+    const skg_spectrum *spectrum = recipe->spectrum;
+    int32_t found = 0;
+    double high = 0;
+    for (int64_t i = 0; i < spectrum->count; i++)
+        if (spectrum->photons[i] > 0) high = fmax(high, spectrum->energy_kev[i]);
+    for (int64_t p = 0; p < recipe->scene->count; p++) {
+        const skg_material *material = recipe->scene->parts[p].material;
+        for (int64_t i = 0; material->kind == SKG_MATTER_COMPOSITION && i < material->count; i++)
+            for (int32_t kind = 0; kind < SKG_SHELLS; kind++) {
+                const int32_t z = material->parts[i].z;
+                skg_shell own;
+                if (z < lightest || z <= found || !skg_shell_find(z, kind, &own) || !(own.edge_kev[0] < high))
+                    continue;
+                found = z;
+                *shell = own;
+            }
+    }
+    return found;
+}
+
+static void find_fluorescence(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_recipe *recipe = f->recipe;
+    skg_shell shell;
+    const int32_t z = find_emitter(recipe, &shell);
+    if (!z)
+        skg_effect_set(state, 0, "no part has an element from Z = %d on with an edge in the beam",
+                       SKG_FLUORESCENCE_LIGHTEST);
+    else if (!recipe->options.scatter)
+        skg_effect_set(state, 0, "comes with scatter, which is not asked for; %s emits %c lines",
+                       skg_elements[z].symbol, shell.kind == SKG_SHELL_K ? 'K' : 'L');
+    else if (fluorescence_of(recipe) == SKG_FLUORESCENCE_OFF)
+        skg_effect_set(state, 0, "switched off; %s would emit %c lines", skg_elements[z].symbol,
+                       shell.kind == SKG_SHELL_K ? 'K' : 'L');
+    else
+        skg_effect_set(state, 1, "%s emits %c lines after photo absorption from %.3g keV on",
+                       skg_elements[z].symbol, shell.kind == SKG_SHELL_K ? 'K' : 'L', shell.edge_kev[0]);
+}
+
+const skg_effect_row skg_effect_fluorescence = {
+    .name = "fluorescence",
+    .key = "Fluorescence",
+    .self_test = SKG_SELF_TEST_SCATTER,
+    .refuses_gradient = refuse_scatter,
+    .find = find_fluorescence,
 };

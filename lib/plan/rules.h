@@ -95,7 +95,7 @@ typedef struct {
     X(energies) X(source) X(supersampling) X(world) X(response) X(falloff) X(compression) \
     X(nesting) X(leaky) X(repair) X(source_plane) X(overlaps) \
     X(noise) X(blur) X(electronic) X(quantisation) X(priority) \
-    X(heel) X(bowtie) X(collimation) X(scatter) X(grid) X(oblique) X(escape) X(deposition) X(depths) X(dqe)
+    X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(grid) X(oblique) X(escape) X(deposition) X(depths) X(dqe)
 /* clang-format on */
 
 #define SKG_EFFECT_DECLARE(row) extern const skg_effect_row skg_effect_##row;

@@ -4,9 +4,42 @@
 
 #include "core/core.h"
 
+#include "material/shells.h"
+#include "skg_shared.h"
+
 #include <skiagraph/material.h>
+#include <skiagraph/options.h>
 
 #include <math.h>
+
+/* --- Fluorescence: photons of the lines of a shell, in any direction, after photo absorption (K and L shells; yields and shares of
+ * materials/k_lines.txt and l_lines.txt). */
+
+typedef struct {
+    skg_shell shell,
+        deeper; /* deeper: of L, the K shell, whose K alpha leaves vacancies there; has_deeper: it is known */
+    int32_t has_deeper, reserved;
+    double photons;                    /* per vacancy, of the lines that are followed */
+    float lines[SKG_SCATTER_LINES][2]; /* share of the photons up to this one, keV */
+} skg_emitter;
+
+/* All zero: none. */
+typedef struct {
+    int64_t count;
+    skg_emitter *of;   /* [count] */
+    double lowest_kev; /* photons are followed down to here */
+} skg_emitters;
+
+/* Finds the shells that matter: their edge is in the beam, and they emit 1e-4 of what interacts in some material or more.
+ *
+ * fluorescence   enum skg_fluorescence; by default of elements from Z = 30 on
+ * low_kev        lines below it are left out
+ * high_kev       of the beam
+ *
+ * Free the result also after a failure. */
+skg_status skg_emitters_find(int64_t count, skg_material *const *materials, int32_t fluorescence,
+                             double low_kev, double high_kev, skg_emitters *emitters);
+void skg_emitters_free(skg_emitters *emitters);
 
 /* --- What photons meet: attenuation and the angles of scattering, for mixtures of all materials of a scene. *
  * A cell of the object holds four, eight or twelve coefficients. Every function of energy or of momentum transfer is linear in them: mu of a cell
@@ -40,22 +73,33 @@ typedef struct {
     double momentum_scale, momentum_high;
     /* [momenta] 1/mm per coefficient: r_e^2 times the number of atoms per volume times S and times F^2. */
     skg_mixture *incoherent, *coherent;
+    int64_t shells; /* that emit */
+    skg_mixture
+        *emission; /* [energies][shells] photons per mm and coefficient that a photon's absorption emits */
     int64_t materials;
     double (*coefficients)[SKG_SCATTER_RANK]; /* [materials] of 1 mm of each at its density, per mm */
     /* The greatest relative error over the materials of total, Compton and Rayleigh at the energies; and of these and of both
      * distributions of angles (integral of the absolute difference over the integral). At least 1e-6, for the
      * rounding of floats. Interpolation is apart: below 2e-4 away from edges. */
     double attenuation_error, error;
+    double
+        emission_error; /* the greatest difference of what a material emits over the most that any does; in `error`, too */
 } skg_scatter_physics;
 
 /* Makes the tables.
  *
  * materials   [count] at their densities
+ * emitters    of these materials; NULL: none
  * low_kev     of the photons that are tracked, >= 1
  * errors      SKG_ERR_MATERIAL for a material without composition or density, or below 1 keV; SKG_ERR_UNSUPPORTED above
  *             1,022 keV; SKG_ERR_ARGUMENT unless low_kev < high_kev */
-skg_status skg_scatter_physics_make(int64_t count, skg_material *const *materials, double low_kev,
-                                    double high_kev, skg_scatter_physics *physics);
+skg_status skg_scatter_physics_make(int64_t count, skg_material *const *materials,
+                                    const skg_emitters *emitters, double low_kev, double high_kev,
+                                    skg_scatter_physics *physics);
+/* Fills what mixtures emit, for the coefficients that the materials have: by least squares, exact if there are no more compositions than
+ * coefficients. */
+skg_status skg_emission_make(int64_t count, skg_material *const *materials, const skg_emitters *emitters,
+                             skg_scatter_physics *physics);
 void skg_scatter_physics_free(skg_scatter_physics *physics);
 
 /* The energy of a point in keV. */

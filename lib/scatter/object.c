@@ -17,10 +17,8 @@ static const double LOWEST = 0.25;
  * for the two or three of them that matter most. */
 static const double SMEARED = 3, LEAST_LIMIT = 0.02;
 
-/* The share of the primary's error that pixels of the scatter have: cells whose media differ little, two generated thoraxes, 2.4 % of
- * 9.3 % and less of 8.2 %; cells where parts compete, of which anything may be missing, lead, iron and aluminium smeared on purpose, .4
- * to 1.5. */
-static const double OF_PRIMARY = 0.25, OF_SETTLED = 1;
+/* Cells that hold mixtures by choice may add so much to what those where parts compete are off by. */
+static const double SETTLED_MORE = 1.1;
 
 /* Where a number of histories is given. */
 static const double DEFAULT_TOLERANCE = 0.01;
@@ -55,16 +53,20 @@ static skg_status find_palette(const skg_recipe *recipe, palette *p) {
     return SKG_OK;
 }
 
-static skg_status make_physics(const skg_scatter_work *work, const palette *p, skg_scatter_physics *physics) {
-    const skg_spectrum *spectrum = work->recipe->spectrum;
-    double low = HUGE_VAL, high = 0;
+static skg_status make_physics(const skg_scatter_work *work, const palette *p, skg_scatter_object *object) {
+    const skg_recipe *recipe = work->recipe;
+    const skg_spectrum *spectrum = recipe->spectrum;
+    double low = HUGE_VAL, high = 0, least = 1;
     for (int64_t i = 0; i < spectrum->count; i++)
         if (spectrum->photons[i] > 0)
             low = fmin(low, spectrum->energy_kev[i]), high = spectrum->energy_kev[i];
-    low = fmax(low * LOWEST, 1);
     /* What the response does not know adds nothing, and photons only lose energy. */
-    if (work->recipe->options.response) low = fmax(low, skg_response_lowest(work->recipe->options.response));
-    return skg_scatter_physics_make(p->count, p->materials, low, fmax(high, low * 1.001), physics);
+    if (recipe->options.response) least = fmax(least, skg_response_lowest(recipe->options.response));
+    SKG_TRY(skg_emitters_find(p->count, p->materials, recipe->options.scatter->fluorescence, least, high,
+                              &object->emitters));
+    low = fmax(fmin(low * LOWEST, object->emitters.lowest_kev), least);
+    return skg_scatter_physics_make(p->count, p->materials, &object->emitters, low, fmax(high, low * 1.001),
+                                    &object->physics);
 }
 
 static double coefficient(const double (*of)[SKG_SCATTER_RANK], int64_t material, int k) {
@@ -173,7 +175,7 @@ static skg_status trace(const skg_scatter_work *work, const skg_cell_parts *part
     for (;;) {
         SKG_TRY(trace_to(work, parts, lines, limit, object));
         if (limit == 0 || object->cells.smeared == 0 ||
-            skg_scatter_systematic(object) <= SKG_SCATTER_MOST * tolerance)
+            object->judged.cells <= fmax(SKG_SCATTER_MOST * tolerance, SETTLED_MORE * object->settled_error))
             return SKG_OK;
         limit = limit > LEAST_LIMIT ? limit / 1.4 : 0;
     }
@@ -187,7 +189,7 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
     *object = (skg_scatter_object){0};
     SKG_TRY_CLEANUP(find_palette(work->recipe, &p));
     if (p.count == 0) goto cleanup; /* nothing scatters */
-    SKG_TRY_CLEANUP(make_physics(work, &p, &object->physics));
+    SKG_TRY_CLEANUP(make_physics(work, &p, object));
     SKG_TRY_CLEANUP(place(work, &parts));
     for (int k = 0; k < SKG_SCATTER_RANK && p.of_world >= 0; k++)
         object->world[k] = object->physics.coefficients[p.of_world][k];
@@ -213,12 +215,9 @@ cleanup:
     return status;
 }
 
-double skg_scatter_systematic(const skg_scatter_object *object) {
-    return OF_PRIMARY * fmax(object->judged.all - object->settled_error, 0) +
-           OF_SETTLED * object->settled_error;
-}
-
 void skg_scatter_object_free(skg_scatter_object *object) {
     skg_scatter_physics_free(&object->physics);
+    skg_emitters_free(&object->emitters);
+    skg_emitters_free(&object->emitters);
     skg_cells_free(&object->cells);
 }

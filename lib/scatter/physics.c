@@ -10,5 +10,6 @@ void skg_scatter_physics_free(skg_scatter_physics *physics) {
     skg_free(&physics->incoherent);
     skg_free(&physics->coherent);
     skg_free(&physics->coefficients);
-    physics->energies = physics->momenta = physics->materials = 0;
+    skg_free(&physics->emission);
+    physics->shells = physics->energies = physics->momenta = physics->materials = 0;
 }

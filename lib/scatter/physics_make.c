@@ -166,7 +166,8 @@ static skg_status shapes_error(const skg_scatter_physics *p, const double *colum
     return SKG_OK;
 }
 
-static skg_status fill(int64_t count, skg_material *const *materials, skg_scatter_physics *p) {
+static skg_status fill(int64_t count, skg_material *const *materials, const skg_emitters *emitters,
+                       skg_scatter_physics *p) {
     const int64_t rows = skg_scatter_first_row(p, SKG_SCATTER_FUNCTIONS);
     double *columns = NULL, *weight = NULL, *scratch = NULL, (*basis)[SKG_SCATTER_RANK] = NULL;
     skg_status status = SKG_OK;
@@ -184,7 +185,11 @@ static skg_status fill(int64_t count, skg_material *const *materials, skg_scatte
             p->attenuation_error = fmax(p->attenuation_error, energies_error(p, m, columns + m * rows));
         p->error = p->attenuation_error;
         SKG_TRY_CLEANUP(shapes_error(p, columns, &p->error));
-        if (p->rank == SKG_SCATTER_RANK || (p->attenuation_error <= GOOD && p->error <= GOOD_ANGLES)) break;
+        if (emitters) SKG_TRY_CLEANUP(skg_emission_make(count, materials, emitters, p));
+        p->error = fmax(p->error, p->emission_error);
+        if (p->rank == SKG_SCATTER_RANK ||
+            (p->attenuation_error <= GOOD && p->emission_error <= GOOD && p->error <= GOOD_ANGLES))
+            break;
     }
 cleanup:
     skg_free(&columns);
@@ -194,13 +199,14 @@ cleanup:
     return status;
 }
 
-skg_status skg_scatter_physics_make(int64_t count, skg_material *const *materials, double low_kev,
-                                    double high_kev, skg_scatter_physics *physics) {
+skg_status skg_scatter_physics_make(int64_t count, skg_material *const *materials,
+                                    const skg_emitters *emitters, double low_kev, double high_kev,
+                                    skg_scatter_physics *physics) {
     SKG_PLAIN;
     *physics = (skg_scatter_physics){0};
     SKG_TRY(check(count, materials, low_kev, high_kev));
     skg_status status = allocate(count, low_kev, high_kev, physics);
-    if (status == SKG_OK) status = fill(count, materials, physics);
+    if (status == SKG_OK) status = fill(count, materials, emitters, physics);
     if (status != SKG_OK) skg_scatter_physics_free(physics);
     return status;
 }

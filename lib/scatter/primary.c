@@ -1,5 +1,5 @@
-/* The primary through the cells against that through the surfaces, on a coarse grid of the detector: what cells that are too large for thin or
- * small dense parts do to photons. Batches share the cells, so their spread does not show it. */
+/* What scatters straight on through the cells against that through the surfaces, on a coarse grid of the detector: what cells that are too
+ * large for thin or small parts do to photons. Batches share the cells, so their spread does not show it. */
 #include "scatter/voxels.h"
 
 #include "core/maths.h"
@@ -7,8 +7,9 @@
 
 #include <math.h>
 
-/* RAYS x RAYS rays in blocks of BLOCK x BLOCK, large enough that edges which cells blur without a bias count little. */
-enum { RAYS = 48, BLOCK = 4, BLOCKS = RAYS / BLOCK };
+/* RAYS x RAYS rays, about two for a cell, in blocks of BLOCK x BLOCK, large enough that edges which cells blur without a bias count
+ * little. */
+enum { RAYS = 96, BLOCK = 8, BLOCKS = RAYS / BLOCK };
 
 /* Ways through the parts. */
 enum { CELLS, SURFACES, MATERIALS, WAYS };
@@ -25,7 +26,7 @@ typedef struct {
     double sign; /* -1: columns, rows and depths are a mirrored frame */
     const skg_beam_lines *lines;
     double mu[SKG_SCATTER_RANK][SKG_SCATTER_RANK]; /* [lines] 1/mm per coefficient */
-    double (*passed)[WAYS];                        /* [RAYS * RAYS] shares of the energy */
+    double (*sent)[WAYS];                          /* [RAYS * RAYS] of the energy */
 } judge;
 
 /* --- rays */
@@ -93,18 +94,19 @@ static void add_change(void *user, double depth, const int64_t *more, int64_t fa
     for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= (double)more[k] * mm;
 }
 
-/* depth: of each line */
-static double share_of(const judge *j, const double depth[SKG_SCATTER_RANK]) {
-    double passed = 0;
-    for (int64_t e = 0; e < j->lines->count; e++) passed += j->lines->weight[e] * exp(-fmax(depth[e], 0));
-    return passed;
+/* What scatters straight on once and passes, but for a factor. depth: of each line */
+static double sent_by(const judge *j, const double depth[SKG_SCATTER_RANK]) {
+    double sent = 0;
+    for (int64_t e = 0; e < j->lines->count; e++)
+        if (depth[e] > 0) sent += j->lines->weight[e] * depth[e] * exp(-depth[e]);
+    return sent;
 }
 
-static double share_mixed(const judge *j, const double mm[SKG_SCATTER_RANK]) {
+static double sent_by_mixed(const judge *j, const double mm[SKG_SCATTER_RANK]) {
     double depth[SKG_SCATTER_RANK] = {0};
     for (int64_t e = 0; e < j->lines->count; e++)
         for (int k = 0; k < SKG_SCATTER_RANK; k++) depth[e] += j->mu[e][k] * mm[k];
-    return share_of(j, depth);
+    return sent_by(j, depth);
 }
 
 /* The stretch of a ray within the box of the cells. Returns 0 if there is none. */
@@ -133,8 +135,8 @@ static skg_status judge_row(void *user, int64_t row) {
     SKG_TRY_CLEANUP(skg_columns_gather(&grid, j->parts->count, j->parts->solids, j->rows));
     for (int64_t c = 0; c < RAYS; c++) {
         const ray r = ray_at(j, skg_column_place(&grid, 0, c), skg_column_place(&grid, 1, row));
-        double from, to, *passed = j->passed[row * RAYS + c];
-        passed[CELLS] = passed[SURFACES] = passed[MATERIALS] = 1;
+        double from, to;
+        double *sent = j->sent[row * RAYS + c];
         if (!enter(j->cells, &r, &from, &to)) continue;
         for (int exact = 0; exact < 2; exact++) {
             const double *base = exact ? j->lines->world : j->parts->base;
@@ -142,7 +144,7 @@ static skg_status judge_row(void *user, int64_t row) {
             skg_cells_walk(j->parts, (const skg_cell_amount *)j->amounts[exact], &grid, c, work, add_change,
                            &s);
             for (int k = 0; k < SKG_SCATTER_RANK && base; k++) s.mm[k] += base[k] * (to - from) * s.length;
-            passed[exact ? MATERIALS : SURFACES] = exact ? share_of(j, s.mm) : share_mixed(j, s.mm);
+            sent[exact ? MATERIALS : SURFACES] = exact ? sent_by(j, s.mm) : sent_by_mixed(j, s.mm);
         }
         double ends[2][3], mm[SKG_SCATTER_RANK];
         for (int k = 0; k < 3; k++) {
@@ -150,7 +152,7 @@ static skg_status judge_row(void *user, int64_t row) {
             ends[1][k] = r.on[k] + to * r.way[k] - j->cells->low[k];
         }
         skg_cells_along(j->cells, ends[0], ends[1], mm);
-        passed[CELLS] = share_mixed(j, mm);
+        sent[CELLS] = sent_by_mixed(j, mm);
     }
 cleanup:
     skg_columns_free(&grid);
@@ -175,24 +177,20 @@ static void find_coefficients(const skg_scatter_physics *physics, judge *j) {
     }
 }
 
-/* Rays that are stopped less than this meet nothing: the lines' shares add to 1 but for rounding. */
-static const double OPEN = 1 - 1e-9;
-
 /* How far the cells are from one of the ways through surfaces. */
 static double verdict(const judge *j, int way) {
-    double off = 0, passed = 0, stopped = 0;
+    double off = 0, all = 0;
     for (int b = 0; b < BLOCKS * BLOCKS; b++) {
         double difference = 0;
         for (int i = 0; i < BLOCK * BLOCK; i++) {
-            const double *of =
-                j->passed[(b / BLOCKS * BLOCK + i / BLOCK) * RAYS + b % BLOCKS * BLOCK + i % BLOCK];
-            difference += of[CELLS] - of[way];
-            if (fmin(of[CELLS], of[way]) < OPEN) passed += of[way], stopped += 1 - of[way];
+            const double *sent =
+                j->sent[(b / BLOCKS * BLOCK + i / BLOCK) * RAYS + b % BLOCKS * BLOCK + i % BLOCK];
+            difference += sent[CELLS] - sent[way];
+            all += sent[way];
         }
         off += fabs(difference);
     }
-    const double least = fmin(passed, stopped);
-    return least > 0 ? off / least : 0;
+    return all > 0 ? off / all : 0;
 }
 
 /* The solids in columns, rows and depths. *in_front: 0 if one reaches behind the source. */
@@ -254,7 +252,7 @@ skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physic
     j.parts = &projected;
     SKG_TRY_CLEANUP(find_amounts(parts, &j));
     find_coefficients(physics, &j);
-    SKG_TRY_CLEANUP(skg_alloc(RAYS * RAYS, sizeof *j.passed, "cells", &j.passed));
+    SKG_TRY_CLEANUP(skg_alloc(RAYS * RAYS, sizeof *j.sent, "cells", &j.sent));
     j.grid.rows = RAYS;
     SKG_TRY_CLEANUP(skg_columns_span(&j.grid, parts->count, solids, &j.rows));
     SKG_TRY_CLEANUP(skg_parallel(RAYS, judge_row, &j));
@@ -266,6 +264,6 @@ cleanup:
     skg_free(&j.amounts[0]);
     skg_free(&j.amounts[1]);
     skg_free(&j.rows);
-    skg_free(&j.passed);
+    skg_free(&j.sent);
     return status;
 }

@@ -13,7 +13,7 @@ enum { FIRST = 512 };
 /* Of the attenuation or of angles in a material, above which a scene is warned of. */
 static const double MIXTURE_ERROR = 0.05;
 
-/* Of the primary, above which cells where parts compete are warned of. */
+/* Of what scatters straight on, above which cells where parts compete are warned of. */
 static const double CELLS_ERROR = 0.05;
 
 /* What the scatter of a frame depends on. */
@@ -39,7 +39,7 @@ typedef struct {
     double *values; /* [batches][rows][columns] workspace */
     int64_t columns, rows;
     int32_t channels, images;
-    double systematic; /* share of the mean that no number of histories takes away: skg_scatter_systematic */
+    double systematic; /* share of the mean that no number of histories takes away: skg_judged */
     skg_rounds rounds;
     skg_cosines all;       /* of all images together */
     skg_cosines *channel;  /* [channels] of its layers together */
@@ -214,7 +214,7 @@ static skg_status compute(skg_context *context, const skg_scatter_work *work,
     skg_status status = SKG_OK;
     const skg_shown_scatter nothing = {.work = work};
     SKG_TRY_CLEANUP(begin(work, &a));
-    a.systematic = skg_scatter_systematic(object);
+    a.systematic = object->judged.all;
     if (object->cells.mixtures)
         SKG_TRY_CLEANUP(trace(context, work, object, s, &a));
     else
@@ -236,7 +236,7 @@ static void warn_of_mixtures(const skg_context *context, const skg_scatter_physi
     skg_log(
         context, SKG_LOG_WARNING,
         "scatter: twelve coefficients a cell stand for %" PRId64
-        " materials, with errors of up to %.2g %% in attenuation and %.2g %% in angles; fewer compositions are mixed "
+        " materials, with errors of up to %.2g %% in attenuation and %.2g %% in angles and fluorescence; fewer compositions are mixed "
         "better, and up to twelve exactly",
         physics->materials, 100 * physics->attenuation_error, 100 * physics->error);
 }
@@ -247,7 +247,7 @@ static void warn_of_cells(const skg_context *context, const skg_scatter_object *
     s->cells_warned = 1;
     skg_log(
         context, SKG_LOG_WARNING,
-        "scatter: cells of %.3g x %.3g x %.3g mm pass %.2g %% more or less of the primary than the parts do, because parts of "
+        "scatter: cells of %.3g x %.3g x %.3g mm scatter %.2g %% more or less straight on than the parts do, because parts of "
         "different priority, or clipped ones, are thinner or smaller; the scatter may be wrong by as much, which is in its stated "
         "error. Give these parts one priority where they do not overlap, or Scatter a smaller Voxel",
         cells->size[0] / (double)cells->count[0], cells->size[1] / (double)cells->count[1],

@@ -37,7 +37,7 @@ typedef struct {
     knot *knots; /* [intervals + 1] */
     knot checks[CHECKS];
     int64_t *sums;     /* as skg_trace_read */
-    double systematic; /* the greatest of the frames, as of skg_scatter_systematic */
+    double systematic; /* the greatest of the frames, what cells and materials are off by */
     skg_tracing tracing;
 } maker;
 
@@ -109,7 +109,7 @@ static skg_status follow(maker *m, knot *k) {
     work.seed = k->seed;
     skg_status status = skg_scatter_object_make(&work, &object);
     if (status == SKG_OK && object.cells.mixtures) status = trace(m, &work, &object, k);
-    if (status == SKG_OK) m->systematic = fmax(m->systematic, skg_scatter_systematic(&object));
+    if (status == SKG_OK) m->systematic = fmax(m->systematic, object.judged.all);
     skg_scatter_object_free(&object);
     if (status != SKG_OK) return status;
     m->series->report.histories += (m->rounds.end - k->end) * SKG_SCATTER_BATCHES;

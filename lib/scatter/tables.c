@@ -55,6 +55,8 @@ static void fill_energies(const skg_scatter_physics *p, skg_scatter_tables *t) {
     for (int64_t i = 0; i < p->energies; i++)
         for (int c = TOTAL; c <= RAYLEIGH_SHAPE; c++)
             memcpy(t->energies[i * SKG_SCATTER_COLUMNS + c], columns[c][i], sizeof *t->energies);
+    for (int64_t i = 0; i < p->energies * p->shells; i++)
+        memcpy(t->energies[p->energies * SKG_SCATTER_COLUMNS + i], p->emission[i], sizeof *t->energies);
     for (int64_t i = 0; i < p->momenta; i++) {
         memcpy(t->momenta[2 * i], p->incoherent[i], sizeof *t->momenta);
         memcpy(t->momenta[2 * i + 1], p->coherent[i], sizeof *t->momenta);
@@ -77,11 +79,20 @@ static skg_status fill_profiles(const skg_spectrum *spectrum, skg_scatter_tables
     return SKG_OK;
 }
 
+/* Behind the bins. */
+static void fill_lines(const skg_emitters *emitters, skg_scatter_tables *t) {
+    float(*to)[4] = t->beam + t->bins;
+    for (int64_t s = 0; s < emitters->count; s++)
+        for (int l = 0; l < SKG_SCATTER_LINES; l++)
+            memcpy(to[s * SKG_SCATTER_LINES + l], emitters->of[s].lines[l], sizeof emitters->of[s].lines[l]);
+}
+
 /* Photons are drawn with the probability of photons times (signal + a share of the mean signal). */
-static skg_status fill_beam(const skg_recipe *recipe, skg_scatter_tables *t) {
+static skg_status fill_beam(const skg_recipe *recipe, const skg_emitters *emitters, skg_scatter_tables *t) {
     const skg_spectrum *spectrum = recipe->spectrum;
     double signals = 0, sum = 0, share = 0;
-    SKG_TRY(skg_alloc(spectrum->count, sizeof *t->beam, "scatter", &t->beam));
+    SKG_TRY(skg_alloc(spectrum->count + emitters->count * SKG_SCATTER_LINES, sizeof *t->beam, "scatter",
+                      &t->beam));
     for (int64_t i = 0; i < spectrum->count; i++) {
         double signal = 0;
         SKG_TRY(skg_signal_get(&recipe->options, spectrum->energy_kev[i], &signal));
@@ -106,6 +117,8 @@ static skg_status fill_beam(const skg_recipe *recipe, skg_scatter_tables *t) {
             row[2] = (float)(spectrum->photons[i] / t->photons / (drawn / sum) / t->profile.mean);
             row[3] = t->profile.bowtie ? (float)t->profile.attenuation[i] : 0;
         }
+    fill_lines(emitters, t);
+    t->lines = emitters->count * SKG_SCATTER_LINES;
     t->photons *= t->profile.mean; /* weights are about 1, as the roulette has it */
     return t->bins > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
@@ -159,14 +172,15 @@ skg_status skg_scatter_tables_make(const skg_scatter_work *work, const skg_scatt
     const skg_recipe *recipe = work->recipe;
     const skg_scatter_physics *p = &object->physics;
     *t = (skg_scatter_tables){0};
-    SKG_TRY(skg_alloc(p->energies * SKG_SCATTER_COLUMNS, sizeof *t->energies, "scatter", &t->energies));
+    t->energy_rows = p->energies * (SKG_SCATTER_COLUMNS + p->shells);
+    SKG_TRY(skg_alloc(t->energy_rows, sizeof *t->energies, "scatter", &t->energies));
     SKG_TRY(skg_alloc(p->momenta * 2, sizeof *t->momenta, "scatter", &t->momenta));
     SKG_TRY(skg_alloc(SKG_ANGLE_ROWS * (SKG_SCATTER_ANGLES + 1), sizeof *t->angles, "scatter", &t->angles));
     fill_energies(p, t);
     SKG_TRY(fill_signals(recipe, p, t));
     SKG_TRY(fill_detector(recipe, p, t));
     SKG_TRY(skg_beam_profile_make(work, &t->profile));
-    SKG_TRY(fill_beam(recipe, t));
+    SKG_TRY(fill_beam(recipe, &object->emitters, t));
     SKG_TRY(fill_profiles(recipe->spectrum, t));
     return skg_angles_make(p, object->cells.mean, t->angles);
 }

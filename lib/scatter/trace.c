@@ -92,8 +92,8 @@ static skg_status send_tables(skg_context *context, const skg_scatter_object *ob
                              "cells"));
     SKG_TRY(skg_buffer_write(context, &t->faces, cells->face_count * (int64_t)sizeof *cells->faces,
                              cells->faces, "cells"));
-    SKG_TRY(send_mixtures(context, p->energies * SKG_SCATTER_COLUMNS, (const skg_mixture *)tables->energies,
-                          t->fours, &t->energies, "energies"));
+    SKG_TRY(send_mixtures(context, tables->energy_rows, (const skg_mixture *)tables->energies, t->fours,
+                          &t->energies, "energies"));
     SKG_TRY(send_mixtures(context, p->momenta * 2, (const skg_mixture *)tables->momenta, t->fours,
                           &t->momenta, "momenta"));
     SKG_TRY(skg_buffer_write(context, &t->angles,
@@ -107,7 +107,7 @@ static skg_status send_tables(skg_context *context, const skg_scatter_object *ob
         SKG_TRY(skg_buffer_write(context, &t->detector,
                                  tables->detector_count * (int64_t)sizeof *tables->detector, tables->detector,
                                  "detector"));
-    return skg_buffer_write(context, &t->beam, tables->bins * four, tables->beam, "beam");
+    return skg_buffer_write(context, &t->beam, (tables->bins + tables->lines) * four, tables->beam, "beam");
 }
 
 static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *tables,
@@ -115,6 +115,7 @@ static void fill_tables(const skg_scatter_physics *p, const skg_scatter_tables *
     args->energies = (SKG_INT)p->energies;
     args->momenta = (SKG_INT)p->momenta;
     args->bins = (SKG_INT)tables->bins;
+    args->shells = (SKG_INT)p->shells;
     args->log_low = (float)log(p->low_kev);
     args->per_log = (float)((double)(p->energies - 1) / log(p->high_kev / p->low_kev));
     args->per_momentum = (float)(1 / p->momentum_scale);
@@ -181,9 +182,9 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 }
 
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
-    static const char *const files[] = {"exponential.clh", "random.clh", "noise.clh",  "scatter.clh",
-                                        "walk.clh",        "sight.clh",  "strips.clh", "arrive.clh",
-                                        "profile.clh",     "scatter.cl"};
+    static const char *const files[] = {"exponential.clh", "random.clh",       "noise.clh", "scatter.clh",
+                                        "walk.clh",        "fluorescence.clh", "sight.clh", "strips.clh",
+                                        "arrive.clh",      "profile.clh",      "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
     const skg_define fours[] = {{"SKG_FOURS", t->fours}};

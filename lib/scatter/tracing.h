@@ -9,12 +9,13 @@
 /* --- Tables of a frame's photons as the device has them. */
 
 typedef struct {
-    float (*energies)[SKG_SCATTER_RANK]; /* [energies][SKG_SCATTER_COLUMNS] */
+    float (*energies)[SKG_SCATTER_RANK]; /* [energies][SKG_SCATTER_COLUMNS], then [energies][shells] */
+    int64_t energy_rows;                 /* of both */
     float (*momenta)[SKG_SCATTER_RANK];  /* [momenta][2] S, F^2 */
     float *angles;                       /* [SKG_ANGLE_ROWS][SKG_SCATTER_ANGLES + 1] */
     float (*beam)
-        [4]; /* [bins] keV, share of the photons that are followed up to here, weight, 1/mm of a bow-tie filter */
-    int64_t bins;
+        [4]; /* [bins] keV, share of the photons that are followed up to here, weight, 1/mm of a bow-tie filter; then [lines] of shells */
+    int64_t bins, lines;
     skg_beam_profile profile;
     float *profiles; /* [profile_count] as kernels/scatter/profile.clh has them; NULL: none */
     int64_t profile_count;

@@ -145,7 +145,7 @@ static skg_status compare_cube(skg_context *context, skg_verdict *verdict) {
     jaws.high[0] = jaws.high[1] = opening / 2 - aside;
     view.centre[1] = view.centre[2] = 0.5 * pixel; /* a pixel sees the source through the jaws */
     SKG_TRY_CLEANUP(render(context, edges, &view, &jaws, 131072, &run));
-    SKG_TRY_CLEANUP(skg_scatter_physics_make(1, &run.water, kev / 4, kev, &physics));
+    SKG_TRY_CLEANUP(skg_scatter_physics_make(1, &run.water, NULL, kev / 4, kev, &physics));
     compare_blocks(&physics, run.image[1], verdict);
 cleanup:
     skg_scatter_physics_free(&physics);

@@ -1,6 +1,8 @@
 /* Programs and kernels for the stages: the one place that writes -D options, sets arguments and enqueues. */
 #include "stage/kernels.h"
 
+#include "device/programs.h"
+
 #include "core/maths.h"
 #include "driver/driver.h"
 
@@ -35,7 +37,7 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
                                           "scalar.clh",   "triangle.clh", "wide.clh",
                                           "triangle.clh", "parts.clh",    "sums.clh"};
     static const skg_program_options none = {.flags = ""};
-    enum { HEADERS = sizeof headers / sizeof *headers, LIMIT = 10, TEXT = 1024 };
+    enum { HEADERS = sizeof headers / sizeof *headers, LIMIT = SKG_PROGRAM_FILES - HEADERS, TEXT = 1024 };
     const skg_define common[] = {
         {"SKG_DOUBLE", options->precision == SKG_PRECISION_DOUBLE},
         {"SKG_BITS", options->bits},

@@ -4,6 +4,7 @@
 #include "beam/spectrum.h"
 #include "beam/tube.h"
 #include "material/material.h"
+#include "material/shells.h"
 #include "suite.h"
 
 #include <float.h>

@@ -21,7 +21,7 @@ typedef struct {
 static void take(subject *s, int64_t count, const char *const *names, double low_kev, double high_kev) {
     s->count = count;
     for (int64_t m = 0; m < count; m++) s->material[m] = named(names[m]);
-    ck_skg(skg_scatter_physics_make(count, s->material, low_kev, high_kev, &s->physics));
+    ck_skg(skg_scatter_physics_make(count, s->material, NULL, low_kev, high_kev, &s->physics));
     ck_assert_int_eq(s->physics.materials, count);
 }
 
@@ -280,7 +280,7 @@ static void make_compounds(subject *s, int64_t count, const char *const *formula
     s->count = count;
     for (int64_t m = 0; m < count; m++)
         ck_skg(skg_material_create_formula(formulas[m], 0.8 + 0.3 * (double)m, &s->material[m]));
-    ck_skg(skg_scatter_physics_make(count, s->material, 20, 300, &s->physics));
+    ck_skg(skg_scatter_physics_make(count, s->material, NULL, 20, 300, &s->physics));
     ck_assert_double_le(s->physics.error, 2e-6); /* floats whose sums partly cancel */
     for (int64_t m = 0; m < count; m++)
         for (int k = 0; k < SKG_SCATTER_RANK; k++)
@@ -309,7 +309,7 @@ START_TEST(densities_cost_no_coefficient) {
     for (int m = 0; m < 4; m++) s.material[m] = named(few[m]);
     ck_skg(skg_material_create_at_density(s.material[1], 0.26, &s.material[4]));
     ck_skg(skg_material_create_at_density(s.material[2], 1.1, &s.material[5]));
-    ck_skg(skg_scatter_physics_make(6, s.material, 20, 120, &s.physics));
+    ck_skg(skg_scatter_physics_make(6, s.material, NULL, 20, 120, &s.physics));
     ck_assert_double_le(s.physics.error, 1e-6); /* exact but for floats */
     for (int k = 0; k < SKG_SCATTER_RANK; k++) {
         const double *coefficients[] = {s.physics.coefficients[1], s.physics.coefficients[4]};
@@ -322,7 +322,7 @@ END_TEST
 
 START_TEST(without_materials_there_are_zeros) {
     skg_scatter_physics physics;
-    ck_skg(skg_scatter_physics_make(0, NULL, 20, 120, &physics));
+    ck_skg(skg_scatter_physics_make(0, NULL, NULL, 20, 120, &physics));
     for (int64_t e = 0; e < physics.energies; e++)
         for (int k = 0; k < SKG_SCATTER_RANK; k++) ck_assert_double_eq((double)physics.total[e][k], 0);
     skg_scatter_physics_free(&physics);
@@ -335,17 +335,17 @@ START_TEST(refusals_name_the_mend) {
     ck_skg(skg_material_create_mu("grey", 0.5, &grey));
     ck_skg(skg_material_create_formula("C2H6O", 0, &light));
     skg_material *list[2] = {water, grey};
-    ck_skg_fails(skg_scatter_physics_make(2, list, 20, 120, &physics), SKG_ERR_MATERIAL,
+    ck_skg_fails(skg_scatter_physics_make(2, list, NULL, 20, 120, &physics), SKG_ERR_MATERIAL,
                  "grey: a material given by");
     list[1] = light;
-    ck_skg_fails(skg_scatter_physics_make(2, list, 20, 120, &physics), SKG_ERR_MATERIAL,
+    ck_skg_fails(skg_scatter_physics_make(2, list, NULL, 20, 120, &physics), SKG_ERR_MATERIAL,
                  "its density is not known; give one");
-    ck_skg_fails(skg_scatter_physics_make(1, list, 20, 1022.5, &physics), SKG_ERR_UNSUPPORTED,
+    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 20, 1022.5, &physics), SKG_ERR_UNSUPPORTED,
                  "the highest energy is 1022 keV");
-    ck_skg_fails(skg_scatter_physics_make(1, list, 0.5, 120, &physics), SKG_ERR_MATERIAL, "outside");
-    ck_skg_fails(skg_scatter_physics_make(1, list, 120, 120, &physics), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 0.5, 120, &physics), SKG_ERR_MATERIAL, "outside");
+    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 120, 120, &physics), SKG_ERR_ARGUMENT,
                  "the range is empty");
-    ck_skg_fails(skg_scatter_physics_make(1, list, 20, NAN, &physics), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 20, NAN, &physics), SKG_ERR_ARGUMENT,
                  "the range is empty");
     ck_assert_ptr_null(physics.total);
     skg_material_release(&water);

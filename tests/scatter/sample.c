@@ -31,6 +31,7 @@ static const char sampling_kernel[] =
     "    i.rayleigh = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH, &rows, &i.medium);\n"
     "    i.compton_shape = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_COMPTON_SHAPE, &rows, &i.medium);\n"
     "    i.rayleigh_shape = skg_value(energies, SKG_SCATTER_COLUMNS, SKG_OF_RAYLEIGH_SHAPE, &rows, &i.medium);\n"
+    "    i.emitted = (skg_fv)(0.0f), i.line = p.kev;\n"
     "    skg_see(&args, p.at, &sight);\n"
     "    skg_words(&args, SKG_AS_UINT_V(numbers), p.order, 0, 0, words);\n"
     "    const skg_fv angle = (SKG_TO_FLOAT_V(numbers) + (skg_fv)(0.5f)) * (skg_fv)(1.0f / photons);\n"
@@ -42,13 +43,13 @@ static const char sampling_kernel[] =
     "    for (int l = 0; l < SKG_WIDE; l++) out[first + l] = (float4)(weight[l], cosine[l], left[l], changed[l] ? 1.0f : 0.0f);\n"
     "}\n";
 
-enum { TEXTS = 18 };
+enum { TEXTS = 19 };
 
 static skg_status build(skg_context *context, cl_program *program) {
     static const char *const names[TEXTS - 1] = {
-        "config.clh",   "types.clh",       "skg_shared.h", "scalar.clh",  "triangle.clh", "wide.clh",
-        "triangle.clh", "exponential.clh", "random.clh",   "noise.clh",   "scatter.clh",  "walk.clh",
-        "sight.clh",    "strips.clh",      "arrive.clh",   "profile.clh", "scatter.cl"};
+        "config.clh",       "types.clh",       "skg_shared.h", "scalar.clh", "triangle.clh", "wide.clh",
+        "triangle.clh",     "exponential.clh", "random.clh",   "noise.clh",  "scatter.clh",  "walk.clh",
+        "fluorescence.clh", "sight.clh",       "strips.clh",   "arrive.clh", "profile.clh",  "scatter.cl"};
     const char *texts[TEXTS] = {0};
     char options[256];
     cl_int code = CL_SUCCESS;

@@ -1,5 +1,6 @@
 /* Smoothing by cosines: known functions with known noise. */
 #include "scatter/smoothing.h"
+#include "scatter/tracing.h"
 
 #include "suite.h"
 #include "support/random.h"
@@ -226,7 +227,35 @@ START_TEST(nothing_stays_nothing) {
 }
 END_TEST
 
+/* Rounds of an error that falls with a power of the histories, from 100 % after 1,024 of a batch on. */
+static skg_rounds follow(double power, double tolerance, double *error) {
+    const skg_scatter asked = {.size = sizeof asked, .tolerance = tolerance};
+    skg_rounds rounds = skg_rounds_begin(&asked, 512, tolerance);
+    do *error = pow(1024.0 / (double)rounds.end, power);
+    while (skg_rounds_next(&rounds, *error));
+    return rounds;
+}
+
+/* Noise comes down to what was asked for; what falls so slowly that the lattice's points would not do is given up at 4 million photons,
+ * and a number of histories is one round. */
+START_TEST(rounds_end_where_the_error_falls_too_slowly) {
+    double error = 0;
+    skg_rounds rounds = follow(0.5, 0.02, &error);
+    ck_assert(!rounds.gave_up && error <= 0.02);
+    rounds = follow(0.3, 0.02, &error);
+    ck_assert_int_eq(rounds.gave_up, 1);
+    ck_assert_int_eq(rounds.end, 1 << 17);
+    rounds = follow(0, 0.02, &error);
+    ck_assert_int_eq(rounds.gave_up, 1);
+    const skg_scatter fixed = {.size = sizeof fixed, .histories = 1000};
+    rounds = skg_rounds_begin(&fixed, 512, 0);
+    ck_assert_int_eq(rounds.end * SKG_SCATTER_BATCHES, 1024); /* 32 for each batch */
+    ck_assert(!skg_rounds_next(&rounds, 1) && !rounds.gave_up);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, rounds_end_where_the_error_falls_too_slowly);
     tcase_add_test(tests, errors_are_those_that_are_stated);
     tcase_add_test(tests, the_number_of_cosines_follows_the_signal);
     tcase_add_test(tests, a_noisy_cosine_is_not_kept);

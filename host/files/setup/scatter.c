@@ -6,8 +6,9 @@
 enum { HISTORIES_MAX = 1 << 30, PLACES_MAX = 256 };
 
 static const skg_json_key keys[] = {
-    {"Tolerance", NULL, SKG_KEY_READ}, {"Histories", NULL, SKG_KEY_READ}, {"Seed", NULL, SKG_KEY_READ},
-    {"Voxel", NULL, SKG_KEY_READ},     {"Detector", NULL, SKG_KEY_READ},
+    {"Tolerance", NULL, SKG_KEY_READ}, {"Histories", NULL, SKG_KEY_READ},
+    {"Seed", NULL, SKG_KEY_READ},      {"Voxel", NULL, SKG_KEY_READ},
+    {"Detector", NULL, SKG_KEY_READ},  {"Fluorescence", NULL, SKG_KEY_READ},
 };
 
 static skg_status read_tolerance(const skg_json_node *node, skg_scatter *scatter) {
@@ -62,10 +63,16 @@ static skg_status read_object(const skg_json_node *node, skg_scatter *scatter) {
     skg_json_object object;
     SKG_TRY(skg_json_read_object(node, keys, sizeof keys / sizeof *keys, &object));
     const skg_json_node seed = skg_json_member(&object, "Seed"), voxel = skg_json_member(&object, "Voxel"),
-                        places = skg_json_member(&object, "Detector");
+                        places = skg_json_member(&object, "Detector"),
+                        glow = skg_json_member(&object, "Fluorescence");
     SKG_TRY(read_accuracy(&object, scatter));
     if (seed.value) SKG_TRY(skg_json_integer(&seed, INT32_MIN, INT32_MAX, &scatter->seed));
     if (voxel.value) SKG_TRY(read_voxel(&voxel, scatter));
+    if (glow.value) {
+        int32_t on = 0;
+        SKG_TRY(skg_json_flag(&glow, &on));
+        scatter->fluorescence = on ? SKG_FLUORESCENCE_ON : SKG_FLUORESCENCE_OFF;
+    }
     return places.value ? read_places(&places, scatter) : SKG_OK;
 }
 

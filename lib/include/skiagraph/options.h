@@ -281,6 +281,16 @@ SKG_INIT(skg_grid)
 SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy_kev, double oblique,
                                              double tilt, double *transmission);
 
+/** Fluorescence of the parts, with scatter: K and L lines after photo absorption. */
+enum skg_fluorescence {
+    /** Of elements from Z = 30 on whose edge is below the beam's highest energy. */
+    SKG_FLUORESCENCE_AUTO = 0,
+    /** Of lighter ones from Z = 20 on, too. */
+    SKG_FLUORESCENCE_ON = 1,
+    /** None: what is absorbed is gone. */
+    SKG_FLUORESCENCE_OFF = 2
+};
+
 /** Scattered photons: what the object sends to the detector after one or more interactions. Prepare with
  * skg_scatter_init: to 1 % of the mean.
  *
@@ -289,15 +299,15 @@ SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy
  *          interactions follow a lattice of points in place of random numbers. What arrives is counted on a coarse grid of
  *          the detector and smoothed by cosines, as many as independent batches show to pay.
  * physics  photo absorption, Compton scattering (Klein and Nishina, times the scattering functions of free atoms),
- *          Rayleigh scattering (form factors of free atoms); cross sections of XCOM, as for the primary. Left out:
- *          fluorescence, Doppler broadening, the order of molecules, what the detector itself scatters.
+ *          Rayleigh scattering (form factors of free atoms); cross sections of XCOM, as for the primary; fluorescence in any
+ *          direction (K and L lines; yields and rates of xraylib; of L shells the mean of their lines). Left out: Doppler broadening, the order of molecules, what the detector itself scatters.
  * field    without skg_plan_options.collimation the beam that scatters is limited to the detector, from its pixels'
  *          outer edges on */
 typedef struct {
     /** Set by skg_scatter_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** enum skg_fluorescence; SKG_FLUORESCENCE_AUTO by default */
+    int32_t fluorescence;
     /** Standard error aimed at, smoothing included, over the mean of the scatter: root mean square over the detector. 0.01
      * by default; 0: `histories` decides. */
     double tolerance;

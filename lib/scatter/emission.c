@@ -1,0 +1,150 @@
+/* Fluorescence of the parts: which shells emit, and what a mm of a mixture emits at each energy. */
+#include "scatter/interactions.h"
+
+#include "core/maths.h"
+#include "material/material.h"
+#include "spectral/compression.h"
+
+#include <math.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* From 1/cm. */
+static const double PER_MM = 0.1;
+
+/* A shell is left out if no interaction in any material emits so many of its photons. */
+static const double NEGLIGIBLE = 1e-4;
+
+/* Lines stand this far within the table of energies, so that they are followed when they have interacted. */
+static const double ABOVE_LOWEST = 0.99;
+
+/* --- shells */
+
+static int holds(const skg_material *material, int32_t z, double *fraction) {
+    for (int64_t i = 0; i < material->count; i++)
+        if (material->parts[i].z == z) {
+            *fraction = material->parts[i].fraction;
+            return 1;
+        }
+    return 0;
+}
+
+/* Photons that a gram emits, of all that it absorbs, cm2/g. An L shell gets the vacancies that K alpha leaves there, too. */
+static double emitted(const skg_emitter *e, double kev) {
+    double sections[SKG_PROCESSES];
+    if (!(kev >= e->shell.edge_kev[0])) return 0;
+    skg_element_sections(e->shell.row->z, kev, sections);
+    const double alpha = e->has_deeper
+                             ? e->deeper.row->yield * (e->deeper.row->share[0] + e->deeper.row->share[1]) *
+                                   skg_shell_vacancies(&e->deeper, kev)
+                             : 0;
+    return sections[SKG_PHOTO] * (skg_shell_vacancies(&e->shell, kev) + alpha) * e->photons;
+}
+
+/* The lines above an energy: their shares add up to 1 in the last of them. */
+static void find_lines(skg_emitter *e, double low_kev) {
+    const skg_shell_row *row = e->shell.row;
+    double sum = 0, sums[SKG_SCATTER_LINES] = {0};
+    int last = -1;
+    for (int l = 0; l < SKG_SCATTER_LINES; l++) {
+        if (row->share[l] > 0 && row->line_kev[l] > low_kev) sum += row->share[l], last = l;
+        sums[l] = sum;
+    }
+    for (int l = 0; l < SKG_SCATTER_LINES; l++) {
+        const int at = l < last ? l : last;
+        e->lines[l][0] = l >= last ? 1 : (float)(sums[l] / sum);
+        e->lines[l][1] = at >= 0 ? (float)row->line_kev[at] : 0;
+    }
+    e->photons = row->yield * sum;
+}
+
+static int is_worth_it(const skg_emitter *e, int64_t count, skg_material *const *materials, double high_kev) {
+    const double step = 1.02;
+    for (int64_t m = 0; m < count; m++) {
+        double fraction = 0, sections[SKG_PROCESSES];
+        if (!holds(materials[m], e->shell.row->z, &fraction)) continue;
+        for (double kev = e->shell.edge_kev[0]; kev <= high_kev; kev *= step) {
+            skg_mixed_sections(materials[m]->count, materials[m]->parts, kev, sections);
+            if (fraction * emitted(e, kev) > NEGLIGIBLE * skg_total_section(sections)) return 1;
+        }
+    }
+    return 0;
+}
+
+static int is_held(int64_t count, skg_material *const *materials, int32_t z) {
+    double fraction = 0;
+    for (int64_t m = 0; m < count; m++)
+        if (holds(materials[m], z, &fraction)) return 1;
+    return 0;
+}
+
+skg_status skg_emitters_find(int64_t count, skg_material *const *materials, int32_t fluorescence,
+                             double low_kev, double high_kev, skg_emitters *emitters) {
+    const int32_t lightest = fluorescence == SKG_FLUORESCENCE_ON ? 1 : SKG_FLUORESCENCE_LIGHTEST;
+    *emitters = (skg_emitters){.lowest_kev = high_kev};
+    if (fluorescence == SKG_FLUORESCENCE_OFF) return SKG_OK;
+    SKG_TRY(skg_alloc((int64_t)SKG_SHELLS * SKG_LAST_ELEMENT, sizeof *emitters->of, "fluorescence",
+                      &emitters->of));
+    for (int32_t z = lightest; z <= SKG_LAST_ELEMENT; z++)
+        for (int32_t kind = 0; kind < SKG_SHELLS && is_held(count, materials, z); kind++) {
+            skg_emitter *e = &emitters->of[emitters->count];
+            *e = (skg_emitter){.photons = 0};
+            if (!skg_shell_find(z, kind, &e->shell) || !(e->shell.edge_kev[0] < high_kev)) continue;
+            e->has_deeper = kind == SKG_SHELL_L && skg_shell_find(z, SKG_SHELL_K, &e->deeper);
+            find_lines(e, low_kev);
+            if (!is_worth_it(e, count, materials, high_kev)) continue;
+            for (int l = 0; l < SKG_SCATTER_LINES; l++)
+                if (e->shell.row->share[l] > 0 && e->shell.row->line_kev[l] > low_kev)
+                    emitters->lowest_kev =
+                        fmin(emitters->lowest_kev, ABOVE_LOWEST * e->shell.row->line_kev[l]);
+            emitters->count++;
+        }
+    return SKG_OK;
+}
+
+void skg_emitters_free(skg_emitters *emitters) {
+    skg_free(&emitters->of);
+    emitters->count = 0;
+}
+
+/* --- tables */
+
+/* What each material emits at an energy, 1/mm. */
+static double emitted_by(const skg_emitter *e, const skg_material *material, double kev) {
+    double fraction = 0;
+    return holds(material, e->shell.row->z, &fraction)
+               ? PER_MM * material->density * fraction * emitted(e, kev)
+               : 0;
+}
+
+skg_status skg_emission_make(int64_t count, skg_material *const *materials, const skg_emitters *emitters,
+                             skg_scatter_physics *p) {
+    static const int32_t all[SKG_SCATTER_RANK] = {0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11};
+    skg_least_squares system = {0};
+    double most = 0, off = 0;
+    p->shells = emitters->count;
+    p->emission_error = 0;
+    if (p->shells == 0) return SKG_OK;
+    skg_free(&p->emission);
+    SKG_TRY(skg_alloc(p->energies * p->shells, sizeof *p->emission, "fluorescence", &p->emission));
+    SKG_TRY(skg_least_squares_create(count, p->rank, &system));
+    for (int64_t s = 0; s < p->shells; s++)
+        for (int64_t i = 0; i < p->energies; i++) {
+            double x[SKG_SCATTER_RANK] = {0};
+            for (int64_t m = 0; m < count; m++) {
+                system.b[m] = emitted_by(&emitters->of[s], materials[m], skg_scatter_energy(p, i));
+                for (int k = 0; k < p->rank; k++) system.a[k * count + m] = p->coefficients[m][k];
+                most = fmax(most, system.b[m]);
+            }
+            skg_least_squares_solve(&system, p->rank, all, x, NULL);
+            for (int64_t m = 0; m < count; m++) {
+                double fitted = 0;
+                for (int k = 0; k < p->rank; k++) fitted += x[k] * p->coefficients[m][k];
+                off = fmax(off, fabs(fitted - system.b[m]));
+            }
+            for (int k = 0; k < p->rank; k++) p->emission[i * p->shells + s][k] = (float)x[k];
+        }
+    p->emission_error = most > 0 ? off / most : 0;
+    skg_least_squares_release(&system);
+    return SKG_OK;
+}
