@@ -23,7 +23,7 @@ static int holds(const char *bytes, size_t count, const char *word) {
 /* How tables begin, which have no room for a name. */
 static int begins_as_table(const char *bytes, size_t count) {
     static const char *const headings[] = {"t_s,phase,amplitude,", "dial,precision,",
-                                           "label,phase,motion_mm,"};
+                                           "label,phase,motion_mm,", "label,material,density (g/cm3),"};
     for (size_t h = 0; h < sizeof headings / sizeof *headings; h++)
         if (count >= strlen(headings[h]) && memcmp(bytes, headings[h], strlen(headings[h])) == 0) return 1;
     return 0;
