@@ -370,13 +370,23 @@ START_TEST(compression_that_does_not_pay_is_told) {
 END_TEST
 
 START_TEST(noise_is_said_to_be_missing_only_where_it_is) {
-    static const char plan[] =
-        "plan scene.json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
-        "\"Filter\": [[\"Al\", 3]], \"mAs\": 2}'";
-    ck_run(0, "%s", plan);
+    static const char with[] = "scene.json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
+                               "\"Filter\": [[\"Al\", 3]], \"mAs\": 2}'";
+    ck_run(0, "image %s -o a.png", with);
     ck_assert_msg(strstr(complained, "there is no noise"), "%s", complained);
-    ck_run(0, "%s --set Noise=true", plan);
+    ck_run(0, "image %s -o a.png --set Noise=true", with);
     ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
+    /* It stands where pixels are the result and in the table of the plan, and not before every command. */
+    ck_run(0,
+           "plan %s --tolerance 0 --set 'Samples.bone.Material=H2O' --set Samples.bone.Density=1 --set "
+           "Samples.skin.Material=H2O --set Samples.skin.Density=1",
+           with);
+    ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
+    ck_assert_msg(strstr(said, "not asked for, although mAs counts the photons: the key Noise adds it"), "%s",
+                  said);
+    ck_assert_msg(strstr(said, "% of the open beam: more than the tolerance of 0 allows"), "%s", said);
+    ck_run(0, "lbuffer %s --part bone -o a.png", with);
+    ck_assert_str_eq(complained, "");
 }
 END_TEST
 

@@ -70,6 +70,9 @@ START_TEST(parts_of_a_scan_make_the_whole) {
     ck_assert(!has_file("scan.mha.progress"));
     ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
     ck_assert(strstr(said, "is finished") != NULL);
+    for (int again = 0; again < 2; again++)
+        ck_run(0, "scan scene.json --set Scan='{\"NumberOfProjections\":1,\"FinalAngle\":360}' -o one.mha");
+    ck_assert_msg(strstr(said, "one.mha is finished: it has its 1 projection\n") != NULL, "%s", said);
     const size_t size = read_file("whole.mha", before);
     ck_assert_uint_eq(read_file("scan.mha", bytes), size);
     ck_assert_mem_eq(bytes, before, size);
