@@ -360,6 +360,10 @@ START_TEST(a_volume_has_the_coefficients) {
             else if (ball > 8 + 2.4 && from < 27)
                 ck_assert_double_eq_tol((double)value, 0.2, 0.002); /* 1 %, the bar */
         }
+    ck_assert_msg(strstr(complained, "crops") == NULL, "%s", complained);
+    ck_run(0, "reconstruct scan.h5 -o crop.mha --size 24"); /* of .5 mm x 400 / 600 */
+    ck_assert_msg(strstr(complained, "--size 24 crops: the volume is 8 mm wide, of 79.") != NULL, "%s",
+                  complained);
     ck_run_fails(2, "volume.png is no .mha; give -o FILE.mha", "reconstruct scan.h5 -o volume.png");
     ck_run(0, "scan body.json -o scan.h5 --packed packed.h5 --packed-grey16 --quiet");
     ck_run(0, "reconstruct packed.h5 -o grey.mha --size 48 --voxel 1.2 --filter hann --json");

@@ -5,7 +5,8 @@ const cli_flag cli_flag_reconstruct_output = {"-o", "FILE", "The volume to write
                                               CLI_NAMES_FILE};
 const cli_flag cli_flag_reconstruct_size = {
     "--size", "N",
-    "The number of voxels along each side, 1 to 4096. The default is the number of columns of a projection.",
+    "The number of voxels along each side, 1 to 4096, of the edge of --voxel: fewer than the default, the number of columns of a "
+    "projection, crop the volume about its middle, which is said where --voxel is not given.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_reconstruct_voxel = {
     "--voxel", "MM",

@@ -100,6 +100,18 @@ static skg_status add_projections(reconstruction *r) {
     return status;
 }
 
+/* --size alone keeps the voxels' size and takes the middle. */
+static void note_crop(const cli_arguments *arguments, const reconstruction *r) {
+    const double width = (double)r->options.voxels[0] * r->options.voxel_mm, seen = 2 * r->report.covered_mm;
+    if (!cli_given(arguments, &cli_flag_reconstruct_size) ||
+        cli_given(arguments, &cli_flag_reconstruct_voxel) || width > seen * (1 - 1e-6))
+        return;
+    cli_note(
+        "--size %s crops: the volume is %.4g mm wide, of %.4g mm that the detector covers about the axis; --voxel %.4g shows "
+        "all of it",
+        cli_value(arguments, &cli_flag_reconstruct_size), width, seen, seen / (double)r->options.voxels[0]);
+}
+
 /* Says what the detector did not see. */
 static void warn(const reconstruction *r) {
     const skg_fdk_report *seen = &r->report;
@@ -160,6 +172,7 @@ int cli_reconstruct(const cli_arguments *arguments) {
         skg_fdk_report_init(&r.report);
         if (status == SKG_OK) status = skg_fdk_report_get(r.fdk, &r.report);
         if (status == SKG_OK) warn(&r);
+        if (status == SKG_OK) note_crop(arguments, &r);
         if (status == SKG_OK) status = skg_fdk_save(r.fdk, r.place);
         exit_status = status == SKG_OK                ? print(arguments, &r)
                       : status == SKG_ERR_UNSUPPORTED ? (cli_fail(status), CLI_INPUT)
