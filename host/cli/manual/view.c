@@ -3,7 +3,8 @@
 
 const cli_flag cli_flag_view_output = {
     "-o", "FILE",
-    "The file to write: a picture, .png; a page, .html, in which the scene can be turned; or a film, .gif, .mp4 or .webm. "
+    "The file to write: a picture, .png; a page, .html, in which the scene can be turned; a model of the parts for other viewers, "
+    ".glb (glTF 2.0); or a film, .gif, .mp4 or .webm. "
     "May be repeated.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_view_from = {
@@ -44,6 +45,8 @@ static const char *const text[] = {
     "A page is one file that needs nothing else: drag to turn the scene, with Shift to move it, roll to zoom; fingers and the "
     "arrow keys do the same. It lists the parts, which can be hidden and made translucent, and names the one pointed at. It "
     "stays below 5 MB: of more than 100000 triangles it shows fewer, and says so. With --seconds it breathes.",
+    "A model holds every part with all its triangles and its colour, as it stands at --phase or --at, in metres with y up, as "
+    "glTF has it: Blender and others turn it back to z up.",
     "A film shows the detector's image over the range of its first frame, and the labels where they are in it. See "
     "`skiagraph help breathe` about formats.",
     "--json prints {files, source_detector_mm, source_object_mm, magnification, parts: [{label, column, row, colour}]}; "

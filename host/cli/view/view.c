@@ -68,6 +68,10 @@ static int is_picture(const char *path) {
     return cli_has_extension(path, ".png");
 }
 
+static int is_model(const char *path) {
+    return cli_has_extension(path, ".glb");
+}
+
 static const char *nth_output(const view_work *w, int index) {
     return cli_nth_value(w->arguments, &cli_flag_view_output, index);
 }
@@ -84,9 +88,13 @@ static int check_output(const view_work *w, const char *path) {
     if (is_picture(path) && !isnan(w->seconds))
         return cli_error(CLI_USAGE, "-o %s: a picture has no --seconds; choose its moment by --phase or --at",
                          path);
-    if (is_picture(path) || is_page(path)) return cli_file_check(path);
+    if (is_model(path) && !isnan(w->seconds))
+        return cli_error(CLI_USAGE, "-o %s: a model has no --seconds; choose its moment by --phase or --at",
+                         path);
+    if (is_picture(path) || is_page(path) || is_model(path)) return cli_file_check(path);
     if (!film_is(path))
-        return cli_error(CLI_USAGE, "-o %s: the extension is not .png, .html, .gif, .mp4 or .webm", path);
+        return cli_error(CLI_USAGE, "-o %s: the extension is not .png, .html, .glb, .gif, .mp4 or .webm",
+                         path);
     if (is_moment)
         return cli_error(CLI_USAGE, "-o %s: a film has more than one moment; leave out --phase and --at",
                          path);
@@ -181,6 +189,7 @@ static int write_others(view_work *w) {
     int exit_status = CLI_DONE;
     for (int i = 0; exit_status == CLI_DONE && (path = nth_output(w, i)); i++) {
         if (is_page(path)) exit_status = view_write_page(w, path);
+        if (is_model(path)) exit_status = view_write_glb(w, path);
         if (film_is(path)) exit_status = view_write_film(w, path);
     }
     return exit_status;
