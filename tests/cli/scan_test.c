@@ -373,6 +373,8 @@ START_TEST(a_volume_has_the_coefficients) {
     ck_run_fails(5, "packed copy", "scan body.json -o packed.h5");
     ck_run_fails(2, "to another .h5", "scan body.json -o scan.mha --packed packed.h5");
     ck_run_fails(2, "add it", "scan body.json -o scan.h5 --packed-grey16");
+    ck_run(0, "scan body.json -o scan.nxs --quiet --set Scan.NumberOfProjections=90");
+    ck_run(0, "reconstruct scan.nxs -o nexus.mha --size 48 --voxel 1.2 --quiet");
     ck_run_fails(3, "is no HDF5 file", "reconstruct body.json -o volume.mha");
     ck_run_fails(3, "none.h5: cannot be read: No such file", "reconstruct none.h5 -o volume.mha");
     ck_run(0, "scan body.json --set Scan.FinalAngle=90 -o part.h5 --quiet");

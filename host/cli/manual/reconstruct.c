@@ -32,7 +32,7 @@ const cli_flag cli_flag_reconstruct_truncation = {
 
 static const char *const text[] = {
     "Reconstructs a circular scan by the method of Feldkamp, Davis and Kress, to look at what the scan gives. "
-    "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. The scan is an .h5 that `skiagraph scan` wrote.",
+    "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. The scan is an .h5 or .nxs that `skiagraph scan` wrote.",
     "The volume holds attenuation coefficients in 1/cm. It is centred on the centre of rotation, and its axes are those "
     "of the scene.",
     "--json prints {projections, size, voxel_mm, range, displaced, covered_mm, truncated, seconds, file}; range has the least and the largest value, "
