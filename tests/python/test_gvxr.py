@@ -1,6 +1,7 @@
 """The calls of gVXR, by themselves and beside gVXR where it is installed."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import types
@@ -257,6 +258,19 @@ def test_every_call_is_here_or_refused():
         assert kind != "nothing" or getattr(gvxr, name).__name__ == name
     with pytest.raises(AttributeError, match="no call 'computeXrayImage'"):
         gvxr.computeXrayImage()
+
+
+def test_what_differs_from_gvxr_is_right_here():
+    """The example of docs/from-gvxr.md, whose answers are known."""
+    path = HERE.parent.parent / "examples" / "gvxr_differences.py"
+    said = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=True).stdout
+    lengths, formula, numbers = said.splitlines()
+    assert float(re.search(r"rms error (\S+) mm", lengths)[1]) < 1e-5 and "in 0 % of" in lengths  # single path lengths
+    bracketed, plain = re.search(r"OH (\S+) per cm; Ca5P3O13H, the same atoms, (\S+)", formula).groups()
+    assert bracketed == plain
+    steps = np.array(re.findall(r"(\d+): ([\d.]+)", numbers), float)
+    line = np.polyfit(*steps.T, 1)
+    assert np.abs(np.polyval(line, steps[:, 0]) / steps[:, 1] - 1).max() < 5e-3  # Schneider's density is a line there
 
 
 def test_the_page_is_fresh():
