@@ -134,6 +134,18 @@ def view(tried):
     run("choose('part', 1)")
     tried.differs("opacity", "(() => { const s = byId('about').querySelector('[type=range]'); s.value = 0.2; s.oninput(); })()", "viewSum")
     tried.differs("dark", "byId('dark').click()", "viewSum")
+    browser.key("?")
+    check("keys", run("byId('key-list').open && byId('key-list').textContent.includes('move what is chosen')"))
+    browser.key("?")
+    check("no keys", not run("byId('key-list').open"))
+    # A wish that waits: as if it had been sent, and answered later.
+    computing = "getComputedStyle(byId('computing')).visibility === 'visible' && getComputedStyle(byId('ms')).opacity < 1"
+    tried.still()
+    check("not computing", not run(computing))
+    run("net.sent++; expect()")
+    browser.until(computing)
+    run("settle(--net.sent)")
+    check("computed", not run(computing))
 
 
 def served(tried):
