@@ -28,6 +28,12 @@ const cli_flag cli_flag_view_seconds = {
     "Shows the breath for T seconds: in a page, or as a film, which lasts one breath otherwise.", NULL,
     CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_view_zoom = {
+    "--zoom", "Z[@PART]",
+    "Shows the parts Z times as large as they fill a picture or a film, about the middle of all parts or of one PART, whatever else "
+    "is then beyond its edges: 1 for all of them without source and detector, 8@needle for a small one.",
+    NULL, CLI_NAMES_NOTHING};
+
 const cli_flag cli_flag_view_sensitivity = {
     "--sensitivity", NULL,
     "In a page, colours each part by how much the image changes when it moves by a mm, and writes the number beside its name: what "
@@ -56,6 +62,7 @@ static const char *const text[] = {
 static const cli_flag *const flags[] = {&cli_flag_view_output,
                                         &cli_flag_view_from,
                                         &cli_flag_view_size,
+                                        &cli_flag_view_zoom,
                                         &cli_flag_view_orthographic,
                                         &cli_flag_view_phase,
                                         &cli_flag_view_at,
@@ -75,6 +82,8 @@ static const cli_flag *const flags[] = {&cli_flag_view_output,
 static const cli_item examples[] = {{"skiagraph view scene.json -o view.png", "draws the scene"},
                                     {"skiagraph view thorax/thorax.json --seconds 4 -o view.html",
                                      "makes a page in which the thorax breathes and can be turned"},
+                                    {"skiagraph view scene.json --zoom 2@liver -o view.png",
+                                     "draws the liver twice as large as it would fill the picture"},
                                     {"skiagraph view scene.json --sensitivity -o view.html",
                                      "makes a page that shows which part's place shows most in the image"},
                                     {"skiagraph view thorax/thorax.json --from top --phase 0.5 -o view.png",
