@@ -373,6 +373,32 @@ START_TEST(a_volume_has_the_coefficients) {
     ck_run_fails(5, "packed copy", "scan body.json -o packed.h5");
     ck_run_fails(2, "to another .h5", "scan body.json -o scan.mha --packed packed.h5");
     ck_run_fails(2, "add it", "scan body.json -o scan.h5 --packed-grey16");
+    /* A stack, with the table of its poses, from which the axis follows, gives the same volume. */
+    for (int with_fields = 0; with_fields < 2; with_fields++) {
+        ck_run(0, "scan body.json -o stack.mha --geometry stack.csv --quiet --overwrite%s",
+               with_fields ? " --flats 2 --precision double" : "");
+        ck_run(
+            0,
+            "reconstruct stack.mha --geometry stack.csv -o other.mha --size 48 --voxel 1.2 --filter hann --quiet");
+        ck_assert_uint_eq(read_file("volume.mha", bytes), size);
+        const size_t its = read_file("other.mha", before); /* its place is written with more digits */
+        for (size_t i = 0; i < SIDE * SLICE; i++) {
+            float one, other;
+            memcpy(&one, bytes + size - 4 * (SIDE * SLICE - i), sizeof one);
+            memcpy(&other, before + its - 4 * (SIDE * SLICE - i), sizeof other);
+            ck_assert_double_eq_tol((double)other, (double)one,
+                                    1e-5); /* 2e-5 of the ball: roundings of poses and logarithms */
+        }
+    }
+    ck_run_fails(3, "give those of an .mha by --geometry", "reconstruct stack.mha -o other.mha");
+    ck_run_fails(2, "scan.h5 has its geometry inside",
+                 "reconstruct scan.h5 --geometry stack.csv -o other.mha");
+    ck_run(0, "scan body.json -o few.mha --geometry few.csv --quiet --set Scan.NumberOfProjections=4");
+    ck_run_fails(3, "few.csv: has 4 poses, but stack.mha has 360 projections",
+                 "reconstruct stack.mha --geometry few.csv -o other.mha");
+    write_text("none.mha", "projections");
+    ck_run_fails(3, "none.mha: is no MetaImage of projections",
+                 "reconstruct none.mha --geometry few.csv -o other.mha");
     ck_run(0, "scan body.json -o scan.nxs --quiet --set Scan.NumberOfProjections=90");
     ck_run(0, "reconstruct scan.nxs -o nexus.mha --size 48 --voxel 1.2 --quiet");
     ck_run_fails(3, "is no HDF5 file", "reconstruct body.json -o volume.mha");
