@@ -82,3 +82,25 @@ skg_build() {
         return 1
     fi
 }
+
+# skg_build_aloud PRESET [TARGET...]: the same, and says how far it is: in one line of a terminal, or else a line for each tenth.
+skg_build_aloud() {
+    echo "Building; the log is build-$1.log:"
+    rm -f "build-$1.log"
+    skg_build "$@" &
+    job=$! began=$(date +%s) said=-1
+    while kill -0 "$job" 2>/dev/null; do
+        percent=$(awk '/^\[ *[0-9]+%\]/ { gsub(/[^0-9]/, "", $1); sub(/^\[ */, ""); p = $0 + 0 }
+            /^\[[0-9]+\/[0-9]+\]/ { split($1, n, /[^0-9]+/); p = int(100 * n[2] / n[3]) } END { print p + 0 }' \
+            "build-$1.log" 2>/dev/null || echo 0)
+        if [ -t 1 ]; then
+            printf '\r  %3d %%, %d s' "$percent" "$(($(date +%s) - began))"
+        elif [ "$((percent / 10))" -gt "$said" ]; then
+            said=$((percent / 10))
+            printf '  %d %%, %d s\n' "$percent" "$(($(date +%s) - began))"
+        fi
+        sleep 1
+    done
+    [ ! -t 1 ] || echo
+    wait "$job"
+}

@@ -37,7 +37,9 @@ mkdir -p "$site/doxygen" "$site/extra"
 } | doxygen - >"$site/doxygen.log" 2>&1 || { cat "$site/doxygen.log"; exit 1; }
 
 # What the first page shows.
-(cd "$source/examples/scenes" && skiagraph cost step-wedge.json --within 15 -o "$site/extra/cost.html" --quiet >"$site/cost.log")
+skiagraph thorax -o "$site/thorax" --quiet
+skiagraph view "$site/thorax/thorax.json" --seconds 4 -o "$site/extra/thorax.html" --quiet
+skiagraph image "$site/thorax/thorax.json" -o "$site/extra/thorax.png" --quiet
 
 SKG_SITE_VERSION=$(skiagraph --version | awk '{ print $2; exit }') SKG_SITE_XML=$site/doxygen/xml SKG_SITE_CACHE=$site/notebooks \
     SKG_SITE_EXTRA=$site/extra \

@@ -57,6 +57,13 @@ warnings.filterwarnings("ignore")
 
 html_theme = "furo"
 html_title = "Skiagraph"
+html_logo = str(here / "static/logo.svg")
+html_favicon = html_logo
+#: The colour of the logo; lighter on a dark ground.
+html_theme_options = {
+    "light_css_variables": {"color-brand-primary": "#c2410c", "color-brand-content": "#c2410c"},
+    "dark_css_variables": {"color-brand-primary": "#fb923c", "color-brand-content": "#fb923c"},
+}
 html_static_path = [str(here / "static")]
 html_css_files = ["site.css"]
 html_copy_source = False

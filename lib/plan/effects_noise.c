@@ -24,7 +24,10 @@ static void find_noise(const skg_effect_facts *f, skg_effect_state *state) {
     const int assumes = skg_response_assumes_efficiency(options->response);
     const char *all = assumes ? "; every photon is taken as recorded" : "";
     if (!options->noise) {
-        skg_effect_set(state, 0, "not asked for");
+        skg_effect_set(state, 0,
+                       f->recipe->absolute
+                           ? "not asked for, although mAs counts the photons: the key Noise adds it"
+                           : "not asked for");
         return;
     }
     if (skg_quantity_counts(options))

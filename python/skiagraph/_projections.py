@@ -120,7 +120,7 @@ class _ToFile(_Job):
     def __init__(self, state: State, scan: Scan, wanted: Wanted, path: bytes, fields: tuple[int | None, int | None], overwrite: bool,
                  anew: bool) -> None:
         self.file = ffi.NULL
-        inside, asked = path.lower().endswith((b".h5", b".hdf5")), fields != (None, None)
+        inside, asked = path.lower().endswith((b".h5", b".hdf5", b".nxs")), fields != (None, None)
         self.fields = [1 if count is None else int(count) for count in fields]
         self.hash = _hash(state, scan, wanted)
         samples = ffi.new("int64_t *")

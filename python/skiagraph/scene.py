@@ -271,7 +271,7 @@ class Scene(_gradient.Differentiable):
              **options: Any) -> Any:
         """The projections of the scene's trajectory, [n, row, column], or a file of them.
 
-        out: None; an array to write to; or the path of a file (.h5, .mha, .raw, .tif, or a folder), as the command
+        out: None; an array to write to; or the path of a file (.h5, .nxs, .mha, .raw, .tif, or a folder), as the command
         `skiagraph scan` writes it. A file of the same scan that is not finished is continued, a finished one is left as it
         is, and one of another scan is refused unless overwrite is true. Then the result says what was done: projections,
         found, computed, finished, hash and file. flats, darks: numbers of flat and dark fields: in an .h5, 1 by default;

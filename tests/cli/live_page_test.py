@@ -3,6 +3,7 @@
 usage: live_page_test.py COMMAND [FOLDER for pictures of the page]
 """
 import json
+import math
 import os
 import sys
 import tempfile
@@ -134,6 +135,18 @@ def view(tried):
     run("choose('part', 1)")
     tried.differs("opacity", "(() => { const s = byId('about').querySelector('[type=range]'); s.value = 0.2; s.oninput(); })()", "viewSum")
     tried.differs("dark", "byId('dark').click()", "viewSum")
+    browser.key("?")
+    check("keys", run("byId('key-list').open && byId('key-list').textContent.includes('move what is chosen')"))
+    browser.key("?")
+    check("no keys", not run("byId('key-list').open"))
+    # A wish that waits: as if it had been sent, and answered later.
+    computing = "getComputedStyle(byId('computing')).visibility === 'visible' && getComputedStyle(byId('ms')).opacity < 1"
+    tried.still()
+    check("not computing", not run(computing))
+    run("net.sent++; expect()")
+    browser.until(computing)
+    run("settle(--net.sent)")
+    check("computed", not run(computing))
 
 
 def served(tried):
@@ -187,6 +200,17 @@ def film(tried):
     length = run("Number(byId('measured').textContent.match(/over ([0-9.]+) mm/)[1])")
     check("profile", abs(length - 0.8 * 320) < 3, str(length))  # of a detector of 320 mm; a pixel of the page is 1 mm or less
     run("byId('profiles').click()")
+    run(f"window.spot = {{clientX: {round(place[0] + 0.7 * place[2])}, clientY: {round(place[1] + 0.4 * place[3])}, cancelable: true}}")
+    spot = json.loads(run("JSON.stringify(placeOn(spot))"))
+    run("for (let i = 0; i < 4; i++) film.dispatchEvent(new WheelEvent('wheel', {deltaY: -120, ...spot}))")
+    zoom = run("film.getBoundingClientRect().width") / place[2]
+    check("zoom", abs(zoom - math.exp(1.2)) < 1e-3, str(zoom))
+    check("about the cursor", run(f"Math.hypot(placeOn(spot)[0] - {spot[0]}, placeOn(spot)[1] - {spot[1]}) < 1e-4"))
+    browser.drag(place[0] + 0.5 * place[2], place[1] + 0.5 * place[3], 20, 0)
+    moved = run("placeOn(spot)[0]") - spot[0]
+    check("moved", abs(moved + 20 / place[2] / zoom) < 2e-3, str(moved))
+    run("film.dispatchEvent(new MouseEvent('dblclick'))")
+    check("all of it", run("lens.zoom === 1") and abs(run("film.getBoundingClientRect().left") - place[0]) < 0.01)
     # the server makes the first frame of a scene once more, for its time: frames do not count
     check("no wish for the window", run("net.sent") == wishes)
     browser.mouse("mouseMoved", place[0] + 0.5 * place[2], place[1] + 0.5 * place[3])

@@ -39,6 +39,35 @@ static void read_mha(const char *name, int is_double, double values[PIXELS]) {
     }
 }
 
+/* Parallel rays 1 x 2 mm apart: 41 x 21 meet the skin's 40.5 mm, 11 x 15 the bone's 20 mm, along y. */
+START_TEST(parts_are_a_table) {
+    const double cube = 40.5 * 40.5 * 40.5, bone = 10.5 * 20 * 30.5;
+    const double skin_sum = 861 * 40.5 - 165 * 20.0, bone_sum = 165 * 20.0;
+    char line[256], table[1024];
+    ck_run(0, "parts scene.json -o a.csv");
+    ck_assert_ptr_nonnull(strstr(said, "at 60 keV, the mean energy of the beam\nwrote a.csv\n"));
+    snprintf(line, sizeof line, "%-20s %-28s %11s %11.5g %11s %11.5g %6.2f %%\n", "skin", "skin", "-",
+             cube - bone, "-", skin_sum / 861, 100 * 0.2 * skin_sum / (0.2 * skin_sum + 0.5 * bone_sum));
+    ck_assert_msg(strstr(said, line) != NULL, "%s: not in\n%s", line, said);
+    read_back("a.csv", table, sizeof table);
+    double volume = 0, path = 0, share = 0;
+    const char *at = strstr(table, "\"bone\",\"bone\",,");
+    ck_assert_ptr_nonnull(at);
+    ck_assert_int_eq(sscanf(at, "\"bone\",\"bone\",,%lf,,%lf,%lf", &volume, &path, &share), 3);
+    ck_assert_double_eq_tol(volume, bone, 1e-8 * bone); /* nine digits */
+    ck_assert_double_eq_tol(path, 20, 3e-6 * 40.5);     /* single path lengths */
+    ck_assert_double_eq_tol(share, 0.5 * bone_sum / (0.2 * skin_sum + 0.5 * bone_sum), 1e-6);
+    /* Water, mirrored: .5 x 3 x .5 of the volume. */
+    ck_run(0, "parts scene.json --json --set 'Samples.bone.Material=H2O' --set Samples.bone.Density=1 "
+              "--set 'Samples.bone.Transform=[[\"Scaling\",-0.5,3,0.5]]'");
+    ck_assert_ptr_nonnull(strstr(said, "\"energy_keV\": 60.0"));
+    at = strstr(said, "\"mass_g\": 4");
+    ck_assert_msg(at != NULL, "%s", said);
+    ck_assert_double_eq_tol(atof(at + strlen("\"mass_g\": ")), 0.75e-3 * bone, 1e-9);
+    ck_run_fails(2, "-o a.txt: the table is written as .csv", "parts scene.json -o a.txt");
+}
+END_TEST
+
 /* 60 keV x 1000 photons behind 20.5 mm of skin and 20 mm of bone; bars are those of single and double path
  * lengths, 3e-6 and 1e-11 of the largest, times the exponent. */
 START_TEST(quantities_have_their_values) {
@@ -341,13 +370,23 @@ START_TEST(compression_that_does_not_pay_is_told) {
 END_TEST
 
 START_TEST(noise_is_said_to_be_missing_only_where_it_is) {
-    static const char plan[] =
-        "plan scene.json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
-        "\"Filter\": [[\"Al\", 3]], \"mAs\": 2}'";
-    ck_run(0, "%s", plan);
+    static const char with[] = "scene.json --set Source.Shape=PointSource --set 'Source.Beam={\"kVp\": 80, "
+                               "\"Filter\": [[\"Al\", 3]], \"mAs\": 2}'";
+    ck_run(0, "image %s -o a.png", with);
     ck_assert_msg(strstr(complained, "there is no noise"), "%s", complained);
-    ck_run(0, "%s --set Noise=true", plan);
+    ck_run(0, "image %s -o a.png --set Noise=true", with);
     ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
+    /* It stands where pixels are the result and in the table of the plan, and not before every command. */
+    ck_run(0,
+           "plan %s --tolerance 0 --set 'Samples.bone.Material=H2O' --set Samples.bone.Density=1 --set "
+           "Samples.skin.Material=H2O --set Samples.skin.Density=1",
+           with);
+    ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
+    ck_assert_msg(strstr(said, "not asked for, although mAs counts the photons: the key Noise adds it"), "%s",
+                  said);
+    ck_assert_msg(strstr(said, "% of the open beam: more than the tolerance of 0 allows"), "%s", said);
+    ck_run(0, "lbuffer %s --part bone -o a.png", with);
+    ck_assert_str_eq(complained, "");
 }
 END_TEST
 
@@ -426,6 +465,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, quantities_have_their_values);
     tcase_add_test(tests, bands_are_channels);
     tcase_add_test(tests, lengths_are_net_or_of_the_surface);
+    tcase_add_test(tests, parts_are_a_table);
     tcase_add_test(tests, every_output_is_written);
     tcase_add_test(tests, a_picture_of_a_scan_says_what_it_leaves_out);
     tcase_add_test(tests, noise_without_an_efficiency_is_warned_of);

@@ -70,6 +70,9 @@ START_TEST(parts_of_a_scan_make_the_whole) {
     ck_assert(!has_file("scan.mha.progress"));
     ck_run(0, "scan scene.json %s -o scan.mha", SCAN);
     ck_assert(strstr(said, "is finished") != NULL);
+    for (int again = 0; again < 2; again++)
+        ck_run(0, "scan scene.json --set Scan='{\"NumberOfProjections\":1,\"FinalAngle\":360}' -o one.mha");
+    ck_assert_msg(strstr(said, "one.mha is finished: it has its 1 projection\n") != NULL, "%s", said);
     const size_t size = read_file("whole.mha", before);
     ck_assert_uint_eq(read_file("scan.mha", bytes), size);
     ck_assert_mem_eq(bytes, before, size);
@@ -357,6 +360,10 @@ START_TEST(a_volume_has_the_coefficients) {
             else if (ball > 8 + 2.4 && from < 27)
                 ck_assert_double_eq_tol((double)value, 0.2, 0.002); /* 1 %, the bar */
         }
+    ck_assert_msg(strstr(complained, "crops") == NULL, "%s", complained);
+    ck_run(0, "reconstruct scan.h5 -o crop.mha --size 24"); /* of .5 mm x 400 / 600 */
+    ck_assert_msg(strstr(complained, "--size 24 crops: the volume is 8 mm wide, of 79.") != NULL, "%s",
+                  complained);
     ck_run_fails(2, "volume.png is no .mha; give -o FILE.mha", "reconstruct scan.h5 -o volume.png");
     ck_run(0, "scan body.json -o scan.h5 --packed packed.h5 --packed-grey16 --quiet");
     ck_run(0, "reconstruct packed.h5 -o grey.mha --size 48 --voxel 1.2 --filter hann --json");
@@ -366,6 +373,34 @@ START_TEST(a_volume_has_the_coefficients) {
     ck_run_fails(5, "packed copy", "scan body.json -o packed.h5");
     ck_run_fails(2, "to another .h5", "scan body.json -o scan.mha --packed packed.h5");
     ck_run_fails(2, "add it", "scan body.json -o scan.h5 --packed-grey16");
+    /* A stack, with the table of its poses, from which the axis follows, gives the same volume. */
+    for (int with_fields = 0; with_fields < 2; with_fields++) {
+        ck_run(0, "scan body.json -o stack.mha --geometry stack.csv --quiet --overwrite%s",
+               with_fields ? " --flats 2 --precision double" : "");
+        ck_run(
+            0,
+            "reconstruct stack.mha --geometry stack.csv -o other.mha --size 48 --voxel 1.2 --filter hann --quiet");
+        ck_assert_uint_eq(read_file("volume.mha", bytes), size);
+        const size_t its = read_file("other.mha", before); /* its place is written with more digits */
+        for (size_t i = 0; i < SIDE * SLICE; i++) {
+            float one, other;
+            memcpy(&one, bytes + size - 4 * (SIDE * SLICE - i), sizeof one);
+            memcpy(&other, before + its - 4 * (SIDE * SLICE - i), sizeof other);
+            ck_assert_double_eq_tol((double)other, (double)one,
+                                    1e-5); /* 2e-5 of the ball: roundings of poses and logarithms */
+        }
+    }
+    ck_run_fails(3, "give those of an .mha by --geometry", "reconstruct stack.mha -o other.mha");
+    ck_run_fails(2, "scan.h5 has its geometry inside",
+                 "reconstruct scan.h5 --geometry stack.csv -o other.mha");
+    ck_run(0, "scan body.json -o few.mha --geometry few.csv --quiet --set Scan.NumberOfProjections=4");
+    ck_run_fails(3, "few.csv: has 4 poses, but stack.mha has 360 projections",
+                 "reconstruct stack.mha --geometry few.csv -o other.mha");
+    write_text("none.mha", "projections");
+    ck_run_fails(3, "none.mha: is no MetaImage of projections",
+                 "reconstruct none.mha --geometry few.csv -o other.mha");
+    ck_run(0, "scan body.json -o scan.nxs --quiet --set Scan.NumberOfProjections=90");
+    ck_run(0, "reconstruct scan.nxs -o nexus.mha --size 48 --voxel 1.2 --quiet");
     ck_run_fails(3, "is no HDF5 file", "reconstruct body.json -o volume.mha");
     ck_run_fails(3, "none.h5: cannot be read: No such file", "reconstruct none.h5 -o volume.mha");
     ck_run(0, "scan body.json --set Scan.FinalAngle=90 -o part.h5 --quiet");

@@ -75,6 +75,13 @@ static const char still_script[] =
     "check('distances', byId('measures').textContent.includes('500 mm') && byId('measures').textContent.includes('1.25'));\n"
     "check('field', v0.field.every((p, i) => p.every((x, k) => Math.abs(x - v0.corners[i][k]) < 1e-9)) && v0.jaws.length === 0);\n"
     "check('loaded', byId('loading').hidden);\n"
+    "key('?'); check('keys', byId('keys').open && byId('keys').textContent.includes('hide the chosen part')); key('?');\n"
+    "check('no keys', !byId('keys').open);\n"
+    "const shown = id => getComputedStyle(byId(id)).display !== 'none', wheel = () => canvas.dispatchEvent(\n"
+    "  new WheelEvent('wheel', {deltaY: -120, cancelable: true}));\n"
+    "canvas.blur(); key('0'); const before = sum(); setBare(true); check('bare', !shown('buttons') && !shown('labels') && canvas.clientWidth === innerWidth);\n"
+    "const alone = sum(); wheel(); check('the wheel is the outer page\\'s', sum() === alone);\n"
+    "canvas.focus(); differs('wheel', wheel); setBare(false); key('0'); check('as before', sum() === before);\n"
     "check('labels', [...document.querySelectorAll('.label')].some(l => l.textContent === 'detector at 500 mm'));\n"
     /* from the source, without parts and beam: the pixels of the detector are those of the image, and left is left */
     "const kept = [lines, points]; lines = points = []; lookAs('source');\n"

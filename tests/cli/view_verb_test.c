@@ -59,6 +59,52 @@ END_TEST
 
 /* The large cube is seen beside the small one before it: there is its dot, which its centre is not. The one behind it is not seen,
  * and has no name. */
+/* glTF has metres and y up; other programs find the parts by name. */
+START_TEST(a_model_of_the_parts) {
+    ck_run(0, "view s.json -o v.glb");
+    ck_assert_str_eq(said, "wrote v.glb\n");
+    ck_run(0, "mesh v.glb --group bone --json");
+    json_t *object = said_json();
+    const json_t *mesh = json_array_get(member(object, "files"), 0),
+                 *bounds = json_object_get(mesh, "bounds");
+    const double expected[] = {-12, -12, -30, 12, 12, 30},
+                 volume = 16 * 144 * sin(2 * 3.14159265358979 / 32) * 60;
+    ck_assert_double_eq_tol(json_number_value(json_object_get(mesh, "volume_mm3")), volume,
+                            1e-6 * volume); /* floats */
+    for (size_t k = 0; k < 6; k++)
+        ck_assert_double_eq_tol(json_number_value(json_array_get(bounds, k)), expected[k], 1e-5);
+    json_decref(object);
+    ck_run_fails(2, "a model has no --seconds", "view s.json -o v.glb --seconds 2");
+    ck_run(0, "thorax -o .");
+    for (int again = 0; again < 2; again++) /* its own file is overwritten, however long its list of parts */
+        ck_run(0, "view thorax.json -o thorax.glb --quiet --phase 0.5");
+}
+END_TEST
+
+/* The ball around the cube is as high as the picture, times the zoom; from the front x runs with the columns. */
+START_TEST(zoom_shows_a_part_larger) {
+    for (int zoom = 1; zoom <= 4; zoom *= 2) {
+        ck_run(0,
+               "view s.json -o v.png --from front --orthographic --json --zoom %d@tissue "
+               "--set 'Samples.bone.Transform=[[\"Translation\",20,0,0,\"mm\"]]'",
+               zoom);
+        json_t *object = said_json(), *parts = member(object, "parts");
+        const json_t *cube = json_array_get(parts, 0), *bone = json_array_get(parts, 1);
+        const double scale = 800 * zoom / (2 * 40 * sqrt(3)); /* pixels of a mm */
+        const double column = json_number_value(json_object_get(cube, "column"));
+        ck_assert_double_eq_tol(column, 640, 1);
+        ck_assert_double_eq_tol(json_number_value(json_object_get(cube, "row")), 400, 1);
+        ck_assert_double_eq_tol(json_number_value(json_object_get(bone, "column")) - column, 20 * scale,
+                                1e-3 * 20 * scale); /* the eye is of floats */
+        json_decref(object);
+    }
+    ck_run(0, "view s.json -o v.png --quiet --zoom 0.5");
+    ck_run_fails(2, "--zoom 0 is neither", "view s.json -o v.png --zoom 0");
+    ck_run_fails(2, "--zoom 2x is neither", "view s.json -o v.png --zoom 2x");
+    ck_run_fails(3, "did you mean bone", "view s.json -o v.png --zoom 2@bome");
+}
+END_TEST
+
 START_TEST(dots_lie_where_a_part_is_seen) {
     write_text(
         "hidden.json",
@@ -120,6 +166,8 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
     tcase_add_test(tests, a_picture_of_the_scene);
     tcase_add_test(tests, sides_sizes_and_files);
+    tcase_add_test(tests, a_model_of_the_parts);
+    tcase_add_test(tests, zoom_shows_a_part_larger);
     tcase_add_test(tests, dots_lie_where_a_part_is_seen);
     tcase_add_test(tests, other_scenes);
     tcase_add_test(tests, wrong_words);

@@ -38,6 +38,8 @@ image = gvxr.computeXRayImage()                  # NumPy, [row, column], MeV
 | inner and outer surfaces | the inner ones displace the one outer surface; two outer ones are refused where there are inner ones | several outer ones |
 | `voxelise`, `getLastVoxelisation` of gVXR 2.0 | `voxeliseImplicitSurface`, `getImplicitSurfaceLastVoxelisation` | no longer there |
 | lengths through large triangles that lie oblique to the beam, near the source | exact | up to 7 % longer, at the top of the tutorial's pyramid |
+| parts behind the detector | cast no shadow, with a warning where all lie there; a part astride is cut by the detector | in the image as if they lay before it |
+| `PhotonCount` and files of spectra in `json2gvxr` | photons per pixel, as `skiagraph image` reads them | photons per cm2 at 1 m, before and after `initDetector`: 400 times fewer per pixel of 0.5 mm at 1 m |
 | photons of a tube without an exposure | those of 1 mAs | a spectrum with a total energy of 80 eV |
 
 ## The modules beside it

@@ -1,6 +1,7 @@
 """The calls of gVXR, by themselves and beside gVXR where it is installed."""
 import json
 import pathlib
+import re
 import subprocess
 import sys
 import types
@@ -10,6 +11,8 @@ import pytest
 
 import skiagraph as sk
 from skiagraph import gvxr
+from skiagraph.gvxr import meshes
+from skiagraph.gvxr import state as gvxr_state
 from skiagraph.gvxr.calls import CALLS
 
 HERE = pathlib.Path(__file__).parent
@@ -92,7 +95,7 @@ def test_a_scan_turns_the_meshes(tmp_path):
     assert scan.shape == (4, 24, 32) and scan.max() == 1 and gvxr.getAngleSetCT() == (0, 90, 180, 270)
     gvxr.rotateScene(90, 0, 0, 1)
     np.testing.assert_allclose(gvxr.computeXRayImage() / 80, scan[1], atol=1e-5)  # rounding of the turned view
-    assert len(list((tmp_path / "scan").glob("*.tif"))) == 4
+    assert [path.name for path in sorted((tmp_path / "scan").iterdir())] == [f"projection_{i:04}.tiff" for i in range(4)]
 
 
 def test_meshes_and_their_graph(tmp_path):
@@ -114,8 +117,52 @@ def test_meshes_and_their_graph(tmp_path):
     gvxr.loadMeshFile("again", str(tmp_path / "t.stl"), "mm")
     assert gvxr.isInnerSurface("again") and not gvxr.isOuterSurface("again")
     gvxr.removeMeshAndChildren("t")
-    with pytest.raises(sk.SceneError, match="no mesh 'c'"):
-        gvxr.scaleNode("c", 1, 1, 1)
+    for call in (lambda: gvxr.scaleNode("c", 1, 1, 1), lambda: gvxr.getNodeOnlyBoundingBox("c"), lambda: gvxr.moveToCentre("c"),
+                 lambda: gvxr.computeLBuffer("c"), lambda: gvxr.getSOD("c", "mm"), lambda: gvxr.makeCube("d", 1, "cm", "c")):
+        with pytest.raises(sk.SceneError, match="no mesh 'c'; there are 'all', 'again'"):
+            call()
+
+
+def test_bounds_of_a_turned_mesh():
+    random = np.random.default_rng(7)
+    vertices = random.normal(0, 10, (300, 3)) + (1000, -2000, 500)
+    faces = random.permutation(300).reshape(-1, 3)
+    gvxr.makeTriangularMesh("t", vertices.ravel(), faces.ravel(), "mm")
+    vertices = gvxr.getVertexSet("t").reshape(-1, 3)
+    for turn in ((30, 1, 2, 3), (90, 0, 0, 1), (0, 0, 0, 1)):
+        gvxr.rotateNode("t", *turn)
+        gvxr.scaleNode("t", -1, 2, 0.5)
+        matrix = gvxr.getNodeLocalTransformationMatrix("t").T
+        placed = vertices @ matrix[:3, :3].T + matrix[:3, 3]
+        expected = np.concatenate([placed.min(0), placed.max(0)])
+        # Roundings of the floats that are offsets from the middle: 2^-24 of 60 mm, three of them, scaled by 2 each time.
+        assert gvxr.getNodeOnlyBoundingBox("t", "mm") == pytest.approx(expected, rel=0, abs=1e-4)
+
+
+def test_a_mesh_that_is_loaded_anew(tmp_path):
+    """The same file gives the mesh that is there; one that changed is read."""
+    path = tmp_path / "t.stl"
+    sk.Mesh.cube(10).save(path)
+    gvxr.loadMeshFile("t", str(path), "mm")  # new: it may change within the clock's step
+    gvxr.loadMeshFile("again", str(path), "mm")
+    assert gvxr_state.world.mesh("t") is not gvxr_state.world.mesh("again")
+    sk.Mesh.cube(20).save(path)  # as long
+    gvxr.loadMeshFile("t", str(path), "mm")
+    assert gvxr.getNodeOnlyBoundingBox("t", "mm") == (-10, -10, -10, 10, 10, 10)
+    real, meshes._SETTLED = meshes._SETTLED, -1e9  # as if it had been written long ago
+    try:
+        gvxr.loadMeshFile("t", str(path), "mm")
+        first = gvxr_state.world.mesh("t")
+        gvxr.translateNode("t", 1, 0, 0, "mm")
+        gvxr.loadMeshFile("t", str(path), "mm")
+        assert gvxr_state.world.mesh("t") is first and gvxr.getNodeOnlyBoundingBox("t", "mm")[3] == 10
+        gvxr.loadMeshFile("t", str(path), "cm")
+        assert gvxr.getNodeOnlyBoundingBox("t", "mm")[3] == 100
+        sk.Mesh.cube(30).save(path)
+        gvxr.loadMeshFile("t", str(path), "mm")
+        assert gvxr.getNodeOnlyBoundingBox("t", "mm")[3] == 15
+    finally:
+        meshes._SETTLED = real
 
 
 def test_matter():
@@ -154,6 +201,15 @@ def test_beams_and_detectors():
     assert gvxr.getTotalEnergyWithDetectorResponse() == pytest.approx(gvxr.getTotalEnergyWithoutDetectorResponse())
     gvxr.setScintillator("CsI", 600, "um")
     assert gvxr.getTotalEnergyWithDetectorResponse() < gvxr.getTotalEnergyWithoutDetectorResponse()
+    # Above the K edges of iodine and caesium (33.2 and 36.0 keV) a photon takes an edge's energy away where K fluorescence leaves.
+    rows = np.array(gvxr.getEnergyResponse("CsI", 500, "um", "keV"))
+    assert np.interp([30, 34, 36.1], *rows.T) == pytest.approx([25.4, 28.8, 29.0], abs=0.3)  # between rows that are .6 % apart
+    gvxr.setScintillator("CsI", 500, "um")
+    gvxr.setMonoChromatic(36.1, "keV", 1000)
+    recorded = gvxr.getTotalEnergyWithDetectorResponse() / gvxr.getTotalEnergyWithoutDetectorResponse()
+    assert recorded == pytest.approx(sk.Response.scintillator("CsI", 0.5, escape=True).at(36.1)[0] / 36.1, rel=1e-6)
+    gvxr.resetBeamSpectrum()
+    gvxr.setVoltage(100, "kV")
     gvxr.clearDetectorEnergyResponse()
     gvxr.setPhotonCountingBands(20, 100, "keV", 4)
     assert gvxr.computeSpectralImage().shape == (4, 24, 32)
@@ -202,6 +258,19 @@ def test_every_call_is_here_or_refused():
         assert kind != "nothing" or getattr(gvxr, name).__name__ == name
     with pytest.raises(AttributeError, match="no call 'computeXrayImage'"):
         gvxr.computeXrayImage()
+
+
+def test_what_differs_from_gvxr_is_right_here():
+    """The example of docs/from-gvxr.md, whose answers are known."""
+    path = HERE.parent.parent / "examples" / "gvxr_differences.py"
+    said = subprocess.run([sys.executable, str(path)], capture_output=True, text=True, check=True).stdout
+    lengths, formula, numbers = said.splitlines()
+    assert float(re.search(r"rms error (\S+) mm", lengths)[1]) < 1e-5 and "in 0 % of" in lengths  # single path lengths
+    bracketed, plain = re.search(r"OH (\S+) per cm; Ca5P3O13H, the same atoms, (\S+)", formula).groups()
+    assert bracketed == plain
+    steps = np.array(re.findall(r"(\d+): ([\d.]+)", numbers), float)
+    line = np.polyfit(*steps.T, 1)
+    assert np.abs(np.polyval(line, steps[:, 0]) / steps[:, 1] - 1).max() < 5e-3  # Schneider's density is a line there
 
 
 def test_the_page_is_fresh():

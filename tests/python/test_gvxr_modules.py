@@ -1,5 +1,6 @@
 """The modules beside gVXR's calls: utils, json2gvxr, gvxr2json, the readers, and the scripts that use them."""
 import json
+import os
 import pathlib
 import struct
 import subprocess
@@ -75,6 +76,23 @@ def test_a_scene_file_is_read_section_by_section(tmp_path):
     assert gvxr.computeXRayImage().shape == (24, 32)
 
 
+def test_params_may_hold_arrays(tmp_path):
+    path = written(tmp_path)
+    read(path)
+    image = gvxr.computeXRayImage()
+    params = json2gvxr.params
+    params["Source"]["Position"] = (*np.array([0.0, -40, 0]), "cm")
+    params["Detector"].update({"UpVector": np.array([0, 0, -1]), "RightVector": np.array([-1, 0, 0]), "Size": None,
+                               "NumberOfPixels": np.array([32, 24]), "Spacing": (np.float32(2), np.float64(2), "mm")})
+    params["Samples"][1]["Transform"][1] = ["Rotation", *np.array([30, 1, 0, 0])]
+    params["Scan"]["RotationAxis"] = np.array([0, 0, 1])
+    for part in (json2gvxr.initSourceGeometry, json2gvxr.initSpectrum, json2gvxr.initDetector, json2gvxr.initScan):
+        part()
+    with pytest.warns(sk.SkiagraphWarning, match="sum to 0.8"):
+        json2gvxr.initSamples()
+    np.testing.assert_allclose(gvxr.computeXRayImage(), image, rtol=2e-6)
+
+
 def test_sections_do_not_need_a_window(tmp_path):
     path = str(written(tmp_path))
     json2gvxr.initDetector(path)
@@ -94,7 +112,7 @@ def test_a_scan_of_a_scene_file(tmp_path):
     assert json2gvxr.doCTScan() == (0, 90, 180, 270)
     scan = gvxr.getLastProjectionSet()
     assert scan.shape == (4, 24, 32) and scan.max() == pytest.approx(1, rel=1e-6)  # a mean of floats
-    assert len(list((tmp_path / "out").glob("*.tif"))) == 4
+    assert sorted(path.name for path in (tmp_path / "out").iterdir()) == [f"projection_{i:04}.tiff" for i in range(4)]
     assert gvxr.getWhiteImagesInFlatFieldCT() == 3 and gvxr.getRotationAxisCT() == (0, 0, 1)
     assert gvxr.getDetectorPositionSet("cm")[1] == pytest.approx((10, 0, 0), abs=1e-9)  # a turn by 90 degrees
     json2gvxr.params["Scan"] = {"AngleStep": 10}
@@ -224,9 +242,14 @@ def test_the_dragon_and_the_twins_are_fetched_by_the_user(tmp_path):
         archive.writestr("a.py", b"")
     with pytest.raises(FileNotFoundError, match="other.whl"):
         dragon.take(tmp_path / "other.whl", tmp_path)
-    command = [sys.executable, "-W", "error", "-m", "skiagraph.gvxr.dragon", str(tmp_path / "other.whl")]
-    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    command = [sys.executable, "-W", "error", "-m", "skiagraph.gvxr.dragon"]
+    done = subprocess.run([*command, str(tmp_path / "other.whl")], capture_output=True, text=True, check=False)
     assert "FileNotFoundError" in done.stderr and "RuntimeWarning" not in done.stderr
+    # pip that finds nothing says which file is missing, and where it goes
+    nowhere = {**os.environ, "PIP_NO_INDEX": "1", "PIP_DISABLE_PIP_VERSION_CHECK": "1"}
+    done = subprocess.run(command, capture_output=True, text=True, check=False, env=nowhere)
+    assert done.returncode == 1 and "Traceback" not in done.stderr
+    assert "gvxr-2.1.0-*.whl" in done.stderr and DRAGON in done.stderr and str(pathlib.Path(dragon.__file__).parent) in done.stderr
 
 
 def test_shapes_of_gvxr():
@@ -295,6 +318,15 @@ def test_dense_foam(percentage, spread):
     assert made["closed"] and 0.8 * percentage / 100 < made["volume"] / box.prod() < percentage / 100  # polyhedra in spheres
 
 
+@pytest.mark.parametrize("seed", (2, 5))  # 2 came to rest jammed
+def test_foam_of_120_spheres_at_half_the_box(seed):
+    gvxr.setSeed(seed)
+    side = (120 * 4 / 3 * np.pi * 1.5 ** 3 / 0.5) ** (1 / 3)
+    gvxr.makeFoamInCuboid("pores", "", side, side, side, 1.5, 50, 10, 0.5, "mm")
+    found = made("pores")
+    assert found["closed"] and 110 < found["components"] < 130 and 0.44 * side ** 3 < found["volume"] < 0.5 * side ** 3
+
+
 def test_foam_that_is_too_dense():
     with pytest.raises(sk.ArgumentError, match="fill 80.* % of the box; give a smaller percentage"):
         gvxr.makeFoamInCuboid("pores", "", 10, 10, 10, 2, 80, 0, 0.5, "mm")
@@ -334,6 +366,8 @@ def dicom_elements(data):
 
 def test_images_in_the_formats_of_gvxr(tmp_path):
     image = imaged()
+    gvxr.saveLastXRayImage(str(tmp_path / "i.mha"))
+    assert b"NDims = 2\n" in (tmp_path / "i.mha").read_bytes() and b"DimSize = 16 12\n" in (tmp_path / "i.mha").read_bytes()
     gvxr.saveLastXRayImage(str(tmp_path / "i.mhd"))
     header = dict(line.split(" = ") for line in (tmp_path / "i.mhd").read_text().splitlines())
     assert (header["DimSize"], header["ElementSpacing"], header["ElementType"]) == ("16 12", "2 3", "MET_FLOAT")
@@ -350,7 +384,7 @@ def test_images_in_the_formats_of_gvxr(tmp_path):
     slope, low = float(found[0x28, 0x1053]), float(found[0x28, 0x1052])
     assert levels.max() == 65535 and np.abs(levels * slope + low - image).max() <= 0.51 * slope  # and roundings to 9 digits
     gvxr.computeCTAcquisition(str(tmp_path / "scan.mhd"), "", 2, 0, False, 180, 0, 0, 0, 0, "mm", 0, 0, 1)
-    assert len(list(tmp_path.glob("scan.mhd/*.tif"))) == 2  # a folder, as its name is none of a file of a scan
+    assert len(list(tmp_path.glob("scan.mhd/*.tiff"))) == 2  # a folder, as its name is none of a file of a scan
     gvxr.saveLastProjectionSet(str(tmp_path / "set.mhd"))
     assert "DimSize = 16 12 2" in (tmp_path / "set.mhd").read_text()
     with pytest.raises(sk.ArgumentError, match=r"\.txt holds one image and not 2"):

@@ -36,6 +36,49 @@ def path(tmp_path):
     return made
 
 
+XTEKCT = """[XTekCT]
+Name=turbine
+Projections=4
+InitialAngle=10.0
+AngularStep=90
+SrcToObject=200.0
+SrcToDetector=1000.0
+DetectorPixelsX=64
+DetectorPixelsY=48
+DetectorPixelSizeX=0.2
+DetectorPixelSizeY=0.25
+"""
+
+
+def test_a_scan_of_a_nikon_scanner(tmp_path, scene):
+    path = tmp_path / "turbine.xtekct"
+    path.write_text(XTEKCT + "ObjectOffsetX=3\n")
+    scan = sk.Scan.xtekct(path)
+    # As CIL's NikonDataReader has it: sample angles of 180 - InitialAngle - k AngularStep, the axis at -ObjectOffsetX,
+    # columns against x and rows against z ("top-right").
+    assert scan.angles.round(9).tolist() == [170, 80, -10, -100]
+    turned = sk.rotate("z", 170) @ scan[0]
+    assert turned.source == pytest.approx((3, -200, 0), abs=1e-9) and turned.detector == pytest.approx((3, 800, 0), abs=1e-9)
+    assert turned.column_step == pytest.approx((-0.2, 0, 0), abs=1e-12) and turned.row_step == pytest.approx((0, 0, -0.25), abs=1e-12)
+    assert scan[0].shape == (48, 64)
+    scene.view, scene.trajectory = scan[0], scan
+    assert scene.scan(quantity="attenuation").shape == (4, 48, 64)
+    path.write_text(XTEKCT + "CentreOfRotationTop=2\nCentreOfRotationBottom=1\n")  # mm on the detector, 5 times as far
+    leaning = sk.Scan.xtekct(path)
+    assert leaning[0].source[2] != 0  # the axis rolls, by 1 in 12
+    path.write_text(XTEKCT + "ObjectTilt=30\n")
+    axis = np.cross(*(sk.Scan.xtekct(path)[k].source - sk.Scan.xtekct(path)[k + 1].source for k in (0, 1)))
+    assert abs(axis[1:] / np.linalg.norm(axis)) == pytest.approx((0.5, np.sqrt(0.75)))
+    with pytest.warns(sk.SkiagraphWarning, match="DetectorOffsetX is 4 mm and is not used"):
+        path.write_text(XTEKCT + "DetectorOffsetX=4\n")
+        sk.Scan.xtekct(path)
+    path.write_text(XTEKCT.replace("SrcToObject=200.0", "SrcToObject=far"))
+    with pytest.raises(sk.FormatError, match="turbine.xtekct: SrcToObject is 'far'"):
+        sk.Scan.xtekct(path)
+    with pytest.raises(sk.FileError, match="none.xtekct: cannot be read"):
+        sk.Scan.xtekct(tmp_path / "none.xtekct")
+
+
 def stack(path):
     """The values of a .raw file."""
     return np.fromfile(path, np.float32).reshape(N, 24, 32)

@@ -254,9 +254,71 @@ START_TEST(a_packed_copy_in_grey_values) {
 }
 END_TEST
 
+/* NXtomo: dark fields, flat fields and projections are one dataset, and what they are stands beside it. */
+START_TEST(nexus_shows_all_images) {
+    enum { ALL = 1 + FLATS + COUNT };
+    static float images[ALL][PIXELS], white[FLATS][PIXELS], dark[PIXELS], projection[PIXELS];
+    static const int keys[ALL] = {2, 1, 1};
+    int found[ALL];
+    double angles[ALL], column = 0;
+    char nexus[128], text[8] = "";
+    skg_scan_file *file = NULL;
+    skg_scan_file_options options;
+    snprintf(nexus, sizeof nexus, "%s/scan.nxs", folder);
+    skg_scan_file_options_init(&options);
+    options.scan = scan;
+    options.hash = hash;
+    options.name = "photons";
+    options.unit = "photons per pixel";
+    options.flat_field = 9;
+    options.samples = 1;
+    options.flats = FLATS;
+    for (int i = 0; i < PIXELS; i++)
+        projection[i] = (float)i, white[0][i] = 9, white[1][i] = 8, dark[i] = 0.5F;
+    ck_skg(skg_scan_file_open(nexus, &options, &file));
+    ck_skg(skg_scan_file_fields_write(file, FLATS, white, 1, dark));
+    ck_skg(skg_scan_file_write(file, 1, (const int64_t[]){3}, projection, (const double[]){0}));
+    ck_skg(skg_scan_file_finish(file));
+    skg_scan_file_release(&file);
+    const hid_t root = H5Fopen(nexus, H5F_ACC_RDONLY, H5P_DEFAULT);
+    ck_assert_int_ge(root, 0);
+    read_set(root, "entry/data/data", H5T_NATIVE_FLOAT, ALL * PIXELS, images);
+    ck_assert_mem_eq(images[0], dark, sizeof dark);
+    ck_assert_mem_eq(images[1], white, sizeof white);
+    ck_assert_mem_eq(images[1 + FLATS + 3], projection, sizeof projection);
+    read_set(root, "entry/instrument/detector/image_key", H5T_NATIVE_INT, ALL, found);
+    ck_assert_mem_eq(found, keys, sizeof keys);
+    read_set(root, "entry/sample/rotation_angle", H5T_NATIVE_DOUBLE, ALL, angles);
+    ck_assert_double_eq(angles[1], 0);
+    ck_assert_double_eq_tol(angles[ALL - 1], 72, 1e-13); /* some roundings */
+    /* The origin is on the axis: its shadow has no distance from the line of the source through it. */
+    read_set(root, "entry/instrument/detector/x_rotation_axis_pixel_position", H5T_NATIVE_DOUBLE, 1, &column);
+    double across = 0, along = 0, normal[3], from[3];
+    for (int k = 0; k < 3; k++)
+        normal[k] = view.column_step[(k + 1) % 3] * view.row_step[(k + 2) % 3] -
+                    view.column_step[(k + 2) % 3] * view.row_step[(k + 1) % 3];
+    for (int k = 0; k < 3; k++)
+        across += (view.centre[k] - view.source[k]) * normal[k], along -= view.source[k] * normal[k];
+    for (int k = 0; k < 3; k++) from[k] = view.source[k] * (1 - across / along) - view.centre[k];
+    double step = 0, place = 0;
+    for (int k = 0; k < 3; k++)
+        place += from[k] * view.column_step[k], step += view.column_step[k] * view.column_step[k];
+    ck_assert_double_eq_tol(column, place / step + (SIDE - 1) / 2.0,
+                            1e-9); /* some roundings of numbers up to 1e4 */
+    const hid_t type = H5Tcopy(H5T_C_S1);
+    H5Tset_size(type, sizeof text);
+    read_set(root, "entry/definition", type, 1, text);
+    ck_assert_str_eq(text, "NXtomo");
+    H5Tclose(type);
+    H5Fclose(root);
+    unlink(nexus);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
     tcase_add_test(tests, what_hdf5_reads);
+    tcase_add_test(tests, nexus_shows_all_images);
     tcase_add_test(tests, a_packed_copy_is_the_same_scan);
     tcase_add_test(tests, a_packed_copy_in_grey_values);
 }

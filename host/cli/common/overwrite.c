@@ -23,10 +23,23 @@ static int holds(const char *bytes, size_t count, const char *word) {
 /* How tables begin, which have no room for a name. */
 static int begins_as_table(const char *bytes, size_t count) {
     static const char *const headings[] = {"t_s,phase,amplitude,", "dial,precision,",
-                                           "label,phase,motion_mm,"};
+                                           "label,phase,motion_mm,", "label,material,density (g/cm3),"};
     for (size_t h = 0; h < sizeof headings / sizeof *headings; h++)
         if (count >= strlen(headings[h]) && memcmp(bytes, headings[h], strlen(headings[h])) == 0) return 1;
     return 0;
+}
+
+/* Whether the nodes of a .glb name this command: they come behind a list that is as long as the scene is large. */
+static int is_our_model(FILE *stream) {
+    unsigned char head[20];
+    int ours = 0;
+    rewind(stream);
+    if (fread(head, 1, sizeof head, stream) != sizeof head || memcmp(head, "glTF", 4) != 0) return 0;
+    const size_t count = head[12] | (size_t)head[13] << 8 | (size_t)head[14] << 16 | (size_t)head[15] << 24;
+    char *text = malloc(count + 1);
+    if (text) ours = fread(text, 1, count, stream) == count && holds(text, count, "skiagraph");
+    free(text);
+    return ours;
 }
 
 /* Whether a file is empty or names this command near its beginning or its end. */
@@ -39,7 +52,7 @@ static int is_ours(const char *path) {
         ours = count == 0 || begins_as_table(bytes, count) || holds(bytes, count, "skiagraph");
         if (!ours && count == LOOKED_AT && fseek(stream, -LOOKED_AT, SEEK_END) == 0) {
             count = fread(bytes, 1, LOOKED_AT, stream);
-            ours = holds(bytes, count, "skiagraph");
+            ours = holds(bytes, count, "skiagraph") || is_our_model(stream);
         }
     }
     free(bytes);

@@ -48,7 +48,7 @@ void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
     cli_manual_distance, cli_manual_fit, cli_manual_image, cli_manual_lbuffer, cli_manual_live,
     cli_manual_material, cli_manual_make, cli_manual_mesh, cli_manual_plan, cli_manual_reconstruct,
-    cli_manual_scan, cli_manual_thorax, cli_manual_view;
+    cli_manual_parts, cli_manual_scan, cli_manual_thorax, cli_manual_view;
 
 extern const cli_flag cli_flag_help; /* of every verb */
 
@@ -67,6 +67,7 @@ extern const char cli_text_meshes[];                /* a paragraph on them */
 extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,
     cli_flag_image_only, cli_flag_image_without, cli_flag_image_band_weight, cli_flag_image_scatter,
     cli_flag_image_scatter_image, cli_flag_image_scatter_sigma, cli_flag_image_mean, cli_flag_image_variance;
+extern const cli_flag cli_flag_parts_output;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames,
     cli_flag_cost_sensitivity;
@@ -93,10 +94,10 @@ extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_fla
     cli_flag_breathe_phase, cli_flag_breathe_at, cli_flag_breathe_outline, cli_flag_breathe_meshes;
 extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_size,
     cli_flag_view_orthographic, cli_flag_view_phase, cli_flag_view_at, cli_flag_view_seconds,
-    cli_flag_view_sensitivity;
+    cli_flag_view_sensitivity, cli_flag_view_zoom;
 extern const cli_flag cli_flag_live_port, cli_flag_live_no_open, cli_flag_live_bind, cli_flag_live_idle;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,
-    cli_flag_reconstruct_filter, cli_flag_reconstruct_truncation;
+    cli_flag_reconstruct_filter, cli_flag_reconstruct_truncation, cli_flag_reconstruct_geometry;
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,
     cli_flag_scan_overwrite, cli_flag_scan_breathing, cli_flag_scan_subframes, cli_flag_scan_geometry,
     cli_flag_scan_flats, cli_flag_scan_darks, cli_flag_scan_shard, cli_flag_scan_join, cli_flag_scan_mixed,

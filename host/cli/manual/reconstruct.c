@@ -3,9 +3,14 @@
 
 const cli_flag cli_flag_reconstruct_output = {"-o", "FILE", "The volume to write, a .mha. Required.", NULL,
                                               CLI_NAMES_FILE};
+const cli_flag cli_flag_reconstruct_geometry = {
+    "--geometry", "FILE.csv",
+    "The places of a point source and the detector for the projections of an .mha, a line each: what scan --geometry FILE.csv writes.",
+    NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_reconstruct_size = {
     "--size", "N",
-    "The number of voxels along each side, 1 to 4096. The default is the number of columns of a projection.",
+    "The number of voxels along each side, 1 to 4096, of the edge of --voxel: fewer than the default, the number of columns of a "
+    "projection, crop the volume about its middle, which is said where --voxel is not given.",
     NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_reconstruct_voxel = {
     "--voxel", "MM",
@@ -31,7 +36,8 @@ const cli_flag cli_flag_reconstruct_truncation = {
 
 static const char *const text[] = {
     "Reconstructs a circular scan by the method of Feldkamp, Davis and Kress, to look at what the scan gives. "
-    "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. The scan is an .h5 that `skiagraph scan` wrote.",
+    "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. The scan is an .h5 or .nxs that `skiagraph scan` wrote, or "
+    "an .mha with the --geometry of its projections; flat and dark fields are read beside it (scan-flats.mha), otherwise the flat field of its header is taken.",
     "The volume holds attenuation coefficients in 1/cm. It is centred on the centre of rotation, and its axes are those "
     "of the scene.",
     "--json prints {projections, size, voxel_mm, range, displaced, covered_mm, truncated, seconds, file}; range has the least and the largest value, "
@@ -39,6 +45,7 @@ static const char *const text[] = {
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_reconstruct_output,
+                                        &cli_flag_reconstruct_geometry,
                                         &cli_flag_reconstruct_size,
                                         &cli_flag_reconstruct_voxel,
                                         &cli_flag_reconstruct_filter,
@@ -50,6 +57,7 @@ static const cli_flag *const flags[] = {&cli_flag_reconstruct_output,
 
 static const cli_item examples[] = {
     {"skiagraph reconstruct scan.h5 -o volume.mha --size 256 --filter hann", "writes 256 x 256 x 256 voxels"},
+    {"skiagraph reconstruct scan.mha --geometry scan.csv -o volume.mha", "takes the poses from a table"},
     {NULL, NULL}};
 
 const cli_manual cli_manual_reconstruct = {.name = "reconstruct",

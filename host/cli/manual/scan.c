@@ -3,7 +3,7 @@
 
 const cli_flag cli_flag_scan_output = {
     "-o", "FILE",
-    "The output: .h5 (HDF5 in the layout of Data Exchange, if it was built with HDF5), .mha (MetaImage), .raw (with its header in a .mhd beside it), .tif (BigTIFF), or a folder, which has no "
+    "The output: .h5 (HDF5 in the layout of Data Exchange, if it was built with HDF5), .nxs (the same as NXtomo, too), .mha (MetaImage), .raw (with its header in a .mhd beside it), .tif (BigTIFF), or a folder, which has no "
     "extension. Required.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_scan_from = {"--from", "K", "The first projection to compute, counted from 0.", NULL,

@@ -3,7 +3,8 @@
 
 const cli_flag cli_flag_view_output = {
     "-o", "FILE",
-    "The file to write: a picture, .png; a page, .html, in which the scene can be turned; or a film, .gif, .mp4 or .webm. "
+    "The file to write: a picture, .png; a page, .html, in which the scene can be turned; a model of the parts for other viewers, "
+    ".glb (glTF 2.0); or a film, .gif, .mp4 or .webm. "
     "May be repeated.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_view_from = {
@@ -27,6 +28,12 @@ const cli_flag cli_flag_view_seconds = {
     "Shows the breath for T seconds: in a page, or as a film, which lasts one breath otherwise.", NULL,
     CLI_NAMES_NOTHING};
 
+const cli_flag cli_flag_view_zoom = {
+    "--zoom", "Z[@PART]",
+    "Shows the parts Z times as large as they fill a picture or a film, about the middle of all parts or of one PART, whatever else "
+    "is then beyond its edges: 1 for all of them without source and detector, 8@needle for a small one.",
+    NULL, CLI_NAMES_NOTHING};
+
 const cli_flag cli_flag_view_sensitivity = {
     "--sensitivity", NULL,
     "In a page, colours each part by how much the image changes when it moves by a mm, and writes the number beside its name: what "
@@ -44,6 +51,8 @@ static const char *const text[] = {
     "A page is one file that needs nothing else: drag to turn the scene, with Shift to move it, roll to zoom; fingers and the "
     "arrow keys do the same. It lists the parts, which can be hidden and made translucent, and names the one pointed at. It "
     "stays below 5 MB: of more than 100000 triangles it shows fewer, and says so. With --seconds it breathes.",
+    "A model holds every part with all its triangles and its colour, as it stands at --phase or --at, in metres with y up, as "
+    "glTF has it: Blender and others turn it back to z up.",
     "A film shows the detector's image over the range of its first frame, and the labels where they are in it. See "
     "`skiagraph help breathe` about formats.",
     "--json prints {files, source_detector_mm, source_object_mm, magnification, parts: [{label, column, row, colour}]}; "
@@ -53,6 +62,7 @@ static const char *const text[] = {
 static const cli_flag *const flags[] = {&cli_flag_view_output,
                                         &cli_flag_view_from,
                                         &cli_flag_view_size,
+                                        &cli_flag_view_zoom,
                                         &cli_flag_view_orthographic,
                                         &cli_flag_view_phase,
                                         &cli_flag_view_at,
@@ -72,6 +82,8 @@ static const cli_flag *const flags[] = {&cli_flag_view_output,
 static const cli_item examples[] = {{"skiagraph view scene.json -o view.png", "draws the scene"},
                                     {"skiagraph view thorax/thorax.json --seconds 4 -o view.html",
                                      "makes a page in which the thorax breathes and can be turned"},
+                                    {"skiagraph view scene.json --zoom 2@liver -o view.png",
+                                     "draws the liver twice as large as it would fill the picture"},
                                     {"skiagraph view scene.json --sensitivity -o view.html",
                                      "makes a page that shows which part's place shows most in the image"},
                                     {"skiagraph view thorax/thorax.json --from top --phase 0.5 -o view.png",

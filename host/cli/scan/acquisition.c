@@ -39,7 +39,7 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     a->place = cli_value(arguments, &cli_flag_scan_output);
     if (!a->place)
         return cli_error(CLI_USAGE,
-                         "scan: no output is named; add -o FILE (.h5, .mha, .raw, .tif or a folder)");
+                         "scan: no output is named; add -o FILE (.h5, .nxs, .mha, .raw, .tif or a folder)");
     if (cli_given(arguments, &cli_flag_scan_grey16) && cli_given(arguments, &cli_flag_image_quantity))
         return cli_error(CLI_USAGE,
                          "--grey16 and --quantity exclude each other: grey values are made of energies");
@@ -158,6 +158,7 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &a->session);
     if (exit_status != CLI_DONE) return exit_status;
+    if (a->ranks.rank == 0) cli_note_no_noise(&a->session);
     a->session.options.quantity = quantity;
     if (a->session.options.scatter)
         a->options.batch = 1; /* each waits: so progress moves, and Ctrl-C is heard */

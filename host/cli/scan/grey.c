@@ -27,7 +27,7 @@ static int has_stem(const cli_acquisition *a) {
 /* An .h5 and the layout of CTSimU have fields; others have them beside, if one asks. A shard leaves those to the whole. */
 static void decide_fields(const cli_arguments *arguments, cli_acquisition *a) {
     const int is_inside = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5") ||
-                          (has_stem(a) && cli_names_folder(a->place));
+                          cli_has_extension(a->place, ".nxs") || (has_stem(a) && cli_names_folder(a->place));
     const int asked = a->record.fields || cli_given(arguments, &cli_flag_scan_flats) ||
                       cli_given(arguments, &cli_flag_scan_darks);
     a->fields_beside = !is_inside && asked && !cli_given(arguments, &cli_flag_scan_shard);

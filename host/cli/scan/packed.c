@@ -15,7 +15,7 @@ int packed_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     if (!to) return CLI_DONE;
     if (cli_given(arguments, &cli_flag_scan_shard))
         return cli_error(CLI_USAGE, "--packed writes a whole scan; give it with --join, not with --shard");
-    if (!is_hdf5(to) || !is_hdf5(a->place))
+    if (!is_hdf5(to) || !(is_hdf5(a->place) || cli_has_extension(a->place, ".nxs")))
         return cli_error(CLI_USAGE, "--packed %s: a scan that is an .h5 is packed to another .h5", to);
     const skg_status status = skg_scan_file_path_check(to);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);

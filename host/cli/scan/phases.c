@@ -2,6 +2,7 @@
 #include "scan/steps.h"
 
 #include "common/say.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -97,7 +98,7 @@ static skg_status write_bin(cli_acquisition *a, int64_t bin, const double *all, 
                  a->phases, path);
         cli_log(SKG_LOG_WARNING, sentence, NULL);
     } else if (status == SKG_OK) {
-        cli_tell("%s has %" PRId64 " projections", path, count);
+        cli_tell("%s has %" PRId64 " %s", path, count, skg_plural(count, "projection", "projections"));
     }
     free(path);
     return status;

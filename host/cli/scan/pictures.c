@@ -3,6 +3,7 @@
 
 #include "common/file.h"
 #include "common/say.h"
+#include "core/text.h"
 #include "dicom/dicom.h"
 
 #include <inttypes.h>
@@ -63,6 +64,8 @@ int pictures_write(cli_acquisition *a) {
     for (int64_t k = 0; k < a->projections && exit_status == CLI_DONE; k++)
         exit_status = write_picture(a, k, &picture, data);
     free(data);
-    if (exit_status == CLI_DONE) cli_tell("%s has %" PRId64 " projections", a->pictures, a->projections);
+    if (exit_status == CLI_DONE)
+        cli_tell("%s has %" PRId64 " %s", a->pictures, a->projections,
+                 skg_plural(a->projections, "projection", "projections"));
     return exit_status;
 }

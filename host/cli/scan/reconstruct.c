@@ -3,6 +3,7 @@
 #include "common/file.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "scan/stack.h"
 #include "verbs/verbs.h"
 
 #include <inttypes.h>
@@ -14,7 +15,8 @@ enum { VOXELS_MAX = 4096 };
 
 typedef struct {
     skg_scan_reader *reader;
-    skg_scan *scan; /* of the reader */
+    stack_reader *stack; /* instead of the reader, of a file without its geometry */
+    skg_scan *scan;      /* of one of them */
     skg_fdk *fdk;
     skg_fdk_options options;
     const char *place;
@@ -38,12 +40,16 @@ static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t
     if (!cli_has_extension(r->place, ".mha"))
         return cli_error(CLI_USAGE, "reconstruct: %s is no .mha; give -o FILE.mha", r->place);
     int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, VOXELS_MAX, size);
-    if (exit_status == CLI_DONE && is_bare(arguments->operands[0]))
+    const char *path = arguments->operands[0],
+               *geometry = cli_value(arguments, &cli_flag_reconstruct_geometry);
+    if (exit_status == CLI_DONE && is_bare(path) && !(geometry && cli_has_extension(path, ".mha")))
         return cli_error(
             CLI_INPUT,
-            "%s: holds projections without the places of source and detector; write the scan as .h5 "
-            "(scan SCENE -o scan.h5), and reconstruct that",
-            arguments->operands[0]);
+            "%s: holds projections without the places of source and detector; give those of an .mha by --geometry "
+            "FILE.csv, which scan --geometry writes, or write the scan as .h5 (scan SCENE -o scan.h5)",
+            path);
+    if (exit_status == CLI_DONE && geometry && !is_bare(path))
+        return cli_error(CLI_USAGE, "--geometry %s: %s has its geometry inside", geometry, path);
     if (exit_status == CLI_DONE)
         exit_status = cli_number(arguments, &cli_flag_reconstruct_voxel, 1e-6, 1e6, &r->options.voxel_mm);
     if (exit_status == CLI_DONE)
@@ -70,10 +76,16 @@ static double step_at_axis(const skg_view *view, const double *centre) {
 
 static skg_status prepare(const cli_arguments *arguments, reconstruction *r, int64_t size) {
     skg_view view;
+    skg_status status = SKG_OK;
     skg_view_init(&view);
-    skg_status status = skg_scan_reader_open(arguments->operands[0], &r->reader);
-    if (status == SKG_OK) status = skg_scan_reader_scan_get(r->reader, &r->scan);
-    if (status == SKG_OK) status = skg_scan_reader_axis_get(r->reader, r->options.axis, r->options.centre);
+    if (r->stack) {
+        stack_scan(r->stack, &r->scan, r->options.axis, r->options.centre);
+    } else {
+        status = skg_scan_reader_open(arguments->operands[0], &r->reader);
+        if (status == SKG_OK) status = skg_scan_reader_scan_get(r->reader, &r->scan);
+        if (status == SKG_OK)
+            status = skg_scan_reader_axis_get(r->reader, r->options.axis, r->options.centre);
+    }
     if (status == SKG_OK) status = skg_scan_projection_count(r->scan, &r->projections);
     if (status == SKG_OK) status = skg_scan_view_get(r->scan, 0, &view);
     if (status != SKG_OK) return status;
@@ -87,17 +99,35 @@ static skg_status prepare(const cli_arguments *arguments, reconstruction *r, int
     return r->image ? skg_fdk_create(r->scan, &r->options, &r->fdk) : SKG_ERR_MEMORY;
 }
 
+/* SKG_ERR_FILE: a stack, which has said what is wrong. */
+static skg_status read_projection(reconstruction *r, int64_t k) {
+    if (!r->stack) return skg_scan_reader_attenuation_get(r->reader, k, r->image);
+    return stack_attenuation(r->stack, k, r->image) == CLI_DONE ? SKG_OK : SKG_ERR_FILE;
+}
+
 static skg_status add_projections(reconstruction *r) {
     const double start = cli_now_ms();
     skg_status status = SKG_OK;
     cli_progress_follow("projections");
     for (int64_t k = 0; k < r->projections && status == SKG_OK; k++) {
-        status = skg_scan_reader_attenuation_get(r->reader, k, r->image);
+        status = read_projection(r, k);
         if (status == SKG_OK) status = skg_fdk_add(r->fdk, k, r->image);
     }
     cli_progress_end();
     r->seconds = 1e-3 * (cli_now_ms() - start);
     return status;
+}
+
+/* --size alone keeps the voxels' size and takes the middle. */
+static void note_crop(const cli_arguments *arguments, const reconstruction *r) {
+    const double width = (double)r->options.voxels[0] * r->options.voxel_mm, seen = 2 * r->report.covered_mm;
+    if (!cli_given(arguments, &cli_flag_reconstruct_size) ||
+        cli_given(arguments, &cli_flag_reconstruct_voxel) || width > seen * (1 - 1e-6))
+        return;
+    cli_note(
+        "--size %s crops: the volume is %.4g mm wide, of %.4g mm that the detector covers about the axis; --voxel %.4g shows "
+        "all of it",
+        cli_value(arguments, &cli_flag_reconstruct_size), width, seen, seen / (double)r->options.voxels[0]);
 }
 
 /* Says what the detector did not see. */
@@ -154,19 +184,25 @@ int cli_reconstruct(const cli_arguments *arguments) {
     skg_fdk_options_init(&r.options);
     r.options.progress = cli_progress();
     int exit_status = read_flags(arguments, &r, &size);
+    const char *geometry = cli_value(arguments, &cli_flag_reconstruct_geometry);
+    if (exit_status == CLI_DONE && geometry)
+        exit_status = stack_open(arguments->operands[0], geometry, &r.stack);
     if (exit_status == CLI_DONE) {
         skg_status status = prepare(arguments, &r, size);
         if (status == SKG_OK) status = add_projections(&r);
         skg_fdk_report_init(&r.report);
         if (status == SKG_OK) status = skg_fdk_report_get(r.fdk, &r.report);
         if (status == SKG_OK) warn(&r);
+        if (status == SKG_OK) note_crop(arguments, &r);
         if (status == SKG_OK) status = skg_fdk_save(r.fdk, r.place);
-        exit_status = status == SKG_OK                ? print(arguments, &r)
-                      : status == SKG_ERR_UNSUPPORTED ? (cli_fail(status), CLI_INPUT)
-                                                      : cli_fail(status);
+        exit_status = status == SKG_OK                           ? print(arguments, &r)
+                      : r.stack && *cli_first_failure()->message ? CLI_INPUT
+                      : status == SKG_ERR_UNSUPPORTED            ? (cli_fail(status), CLI_INPUT)
+                                                                 : cli_fail(status);
     }
     skg_fdk_release(&r.fdk);
     skg_scan_reader_release(&r.reader);
+    stack_close(&r.stack);
     free(r.image);
     return exit_status;
 }

@@ -4,6 +4,7 @@
 #include "common/encode.h"
 #include "common/interrupt.h"
 #include "common/say.h"
+#include "core/text.h"
 #include "scan/steps.h"
 #include "session/explain.h"
 
@@ -29,11 +30,13 @@ static int print(const cli_arguments *arguments, const cli_acquisition *a) {
     }
     if (cli_is_quiet()) return CLI_DONE;
     if (a->found == a->projections) {
-        cli_print("%s is finished: it has all %" PRId64 " projections\n", a->place, a->projections);
+        cli_print("%s is finished: it has %s%" PRId64 " %s\n", a->place,
+                  a->projections == 1 ? "its " : "all ", a->projections,
+                  skg_plural(a->projections, "projection", "projections"));
         return CLI_DONE;
     }
     cli_print("%" PRId64 " %s in %.1f s, %.3g per second; %s has %" PRId64 " of %" PRId64 "\n", a->computed,
-              a->computed == 1 ? "projection" : "projections", a->seconds, rate, a->place, there,
+              skg_plural(a->computed, "projection", "projections"), a->seconds, rate, a->place, there,
               a->projections);
     return CLI_DONE;
 }

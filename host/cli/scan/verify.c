@@ -3,6 +3,7 @@
 
 #include "common/encode.h"
 #include "common/say.h"
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -32,9 +33,11 @@ int verify_run(const cli_arguments *arguments, cli_acquisition *a) {
             "damaged", (json_int_t)damaged, "missing", (json_int_t)missing, "file", a->place));
         if (exit_status != CLI_DONE) return exit_status;
     } else if (!cli_is_quiet()) {
-        cli_print("%s: %" PRId64 " of %" PRId64 " projections fit their checksums, %" PRId64
-                  " are damaged, %" PRId64 " are missing\n",
-                  a->place, there, a->projections, damaged, missing);
+        cli_print("%s: %" PRId64 " of %" PRId64 " %s their checksums, %" PRId64 " %s damaged, %" PRId64
+                  " %s missing\n",
+                  a->place, there, a->projections,
+                  skg_plural(a->projections, "projection fits", "projections fit"), damaged,
+                  skg_plural(damaged, "is", "are"), missing, skg_plural(missing, "is", "are"));
     }
     return there == a->projections ? CLI_DONE : CLI_CHECK_FAILED;
 }

@@ -100,6 +100,15 @@ int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_sessi
     return exit_status;
 }
 
+void cli_note_no_noise(const cli_session *session) {
+    int32_t absolute = 0;
+    if (session->options.noise || session->view.projection != SKG_PROJECTION_POINT ||
+        skg_spectrum_absolute_get(session->spectrum, &absolute) != SKG_OK || !absolute)
+        return;
+    cli_note(
+        "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not given");
+}
+
 void cli_close_session(cli_session *session) {
     skg_scene_release(&session->chosen);
     skg_setup_release(&session->setup);

@@ -24,4 +24,8 @@ typedef struct {
 int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_session *session);
 void cli_close_session(cli_session *session);
 
+/* Says that photons are counted absolutely and nevertheless have no noise: of verbs whose pixels are the result, so that it stands
+ * there and in the table of `plan`, and not before every command. */
+void cli_note_no_noise(const cli_session *session);
+
 #endif

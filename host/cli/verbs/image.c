@@ -53,6 +53,7 @@ int cli_image(const cli_arguments *arguments) {
     cli_beside_read(arguments, &beside);
     if (exit_status == CLI_DONE) exit_status = cli_check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &rendering.session);
+    if (exit_status == CLI_DONE) cli_note_no_noise(&rendering.session);
     if (exit_status == CLI_DONE) exit_status = cli_choose_parts(arguments, &rendering.session);
     if (exit_status == CLI_DONE) {
         cli_scattering_ask(&scattering, &rendering.session);

@@ -11,6 +11,7 @@ int cli_image(const cli_arguments *arguments);
 int cli_lbuffer(const cli_arguments *arguments);
 int cli_material(const cli_arguments *arguments);
 int cli_mesh(const cli_arguments *arguments);
+int cli_parts(const cli_arguments *arguments);
 int cli_plan(const cli_arguments *arguments);
 int cli_thorax(const cli_arguments *arguments);
 int cli_make(const cli_arguments *arguments);

@@ -39,6 +39,9 @@ int view_page_write(const view_page *page, const char *path);
 /* Writes a page of the present moment, or of w->seconds if that is given. */
 int view_write_page(view_work *w, const char *path);
 
+/* Writes the parts of the present moment, with all their triangles, as glTF 2.0 in one file: in metres, y up. */
+int view_write_glb(view_work *w, const char *path);
+
 /* Writes w->seconds at w->fps. The labels stay where they are in the first frame. */
 int view_write_film(view_work *w, const char *path);
 

@@ -49,6 +49,8 @@ typedef struct {
     skg_plan *plan;     /* of the detector's image; made with the first one */
     skg_look look;
     double phase, at;    /* NaN: not given */
+    double zoom;         /* NaN: not given */
+    double middle[3];    /* mm: what is zoomed at */
     double seconds, fps; /* of films and of a page that breathes; seconds NaN: not given */
     float *values;       /* of the detector's image */
     double low, high;    /* shown as black and as white, from the first image on */

@@ -5,6 +5,7 @@
 #include "common/file.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "core/maths.h"
 #include "film/film.h"
 #include "view/pages.h"
 #include "view/picture.h"
@@ -68,6 +69,10 @@ static int is_picture(const char *path) {
     return cli_has_extension(path, ".png");
 }
 
+static int is_model(const char *path) {
+    return cli_has_extension(path, ".glb");
+}
+
 static const char *nth_output(const view_work *w, int index) {
     return cli_nth_value(w->arguments, &cli_flag_view_output, index);
 }
@@ -84,9 +89,13 @@ static int check_output(const view_work *w, const char *path) {
     if (is_picture(path) && !isnan(w->seconds))
         return cli_error(CLI_USAGE, "-o %s: a picture has no --seconds; choose its moment by --phase or --at",
                          path);
-    if (is_picture(path) || is_page(path)) return cli_file_check(path);
+    if (is_model(path) && !isnan(w->seconds))
+        return cli_error(CLI_USAGE, "-o %s: a model has no --seconds; choose its moment by --phase or --at",
+                         path);
+    if (is_picture(path) || is_page(path) || is_model(path)) return cli_file_check(path);
     if (!film_is(path))
-        return cli_error(CLI_USAGE, "-o %s: the extension is not .png, .html, .gif, .mp4 or .webm", path);
+        return cli_error(CLI_USAGE, "-o %s: the extension is not .png, .html, .glb, .gif, .mp4 or .webm",
+                         path);
     if (is_moment)
         return cli_error(CLI_USAGE, "-o %s: a film has more than one moment; leave out --phase and --at",
                          path);
@@ -107,6 +116,40 @@ static int read_time(view_work *w) {
     return exit_status;
 }
 
+/* Reads "Z" or "Z@PART"; the part is found when the scene is there. */
+static int read_zoom(view_work *w) {
+    const char *value = cli_value(w->arguments, &cli_flag_view_zoom);
+    char *end = NULL;
+    w->zoom = value ? strtod(value, &end) : (double)NAN;
+    if (!value || (end != value && w->zoom >= 0.01 && w->zoom <= 1e4 && (*end == '\0' || *end == '@')))
+        return CLI_DONE;
+    return cli_error(CLI_USAGE,
+                     "--zoom %s is neither a factor from 0.01 to 10000 nor one with a part, such as 8@needle",
+                     value);
+}
+
+/* The eye stands where the ball around the box of the parts, or of one of them, fills the picture Z times. */
+static int zoom(view_work *w) {
+    static const double FIELD = 28 * SKG_PI / 180; /* of the eye, scene_picture.h */
+    const char *part = w->zoom > 0 ? strchr(cli_value(w->arguments, &cli_flag_view_zoom), '@') : NULL;
+    const double *low = w->places.low, *high = w->places.high;
+    double radius = 0;
+    int64_t id = 0;
+    if (!(w->zoom > 0)) return CLI_DONE;
+    const skg_status status = part ? skg_scene_part_find(w->session.scene, part + 1, &id) : SKG_OK;
+    if (status != SKG_OK) return cli_fail(status);
+    if (part) low = w->places.parts[id].low, high = w->places.parts[id].high;
+    for (int k = 0; k < 3; k++) {
+        w->middle[k] = 0.5 * (low[k] + high[k]);
+        radius += 0.25 * (high[k] - low[k]) * (high[k] - low[k]);
+    }
+    w->look.target = w->middle;
+    w->look.distance = sqrt(radius) / tan(FIELD / 2) / w->zoom;
+    free(w->places.parts);
+    w->places = (view_places){0};
+    return view_find_places(&w->session, &w->look, &w->places);
+}
+
 static int read_flags(view_work *w) {
     w->phase = w->at = (double)NAN;
     skg_look_init(&w->look);
@@ -118,6 +161,7 @@ static int read_flags(view_work *w) {
         return cli_error(CLI_USAGE, "view: --sensitivity colours the parts of a page; add -o FILE.html");
     int exit_status = read_side(w);
     if (exit_status == CLI_DONE) exit_status = read_size(w);
+    if (exit_status == CLI_DONE) exit_status = read_zoom(w);
     const char *phase = cli_value(w->arguments, &cli_flag_view_phase);
     if (exit_status == CLI_DONE && phase) exit_status = cli_phase("--phase", phase, &w->phase);
     if (exit_status == CLI_DONE) exit_status = cli_number(w->arguments, &cli_flag_view_at, -1e9, 1e9, &w->at);
@@ -181,6 +225,7 @@ static int write_others(view_work *w) {
     int exit_status = CLI_DONE;
     for (int i = 0; exit_status == CLI_DONE && (path = nth_output(w, i)); i++) {
         if (is_page(path)) exit_status = view_write_page(w, path);
+        if (is_model(path)) exit_status = view_write_glb(w, path);
         if (film_is(path)) exit_status = view_write_film(w, path);
     }
     return exit_status;
@@ -242,6 +287,7 @@ int cli_view(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = view_make_image(&w);
     if (exit_status == CLI_DONE) exit_status = find_path(&w);
     if (exit_status == CLI_DONE) exit_status = view_find_places(&w.session, &w.look, &w.places);
+    if (exit_status == CLI_DONE) exit_status = zoom(&w);
     if (exit_status == CLI_DONE) exit_status = view_find_sensitivity(&w);
     if (exit_status == CLI_DONE) exit_status = write_pictures(&w);
     if (exit_status == CLI_DONE) exit_status = write_others(&w);

@@ -180,11 +180,6 @@ static skg_status read_all(skg_setup_reader *reader) {
     skg_json_node noise = skg_json_member(&top, "Noise");
     SKG_TRY(skg_setup_read_noise(reader, &noise));
     SKG_TRY(skg_setup_bin_counts(reader));
-    if (reader->setup->absolute && !noise.value && reader->setup->view.projection == SKG_PROJECTION_POINT)
-        skg_logger_say(
-            &reader->log, SKG_LOG_NOTE,
-            "mAs is given, so photons are counted absolutely; there is no noise, because the key Noise is not "
-            "given");
     if (reader->setup->has_tube && !reader->setup->absolute && reader->setup->noise.quantum)
         skg_logger_say(
             &reader->log, SKG_LOG_NOTE,

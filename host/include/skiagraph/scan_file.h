@@ -66,7 +66,8 @@ SKG_API skg_status skg_scan_file_samples_get(const char *path, const char *hash,
  *     path     .mha: MetaImage, one slice per projection
  *              .raw: the same values without a header, which stands beside it as .mhd
  *              .tif, .tiff: BigTIFF, one page per projection
- *              .h5, .hdf5: HDF5 in the layout of Data Exchange, in builds with HDF5
+ *              .h5, .hdf5: HDF5 in the layout of Data Exchange, in builds with HDF5; .nxs: the same, as NXtomo of NeXus,
+ *              too
  *              no extension, or a closing /: a folder with one TIFF file per projection
  *     file     result; the caller releases it
  *     errors   SKG_ERR_OUTPUT: another process writes the file (the sentence names it), a file of another scan is

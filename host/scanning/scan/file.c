@@ -38,7 +38,7 @@ skg_status skg_scan_find_format(const char *path, const skg_scan_format **format
             }
     return skg_fail(
         SKG_ERR_ARGUMENT,
-        "%s: the extension %s is no format of scans; use .h5, .mha, .raw, .tif, or a folder without an "
+        "%s: the extension %s is no format of scans; use .h5, .nxs, .mha, .raw, .tif, or a folder without an "
         "extension",
         path, dot);
 }

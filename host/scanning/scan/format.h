@@ -43,7 +43,7 @@ typedef struct {
 
 /* A kind of file. Functions that are NULL are not needed. */
 struct skg_scan_format {
-    const char *extensions[3];
+    const char *extensions[4]; /* the last one is NULL */
     /* Writes the file without its projections to `temporary`, and what stands beside it. */
     skg_status (*lay_out)(skg_scan_file *file, const char *temporary);
     /* Finds data_at and data_step of a file that is there, and checks its length. */

@@ -3,6 +3,7 @@
  * written in place without it. Its own metadata never changes again, and whoever opens the file finds it whole. */
 #include "core/files.h"
 #include "core/maths.h"
+#include "core/text.h"
 #include "scan/format.h"
 #include "scan/hdf5_files.h"
 #include "trajectory/types.h"
@@ -28,44 +29,7 @@ static skg_status fail(const char *path) {
     return skg_output_fail(path, 0, reason);
 }
 
-static int write_text(hid_t object, const char *name, const char *text) {
-    const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
-    H5Tset_size(type, strlen(text) + 1);
-    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    const int done = attribute >= 0 && H5Awrite(attribute, type, text) >= 0;
-    if (attribute >= 0) H5Aclose(attribute);
-    H5Sclose(space);
-    H5Tclose(type);
-    return done;
-}
-
-static int write_number(hid_t object, const char *name, hid_t type, const void *number) {
-    const hid_t space = H5Screate(H5S_SCALAR);
-    const hid_t attribute = H5Acreate2(object, name, type, space, H5P_DEFAULT, H5P_DEFAULT);
-    const int done = attribute >= 0 && H5Awrite(attribute, type, number) >= 0;
-    if (attribute >= 0) H5Aclose(attribute);
-    H5Sclose(space);
-    return done;
-}
-
-/* Makes a contiguous dataset, and writes it if values are given. */
-static int make_dataset(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *size,
-                        const void *values, const char *units) {
-    const hid_t space = H5Screate_simple(rank, size, NULL), how = H5Pcreate(H5P_DATASET_CREATE);
-    int done = H5Pset_layout(how, H5D_CONTIGUOUS) >= 0 && H5Pset_alloc_time(how, H5D_ALLOC_TIME_EARLY) >= 0 &&
-               H5Pset_fill_time(how, H5D_FILL_TIME_NEVER) >= 0 &&
-               H5Pset_obj_track_times(how, 0) >= 0; /* the bytes of a scan do not depend on the clock */
-    const hid_t set = done ? H5Dcreate2(parent, name, type, space, H5P_DEFAULT, how, H5P_DEFAULT) : -1;
-    done = set >= 0;
-    if (done && values) done = H5Dwrite(set, type, H5S_ALL, H5S_ALL, H5P_DEFAULT, values) >= 0;
-    if (done && units) done = write_text(set, "units", units);
-    if (set >= 0) H5Dclose(set);
-    H5Pclose(how);
-    H5Sclose(space);
-    return done;
-}
-
-static hid_t element_type(const skg_scan_file *file) {
+hid_t skg_hdf5_element_type(const skg_scan_file *file) {
     return file->options.type == SKG_TYPE_FLOAT64  ? H5T_NATIVE_DOUBLE
            : file->options.type == SKG_TYPE_UINT16 ? H5T_NATIVE_UINT16
                                                    : H5T_NATIVE_FLOAT;
@@ -107,16 +71,16 @@ static int make_exchange(hid_t root, const skg_scan_file *file, const geometry *
     const hsize_t flats[3] = {(hsize_t)file->options.flats, rows, columns};
     const hsize_t darks[3] = {(hsize_t)file->options.darks, rows, columns};
     const hid_t group = H5Gcreate2(root, "exchange", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
-    const hid_t type = element_type(file);
+    const hid_t type = skg_hdf5_element_type(file);
     const char *unit = file->options.unit;
     if (group < 0) return 0;
     const int done =
-        make_dataset(group, "data", type, 3, data, NULL, unit) &&
-        (!file->options.flats || make_dataset(group, "data_white", type, 3, flats, NULL, unit)) &&
-        (!file->options.darks || make_dataset(group, "data_dark", type, 3, darks, NULL, unit)) &&
-        make_dataset(group, "theta", H5T_NATIVE_DOUBLE, 1, &n, g->theta, "degrees") &&
-        write_text(group, "quantity", file->options.name) &&
-        write_number(group, "flat_field", H5T_NATIVE_DOUBLE, &file->options.flat_field);
+        skg_hdf5_put_set(group, "data", type, 3, data, NULL, unit) &&
+        (!file->options.flats || skg_hdf5_put_set(group, "data_white", type, 3, flats, NULL, unit)) &&
+        (!file->options.darks || skg_hdf5_put_set(group, "data_dark", type, 3, darks, NULL, unit)) &&
+        skg_hdf5_put_set(group, "theta", H5T_NATIVE_DOUBLE, 1, &n, g->theta, "degrees") &&
+        skg_hdf5_put_text(group, "quantity", file->options.name) &&
+        skg_hdf5_put_number(group, "flat_field", H5T_NATIVE_DOUBLE, &file->options.flat_field);
     H5Gclose(group);
     return done;
 }
@@ -130,7 +94,7 @@ static int write_rotation(hid_t group, const skg_scan_file *file) {
         const char *name;
         const double *vector;
     } vectors[] = {{"axis", o->axis}, {"centre_of_rotation", o->centre}};
-    int done = write_number(group, "projection", H5T_NATIVE_INT32, &file->view.projection);
+    int done = skg_hdf5_put_number(group, "projection", H5T_NATIVE_INT32, &file->view.projection);
     for (int v = 0; v < 2 && done && (!skg_scan_is_table(file->options.scan) || o->step_rad != 0); v++) {
         const hid_t attribute =
             H5Acreate2(group, vectors[v].name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
@@ -147,10 +111,10 @@ static int make_geometry(hid_t root, const skg_scan_file *file, const geometry *
     const hid_t group = H5Gcreate2(root, "geometry", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     int done = group >= 0 && write_rotation(group, file);
     for (int v = 0; v < 4 && done; v++)
-        done = make_dataset(group, names[v], H5T_NATIVE_DOUBLE, 2, size, g->vectors[v], "mm");
-    done =
-        done && make_dataset(group, "time", H5T_NATIVE_DOUBLE, 1, size, g->time, "s") &&
-        make_dataset(group, "phase", H5T_NATIVE_DOUBLE, 1, size, NULL, "1 = a breath, from end-inspiration");
+        done = skg_hdf5_put_set(group, names[v], H5T_NATIVE_DOUBLE, 2, size, g->vectors[v], "mm");
+    done = done && skg_hdf5_put_set(group, "time", H5T_NATIVE_DOUBLE, 1, size, g->time, "s") &&
+           skg_hdf5_put_set(group, "phase", H5T_NATIVE_DOUBLE, 1, size, NULL,
+                            "1 = a breath, from end-inspiration");
     if (group >= 0) H5Gclose(group);
     return done;
 }
@@ -159,13 +123,20 @@ static int make_process(hid_t root, const skg_scan_file *file) {
     const hsize_t n = (hsize_t)file->projections;
     const hid_t group = H5Gcreate2(root, "process", H5P_DEFAULT, H5P_DEFAULT, H5P_DEFAULT);
     if (group < 0) return 0;
-    const int done = make_dataset(group, "done", H5T_NATIVE_UINT8, 1, &n, file->done, NULL) &&
-                     make_dataset(group, "checksum", H5T_NATIVE_UINT32, 1, &n, file->checksums, "CRC-32C") &&
-                     write_text(group, "hash", file->options.hash) &&
-                     write_number(group, "samples", H5T_NATIVE_INT64, &file->options.samples) &&
-                     write_text(group, "program", "skiagraph " SKG_VERSION);
+    const int done =
+        skg_hdf5_put_set(group, "done", H5T_NATIVE_UINT8, 1, &n, file->done, NULL) &&
+        skg_hdf5_put_set(group, "checksum", H5T_NATIVE_UINT32, 1, &n, file->checksums, "CRC-32C") &&
+        skg_hdf5_put_text(group, "hash", file->options.hash) &&
+        skg_hdf5_put_number(group, "samples", H5T_NATIVE_INT64, &file->options.samples) &&
+        skg_hdf5_put_text(group, "program", "skiagraph " SKG_VERSION);
     H5Gclose(group);
     return done;
+}
+
+/* Whether the file is to be NXtomo, too. */
+static int is_nexus(const skg_scan_file *file) {
+    const char *dot = strrchr(file->path, '.');
+    return dot && skg_same_name(dot, ".nxs");
 }
 
 /* The file is aligned to pages, so that projections are. */
@@ -175,8 +146,9 @@ static skg_status make_file(skg_scan_file *file, const char *path, const geometr
     int done = H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_LATEST) >= 0 &&
                H5Pset_alignment(access, PAGE, PAGE) >= 0;
     const hid_t root = done ? H5Fcreate(path, H5F_ACC_TRUNC, H5P_DEFAULT, access) : -1;
-    done = root >= 0 && write_text(root, "implements", "exchange") && make_exchange(root, file, g) &&
-           make_geometry(root, file, g) && make_process(root, file);
+    done = root >= 0 && skg_hdf5_put_text(root, "implements", "exchange") && make_exchange(root, file, g) &&
+           make_geometry(root, file, g) && make_process(root, file) &&
+           (!is_nexus(file) || skg_hdf5_put_nexus(root, file, g->theta));
     skg_status status = done ? SKG_OK : fail(file->path);
     if (root >= 0 && !skg_hdf5_close(root, done, HELD) && status == SKG_OK)
         status = skg_output_fail(file->path, errno, "HDF5 could not finish it");
@@ -262,7 +234,7 @@ static skg_status identify(const char *path, skg_scan_identity *identity) {
     return SKG_OK;
 }
 
-const skg_scan_format skg_scan_format_hdf5 = {.extensions = {".h5", ".hdf5"},
+const skg_scan_format skg_scan_format_hdf5 = {.extensions = {".h5", ".hdf5", ".nxs"},
                                               .lay_out = lay_out,
                                               .locate = locate,
                                               .identify = identify,

@@ -3,6 +3,7 @@
 #define SKG_SCAN_HDF5_FILES_H
 
 #include "core/core.h"
+#include "scan/format.h"
 
 #include <errno.h>
 #include <fcntl.h>
@@ -30,6 +31,20 @@ static inline skg_status skg_hdf5_fail(const char *path) {
                     access(path, R_OK) != 0 ? strerror(errno)
                                             : "it is no HDF5 file; give the .h5 that a scan wrote");
 }
+
+/* The type of the pixels of a file. */
+hid_t skg_hdf5_element_type(const skg_scan_file *file);
+
+/* Writes an attribute. Returns 0 on failure, as the two that follow. */
+int skg_hdf5_put_text(hid_t object, const char *name, const char *text);
+int skg_hdf5_put_number(hid_t object, const char *name, hid_t type, const void *number);
+
+/* Makes a contiguous dataset, and writes it if values are given. units: NULL: none. */
+int skg_hdf5_put_set(hid_t parent, const char *name, hid_t type, int rank, const hsize_t *size,
+                     const void *values, const char *units);
+
+/* Adds /entry as the definition NXtomo of NeXus has it, over the datasets of /exchange. theta: degrees of each projection. */
+int skg_hdf5_put_nexus(hid_t root, const skg_scan_file *file, const double *theta);
 
 /* Copies a dataset of numbers with its units; it may be missing. Returns 0 on failure. */
 int skg_hdf5_copy_set(hid_t from, hid_t to, const char *name);

@@ -3,7 +3,7 @@
 
 #include <skiagraph/scan_reader.h>
 
-const skg_scan_format skg_scan_format_hdf5 = {.extensions = {".h5", ".hdf5"}, .is_missing = 1};
+const skg_scan_format skg_scan_format_hdf5 = {.extensions = {".h5", ".hdf5", ".nxs"}, .is_missing = 1};
 
 static skg_status refuse(void) {
     return skg_fail(SKG_ERR_UNSUPPORTED, "this build of skiagraph has no HDF5; build it with libhdf5-dev");

@@ -18,9 +18,13 @@ import zipfile
 from .wheel import DRAGON
 
 
+def _home() -> pathlib.Path:
+    return pathlib.Path(__file__).parent
+
+
 def take(wheel: str | pathlib.Path, folder: str | pathlib.Path | None = None) -> pathlib.Path:
     """Copies the dragon and the twins out of a wheel of gVXR, into the folder of this package by default."""
-    home = pathlib.Path(folder or pathlib.Path(__file__).parent)
+    home = pathlib.Path(folder or _home())
     target = home / DRAGON
     with zipfile.ZipFile(wheel) as archive:
         inside = [name for name in archive.namelist() if name.rsplit("/", 1)[-1] == DRAGON]
@@ -40,8 +44,16 @@ def main(words: list[str]) -> int:
         print(take(words[0]))
         return 0
     with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
-        subprocess.run([sys.executable, "-m", "pip", "download", "--no-deps", "-q", "-d", folder, "gvxr==2.1.0"], check=True)
-        print(take(next(pathlib.Path(folder).glob("*.whl"))))
+        asked = [sys.executable, "-m", "pip", "download", "--no-deps", "-q", "-d", folder, "gvxr==2.1.0"]
+        done = subprocess.run(asked, capture_output=True, text=True, check=False)
+        wheels = list(pathlib.Path(folder).glob("*.whl"))
+        if done.returncode or not wheels:
+            reason = (done.stderr.strip() or "there is no wheel for this system").splitlines()[-1]
+            print(f"gvxr-2.1.0-*.whl: pip could not fetch it: {reason}\nTake the wheel from https://pypi.org/project/gvxr/2.1.0/#files and "
+                  f"give its path: python -m skiagraph.gvxr.dragon WHEEL; or put {DRAGON}, which lies in it, into {_home()}",
+                  file=sys.stderr)
+            return 1
+        print(take(wheels[0]))
     return 0
 
 

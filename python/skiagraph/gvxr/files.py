@@ -1,4 +1,4 @@
-"""Image files that gVXR writes beside those of Skiagraph: MetaImage of two files, text, and DICOM. Private."""
+"""Image files that gVXR writes and Skiagraph does not, or otherwise: flat MetaImage, text, and DICOM. Private."""
 from __future__ import annotations
 
 import os
@@ -33,23 +33,32 @@ def _replace(path: str, content: bytes) -> None:
         raise FileError(f"{path}: cannot be written: {error.strerror}") from None
 
 
-def _mhd(path: str, image: NDArray[np.float32], spacing: _Spacing) -> None:
+def _header(image: NDArray[np.float32], spacing: _Spacing, data: str, comment: str) -> bytes:
+    """As many dimensions as the array has, and no place in the world, as gVXR's have none."""
+    steps = [*spacing, 1.0][:image.ndim]
+    lines = ["ObjectType = Image", f"NDims = {image.ndim}", f"Comment = {comment}", "BinaryData = True",
+             "BinaryDataByteOrderMSB = False", "CompressedData = False", "DimSize = " + " ".join(map(str, image.shape[::-1])),
+             "ElementSpacing = " + " ".join(f"{step:.9g}" for step in steps), "ElementType = MET_FLOAT",
+             f"ElementDataFile = {data}"]
+    return ("\n".join(lines) + "\n").encode()
+
+
+def _mha(path: str, image: NDArray[np.float32], spacing: _Spacing, comment: str) -> None:
+    _replace(path, _header(image, spacing, "LOCAL", comment) + image.astype("<f4").tobytes())
+
+
+def _mhd(path: str, image: NDArray[np.float32], spacing: _Spacing, comment: str) -> None:
     """The header, and the numbers in a file .raw beside it."""
     raw = os.path.splitext(path)[0] + ".raw"
-    steps = [*spacing, 1.0][:image.ndim]
-    lines = ["ObjectType = Image", f"NDims = {image.ndim}", "BinaryData = True", "BinaryDataByteOrderMSB = False",
-             "CompressedData = False", "DimSize = " + " ".join(map(str, image.shape[::-1])),
-             "ElementSpacing = " + " ".join(f"{step:.9g}" for step in steps), "ElementType = MET_FLOAT",
-             f"ElementDataFile = {os.path.basename(raw)}"]
     _replace(raw, image.astype("<f4").tobytes())
-    _replace(path, ("\n".join(lines) + "\n").encode())
+    _replace(path, _header(image, spacing, os.path.basename(raw), comment))
 
 
-def _raw(path: str, image: NDArray[np.float32], spacing: _Spacing) -> None:
+def _raw(path: str, image: NDArray[np.float32], spacing: _Spacing, comment: str) -> None:
     _replace(path, image.astype("<f4").tobytes())
 
 
-def _txt(path: str, image: NDArray[np.float32], spacing: _Spacing) -> None:
+def _txt(path: str, image: NDArray[np.float32], spacing: _Spacing, comment: str) -> None:
     """A line a row; NumPy's loadtxt reads it."""
     _replace(path, "".join(" ".join(f"{value:.9g}" for value in row) + "\n" for row in image.tolist()).encode())
 
@@ -63,7 +72,7 @@ def _element(group: int, number: int, kind: str, value: bytes) -> bytes:
     return struct.pack("<HH2sH", group, number, kind.encode(), len(value)) + value
 
 
-def _dicom(path: str, image: NDArray[np.float32], spacing: _Spacing) -> None:
+def _dicom(path: str, image: NDArray[np.float32], spacing: _Spacing, comment: str) -> None:
     """A secondary capture of 16 bits; slope and intercept give the values back to 1/65535 of their range."""
     low, high = float(image.min()), float(image.max())
     slope = float(f"{(high - low) / 65535:.9g}") or 1.0  # a decimal string has at most 16 characters
@@ -86,11 +95,11 @@ def _dicom(path: str, image: NDArray[np.float32], spacing: _Spacing) -> None:
     _replace(path, b"\0" * 128 + b"DICM" + _element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + data)
 
 
-_WRITERS: dict[str, tuple[Callable[[str, Any, _Spacing], None], bool]] = {
-    ".mhd": (_mhd, True), ".raw": (_raw, True), ".txt": (_txt, False), ".dcm": (_dicom, False)}
+_WRITERS: dict[str, tuple[Callable[[str, Any, _Spacing, str], None], bool]] = {
+    ".mha": (_mha, True), ".mhd": (_mhd, True), ".raw": (_raw, True), ".txt": (_txt, False), ".dcm": (_dicom, False)}
 
 
-def write_other(path: str, image: Any, spacing: _Spacing) -> bool:
+def write_other(path: str, image: Any, spacing: _Spacing, comment: str) -> bool:
     """Writes [row, column] or [n, row, column] by the extension; False if it is none of these. spacing: mm."""
     extension = os.path.splitext(path)[1].lower()
     if extension not in _WRITERS:
@@ -98,5 +107,5 @@ def write_other(path: str, image: Any, spacing: _Spacing) -> bool:
     writer, several = _WRITERS[extension]
     if image.ndim != 2 and not several:
         raise ArgumentError(f"{path}: {extension} holds one image and not {image.shape[0]}; give .mhd, .mha or .tif")
-    writer(path, np.ascontiguousarray(image, np.float32), spacing)
+    writer(path, np.ascontiguousarray(image, np.float32), spacing, comment)
     return True

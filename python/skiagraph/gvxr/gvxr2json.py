@@ -70,7 +70,7 @@ def _detector() -> dict[str, Any]:
         made["LSF"] = world.detector_keys["LSF"]
     if world.scintillator:
         name, thickness = world.scintillator
-        made["Scintillator"] = {"Material": name, "Thickness": thickness, "Unit": "mm", "Deposition": "all"}
+        made["Scintillator"] = {"Material": name, "Thickness": thickness, "Unit": "mm", "Escape": True}
     elif world.response_rows is not None:
         made["Energy response"] = {"Unit": "keV", "LUT": world.response_rows.tolist()}
     return made

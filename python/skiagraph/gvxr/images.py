@@ -119,5 +119,6 @@ saveLastPathLength = saveLastLBuffer
 def save(path: str, image: Any, name: str, unit: str) -> None:
     """Writes an image of the detector, or several."""
     view = world.view()
-    if not write_other(path, image, (float(np.linalg.norm(view.column_step)), float(np.linalg.norm(view.row_step)))):
+    spacing = float(np.linalg.norm(view.column_step)), float(np.linalg.norm(view.row_step))
+    if not write_other(path, image, spacing, f"{name} ({unit})" if unit else name):
         write_picture(path, image, names=[name], unit=unit, view=view)

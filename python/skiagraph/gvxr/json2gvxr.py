@@ -53,8 +53,17 @@ def _read(fname: str) -> dict[str, Any]:
         updatePath(fname)
     if params is None:
         raise SceneError("no scene file was read yet; call initGVXR, or give its name")
-    found: dict[str, Any] = params
+    found: dict[str, Any] = _listed(params)
     return found
+
+
+def _listed(value: Any) -> Any:
+    """What a script may have put into params, as a file has it: arrays and tuples as lists, numbers of NumPy as Python's."""
+    if isinstance(value, dict):
+        return {key: _listed(inside) for key, inside in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_listed(inside) for inside in value]
+    return value.tolist() if isinstance(value, (np.ndarray, np.generic)) else value
 
 
 def _plain(name: str) -> str:

@@ -1,7 +1,10 @@
 """Meshes and the scene graph."""
 from __future__ import annotations
 
+import collections
 import os
+import time
+import weakref
 from typing import Any
 
 import numpy as np
@@ -29,12 +32,36 @@ def _loaded(label: str, mesh: Mesh, parent: str) -> None:
     world.add(label, mesh, parent)
 
 
+#: Meshes of files that are alive, by the file's state and the unit; and the last few that were read, which stay alive.
+_of_files: weakref.WeakValueDictionary[Any, Mesh] = weakref.WeakValueDictionary()
+_latest: collections.deque[Mesh] = collections.deque(maxlen=4)
+#: A file that changed this recently may change once more at the same time by the clock of its file system, s.
+_SETTLED = 2.0
+
+
+def _read(path: str, unit_mm: float) -> Mesh:
+    """The mesh of a file. A script that loads a file anew for each image gets the mesh that is there, if the file is unchanged."""
+    try:
+        state = os.stat(path)
+    except OSError:
+        return Mesh.load(path, unit_mm=unit_mm)  # which says what is wrong
+    key = (state.st_dev, state.st_ino, state.st_size, state.st_mtime_ns, state.st_ctime_ns, os.path.basename(path), unit_mm)
+    mesh = _of_files.get(key)
+    if mesh is None:
+        settled = time.time() - max(state.st_mtime, state.st_ctime) > _SETTLED
+        mesh = Mesh.load(path, unit_mm=unit_mm)
+        if settled:
+            _of_files[key] = mesh
+    _latest.append(mesh)
+    return mesh
+
+
 def loadMeshFile(aLabel: str, aFileName: str, aUnitOfLength: str, addToRendererAsInnerSurface: bool = True,
                  aParent: str = "root") -> None:
     """In the folder of this package, welsh-dragon-small.stl is the mesh of gVXR's wheel (skiagraph.gvxr.dragon)."""
     if not os.path.exists(aFileName) and os.path.basename(aFileName) == wheel.DRAGON:
         raise FileError(f"{aFileName}: is not there; {wheel.ADVICE}")
-    _loaded(aLabel, Mesh.load(aFileName, unit_mm=millimetres(aUnitOfLength)), aParent)
+    _loaded(aLabel, _read(aFileName, millimetres(aUnitOfLength)), aParent)
     world.node(aLabel).file, world.node(aLabel).unit = os.path.abspath(aFileName), aUnitOfLength
     if addToRendererAsInnerSurface:
         addPolygonMeshAsInnerSurface(aLabel)

@@ -13,6 +13,10 @@ _Values = NDArray[np.float64]
 #: Radii while they push, as a multiple of their own: they come to rest with a little room.
 ROOM = 1.004
 STEPS = 1500
+#: Two that overlap part by this multiple of what they need: 1.6 takes a third of the steps that 1 takes, of 120 spheres at 50 %.
+PUSH = 1.6
+#: Of 120 spheres at 50 %, one start in 12 has come to rest jammed.
+STARTS = 3
 
 
 def radii_of(box: _Values, radius: float, spread: float, fraction: float, random: np.random.Generator) -> _Values:
@@ -44,6 +48,17 @@ def _pairs(places: _Values, reach: float) -> tuple[NDArray[np.int64], NDArray[np
 
 def pack(box: Any, radii: _Values, random: np.random.Generator) -> _Values:
     """Centres of spheres that lie in a box about the origin and do not overlap."""
+    for _ in range(STARTS):
+        found = _pack(box, radii, random)
+        if found is not None:
+            return found
+    share = float((4 / 3 * np.pi * radii ** 3).sum() / np.prod(box))
+    raise ArgumentError(f"no arrangement was found of {len(radii)} spheres that fill {100 * share:.3g} % of the box; give a smaller "
+                        "percentage or smaller spheres")
+
+
+def _pack(box: Any, radii: _Values, random: np.random.Generator) -> _Values | None:
+    """From one start; None if they still overlap at the end."""
     sizes = ROOM * radii
     reach = np.asarray(box, dtype=float) / 2 - sizes[:, None]
     if (reach < 0).any():
@@ -61,13 +76,11 @@ def pack(box: Any, radii: _Values, random: np.random.Generator) -> _Values:
         gap = distance - sizes[a] - sizes[b]
         if not (gap < -(ROOM - 1) * (radii[a] + radii[b])).any():
             return places
-        push = between * (np.minimum(gap, 0) / distance)[:, None] * -0.5
+        push = between * (np.minimum(gap, 0) / distance)[:, None] * (-PUSH / 2)
         step = np.zeros_like(places)
         np.add.at(step, a, push)
         np.add.at(step, b, -push)
         new = np.clip(places + step, -reach, reach)
         moved += float(np.abs(new - places).max()) * np.sqrt(3)
         places = new
-    share = float((4 / 3 * np.pi * radii ** 3).sum() / np.prod(box))
-    raise ArgumentError(f"no arrangement was found of {len(radii)} spheres that fill {100 * share:.3g} % of the box; give a smaller "
-                        "percentage or smaller spheres")
+    return None

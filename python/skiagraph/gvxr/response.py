@@ -63,10 +63,15 @@ def clearLSF() -> None:
 # Energy response
 
 
+def _scintillator(material: str, thickness_mm: float) -> Response:
+    """What scattered photons and K fluorescence carry out of the layer is not recorded."""
+    return Response.scintillator(_layer(material), thickness_mm, escape=True)
+
+
 def setScintillator(aMaterial: str, aThickness: float, aUnitOfLength: str) -> None:
     clearDetectorEnergyResponse()
     thickness = aThickness * millimetres(aUnitOfLength)
-    world.response = Response.scintillator(_layer(aMaterial), thickness, deposition="all")
+    world.response = _scintillator(aMaterial, thickness)
     world.scintillator = aMaterial, thickness
 
 
@@ -103,8 +108,7 @@ def getEnergyResponse(*arguments: Any) -> tuple[tuple[float, float], ...]:
     (material, thickness, unit of length, unit of energy) of a scintillator."""
     if len(arguments) == 4:
         material, thickness, length, energy = arguments
-        response = Response.scintillator(_layer(material), thickness * millimetres(length), deposition="all")
-        return _rows(_sampled(response), energy)
+        return _rows(_sampled(_scintillator(material, thickness * millimetres(length))), energy)
     if len(arguments) != 1:
         raise ArgumentError("give a unit of energy, or material, thickness, unit of length and unit of energy")
     if world.response is None:

@@ -89,7 +89,7 @@ def _write(path: str, images: NDArray[np.float32]) -> None:
         return
     os.makedirs(path, exist_ok=True)
     for i, image in enumerate(images):
-        save(os.path.join(path, f"projection-{i:05}.tif"), image, "projection", "")
+        save(os.path.join(path, f"projection_{i:04}.tiff"), image, "projection", "")
 
 
 def getLastProjectionSet() -> NDArray[np.float32]:

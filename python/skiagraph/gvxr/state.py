@@ -155,11 +155,9 @@ class World:
         """Least and greatest x, y, z of these nodes in the world, mm."""
         found = []
         for label in labels:
-            mesh = self.nodes[label].mesh
+            mesh = self.node(label).mesh
             if mesh is not None:
-                matrix = self.world_matrix(label)
-                vertices = mesh.vertices @ matrix[:3, :3].T + matrix[:3, 3]
-                found += [vertices.min(0), vertices.max(0)]
+                found += _box(mesh, self.world_matrix(label))
         if not found:
             raise SceneError("there is no mesh to bound")
         return np.concatenate([np.min(found, 0), np.max(found, 0)])
@@ -228,7 +226,7 @@ class World:
             raise SceneError(f"{', '.join(map(repr, outer))} are all outer surfaces; with inner surfaces there can be one, which "
                              "they displace")
         made_of = (json.dumps(description), needs_beam, self.per_cm2, tuple(self.filters), tuple(self.inherent), tuple(self.tube.items()),
-                   tuple(self.spectrum.items()), [(label, node.surface, id(node.mesh)) for label, node in shown])
+                   tuple(self.spectrum.items()), [(label, node.surface, node.mesh) for label, node in shown])
         if self._scene is None or made_of != self._made_of:
             self._scene = self._make(description, shown, outer, needs_beam)
             self._made_of = made_of
@@ -319,6 +317,27 @@ def material_of(name: int | str) -> Material:
         return Material(element_symbol(name))
     except ArgumentError:
         return Material(str(name))
+
+
+def _box(mesh: Mesh, matrix: NDArray[np.float64]) -> list[NDArray[np.float64]]:
+    """Least and greatest x, y, z of the vertices behind a matrix."""
+    turn, shift = matrix[:3, :3], matrix[:3, 3]
+    ends = np.reshape(mesh.health["bounds"], (2, 3))
+    if (np.count_nonzero(turn, axis=1) == 1).all() and (np.count_nonzero(turn, axis=0) == 1).all():  # axes stay axes
+        placed = ends @ turn.T + shift
+        return [placed.min(0), placed.max(0)]
+    # Floats find the vertices that may be outermost, doubles choose among them.
+    offsets, origin = mesh.offsets, mesh.origin
+    reach = float(np.abs(ends - origin).max())
+    low, high = np.empty(3), np.empty(3)
+    for k in range(3):
+        row = turn[k]
+        along = offsets @ row.astype(np.float32)
+        room = 8 * np.finfo(np.float32).eps * float(np.abs(row).sum()) * reach  # roundings of three products and their sum
+        low[k] = (offsets[along <= along.min() + room].astype(float) @ row).min()
+        high[k] = (offsets[along >= along.max() - room].astype(float) @ row).max()
+    middle = turn @ origin + shift
+    return [low + middle, high + middle]
 
 
 def centred(bounds: NDArray[np.float64]) -> NDArray[np.float64]:

@@ -21,6 +21,7 @@ function drawBars() {
   const largest = Math.max(...study.sources.map(s => s.error || 0)) || 1;
   const order = study.sources.map((s, i) => ({s, i})).filter(p => p.s.error !== 0).sort((a, b) => (b.s.error ?? -1) - (a.s.error ?? -1));
   const none = study.sources.filter(s => s.error === 0);
-  byId("bars").innerHTML = order.map(p => bar(p.s, p.i, largest)).join("") +
-    (none.length ? `<span>none</span><span></span><span class="why">${none.map(s => plain(s.name + (s.reason ? " (" + s.reason + ")" : ""))).join(", ")}</span>` : "");
+  const rows = order.map(p => bar(p.s, p.i, largest));
+  if (none.length) rows.push(`<span>none</span><span class="gap"></span><span class="why">${none.map(s => plain(s.name + (s.reason ? " (" + s.reason + ")" : ""))).join(", ")}</span>`);
+  byId("bars").innerHTML = rows.map(row => `<div class="source">${row}</div>`).join("");
 }

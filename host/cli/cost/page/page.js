@@ -169,6 +169,7 @@ function listen() {
   byId("plot").addEventListener("click", pick);
   byId("accept").addEventListener("input", () => slide(frontier.length - 1 - Number(byId("accept").value)));
   byId("have").addEventListener("input", () => slide(Number(byId("have").value)));
+  addEventListener("resize", () => drawPlot(chosen));
   byId("error").addEventListener("change", () => { key = byId("error").value; drawPlot(chosen); });
   byId("home").addEventListener("click", () => choose(study.here));
   byId("show-buy").addEventListener("click", () => choose(study.buy));

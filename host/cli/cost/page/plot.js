@@ -43,6 +43,14 @@ function decades(a, b) {
 }
 
 const box = {left: 78, right: 660, top: 16, bottom: 410};
+let isNarrow = false; /* without the scales on the right, so that the text of a phone is not small */
+function makeBox() {
+  const width = Math.min(Math.max(Math.round(byId("plot").clientWidth) || 820, 320), 820);
+  isNarrow = width < 640;
+  box.left = isNarrow ? 58 : 78;
+  box.right = isNarrow ? width - 12 : width - 160;
+  byId("plot").setAttribute("viewBox", `0 0 ${width} 470`);
+}
 let key = "rms"; /* of the error that is shown */
 
 /* The settings that the plot shows, with their places. */
@@ -76,8 +84,9 @@ function grid(at) {
     text += `<line x1="${box.left}" x2="${box.right}" y1="${at.y(v)}" y2="${at.y(v)}" stroke="var(--rule)"/>` +
       `<text x="${box.left - 7}" y="${at.y(v) + 4}" text-anchor="end">${percent(v).replace(" %", "")}</text>`;
   text += `<text x="${(box.left + box.right) / 2}" y="${box.bottom + 44}" text-anchor="middle">${study.frames > 1
-    ? "milliseconds a frame, in batches of " + study.frames : "milliseconds an image"} ${study.priced ? "(a line reaches to the median of the visits)" : "of a busy machine: no prices"}</text>` +
+    ? "milliseconds a frame, in batches of " + study.frames : "milliseconds an image"} ${!study.priced ? "of a busy machine: no prices" : isNarrow ? "" : "(a line reaches to the median of the visits)"}</text>` +
     `<text transform="translate(15 ${(box.top + box.bottom) / 2}) rotate(-90)" text-anchor="middle">error, % of the open beam</text>`;
+  if (isNarrow) return text;
   if (study.grey_levels !== null) text += secondScale(at, 1 / study.grey_levels, box.right, "grey levels of 256 in a PNG");
   if (study.noise !== null) text += secondScale(at, study.noise, box.right + 78, "sigma of the scene's noise");
   return text;
@@ -108,6 +117,7 @@ function mark(p, at, chosen) {
 }
 
 function drawPlot(chosen) {
+  makeBox();
   const at = placed(), here = at.shown.find(p => p.i === study.here);
   const right = here && here.x > (box.left + box.right) / 2;
   const label = here ? `<text x="${here.x + (right ? -13 : 13)}" y="${here.y - 11}" text-anchor="${right ? "end" : "start"}" font-weight="bold">you are here</text>` : "";

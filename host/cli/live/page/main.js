@@ -71,6 +71,7 @@ const keys = {
   '4': () => lookAs('source'), f: () => lookAs('parts'), d: () => byId('dark').click(), i: () => byId('invert').click(),
   a: () => byId('auto').click(), b: () => byId('keep').click(), l: () => byId('profiles').click(), m: () => byId('measure-3d').click(), c: () => nextCut(), Escape: () => { choose(''); clearTape(); },
   s: () => choose('source'), t: () => choose('detector'), '/': () => byId('find').focus(),
+  '?': () => { const box = byId('key-list'); if (box.open) box.close(); else box.show(); },
   ' ': () => { if (!byId('breath').hidden) byId('play').click(); },
   '+': () => { zoom(0.9, 0, 0); }, '=': () => { zoom(0.9, 0, 0); }, '-': () => { zoom(1 / 0.9, 0, 0); },
 };
@@ -134,9 +135,10 @@ function begin() {
   net.hear.role = message => { net.role = message.role; restartPictures(); tellRole(); change(); };
   net.hear.scene = takeScene;
   net.hear.adopted = adopt;
-  net.hear.error = message => { giveUp(message.wish); showSentence(message.error, true); };
-  net.hear.refused = message => showSentence(message.refused);
+  net.hear.error = message => { settle(message.wish); giveUp(message.wish); showSentence(message.error, true); };
+  net.hear.refused = message => { settle(net.sent); showSentence(message.refused); };
   for (const [id, act] of Object.entries({undo, redo, reset})) byId(id).onclick = () => { act(); describe(); change(); };
+  byId('help').onclick = keys['?'];
   byId('dark').onclick = () => setDark(!document.documentElement.classList.contains('dark'));
   document.addEventListener('keydown', pressed);
   document.querySelectorAll('details').forEach(box => { box.ontoggle = drawHistogram; });

@@ -1,7 +1,7 @@
 // What the server says goes to `hear`, frames to `show`, and wishes go the other way.
 'use strict';
 // shot: the newest message about a frame.
-const net = {channel: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, picture: null, file: null, waits: false};
+const net = {channel: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, picture: null, file: null, waits: false, timer: 0};
 const HEADER = 48; // bytes before the pixels of a frame, live_header of host/cli/live/frame.h
 
 function readFrame(buffer) {
@@ -33,8 +33,23 @@ function receive(data) {
   if (mark !== 0x534b4c46) return net.file(readFile(data));
   const frame = readFrame(data);
   net.shown = frame.wish;
+  settle(frame.wish);
   net.show(frame);
   say({ack: frame.number});
+}
+
+// The page says that the server computes, and greys the numbers of the older image, once a wish has waited for this long, ms.
+const SOON = 80;
+const showComputing = on => document.documentElement.classList.toggle('computing', on);
+function expect() {
+  net.timer = net.timer || setTimeout(() => showComputing(true), SOON);
+}
+// An answer to a wish, an image or what is wrong with it.
+function settle(wish) {
+  clearTimeout(net.timer);
+  net.timer = 0;
+  showComputing(false);
+  if (wish < net.sent) expect();
 }
 
 // Returns whether the message was sent.
@@ -49,6 +64,6 @@ function sendWish(make) {
   net.waits = true;
   requestAnimationFrame(() => {
     net.waits = false;
-    say({wish: ++net.sent, ...net.make()});
+    if (say({wish: ++net.sent, ...net.make()})) expect();
   });
 }

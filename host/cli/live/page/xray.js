@@ -166,7 +166,33 @@ function moveCursor(at) {
   }, 150);
 }
 
+// The wheel zooms the image about the cursor, dragging moves it, and a double click shows all of it. px of the page.
+const lens = {zoom: 1, x: 0, y: 0};
+function setLens(zoom, x, y) {
+  const sheet = byId('sheet'), room = [sheet.offsetWidth, sheet.offsetHeight].map(side => (zoom - 1) * side / 2);
+  Object.assign(lens, {zoom, x: clamp(x, -room[0], room[0]), y: clamp(y, -room[1], room[1])});
+  sheet.style.transform = zoom === 1 ? '' : `translate(${lens.x}px, ${lens.y}px) scale(${zoom})`;
+}
+function zoomFilm(event) {
+  const rect = byId('sheet').getBoundingClientRect(), lines = event.deltaMode === 1 ? 16 : 1;
+  const zoom = clamp(lens.zoom * Math.exp(-clamp(event.deltaY * lines, -240, 240) * 0.0025), 1, 40), share = zoom / lens.zoom;
+  const at = [event.clientX - rect.left - rect.width / 2 + lens.x, event.clientY - rect.top - rect.height / 2 + lens.y];
+  event.preventDefault();
+  setLens(zoom, at[0] - share * (at[0] - lens.x), at[1] - share * (at[1] - lens.y));
+  moveCursor(placeOn(event));
+}
+function listenToLens() {
+  film.addEventListener('wheel', zoomFilm, {passive: false});
+  film.addEventListener('dblclick', () => setLens(1, 0, 0));
+  film.addEventListener('pointerdown', event => { if (!profile.on && lens.zoom > 1) film.setPointerCapture(event.pointerId); });
+  film.addEventListener('pointermove', event => {
+    if (!profile.on && event.buttons & 1) setLens(lens.zoom, lens.x + event.movementX, lens.y + event.movementY);
+  });
+  new ResizeObserver(() => setLens(lens.zoom, lens.x, lens.y)).observe(byId('sheet'));
+}
+
 function listenToFilm() {
+  listenToLens();
   film.addEventListener('pointermove', event => { if (!profile.drags) moveCursor(placeOn(event)); });
   film.addEventListener('pointerleave', () => moveCursor(null));
   net.hear.probed = message => { if (xray.at && String(message.probed) === xray.probed) showValue(message.parts); };

@@ -251,6 +251,7 @@ function listenToCanvas() {
   canvas.ondblclick = () => lookAs('parts');
   canvas.addEventListener('wheel', event => {
     const height = canvas.clientHeight, lines = event.deltaMode === 1 ? 16 : 1;
+    if (bare && document.activeElement !== canvas) return; // the page around it scrolls until the scene is clicked
     event.preventDefault();
     zoom(Math.exp(clamp(event.deltaY * lines, -240, 240) * 0.0015), (event.offsetX - canvas.clientWidth / 2) / height, (height / 2 - event.offsetY) / height);
     standing = '';
@@ -264,6 +265,7 @@ const keys = {
   '4': () => lookAs('source'), f: () => lookAs('parts'), p: toggles.parallel, m: toggles.marks, s: toggles.sensitive, d: toggles.dark, l: toggles.panel,
   '+': () => nearer(0.9), '=': () => nearer(0.9), '-': () => nearer(1 / 0.9), Escape: () => setChosen(-1),
   ' ': () => scene.motion && play(!playing),
+  '?': () => { const box = byId('keys'); if (box.open) box.close(); else box.show(); },
   h: () => shot.chosen >= 0 && setVisible(shot.chosen, !meshes[shot.chosen].visible),
 };
 const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
@@ -283,6 +285,14 @@ function listenToKeys() {
   });
 }
 
+// In a frame of another page, NAME.html?bare: no list and no buttons, and the parts fill the picture.
+let bare = false;
+function setBare(on) {
+  document.documentElement.classList.toggle('bare', bare = on);
+  resize();
+  if (on) lookAs('parts');
+}
+
 function begin() {
   const dark = window.matchMedia('(prefers-color-scheme: dark)');
   Object.keys(shaders).forEach(compile);
@@ -297,6 +307,7 @@ function begin() {
   listenToKeys();
   document.querySelectorAll('[data-look]').forEach(button => { button.onclick = () => lookAs(button.dataset.look); });
   for (const id of Object.keys(toggles)) byId(id).onclick = toggles[id];
+  byId('help').onclick = keys['?'];
   setDark(dark.matches);
   dark.addEventListener('change', () => setDark(dark.matches));
   camera.parallel = scene.parallel;
@@ -304,6 +315,7 @@ function begin() {
   new ResizeObserver(resize).observe(canvas);
   resize();
   lookAs('start');
+  setBare(location.search === '?bare');
   if (scene.motion) {
     byId('time').hidden = false;
     byId('moment').oninput = () => { play(false); setTime(Number(byId('moment').value)); };
