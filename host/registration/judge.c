@@ -1,0 +1,234 @@
+/* How far a result can be believed: noise, structure of what is left, and directions that the radiographs do not determine. */
+#include "registration/registration.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LAGS = 32, CELLS = 8 };
+
+void reg_eigen(int64_t count, double *matrix, double *values, double *vectors) {
+    enum { SWEEPS = 60 };
+    for (int64_t k = 0; k < count * count; k++) vectors[k] = k % (count + 1) == 0;
+    for (int sweep = 0; sweep < SWEEPS; sweep++) { /* Jacobi's rotations, which end after some ten sweeps */
+        double off = 0;
+        for (int64_t p = 0; p < count; p++)
+            for (int64_t q = p + 1; q < count; q++) {
+                const double a = matrix[p * count + q];
+                off += fabs(a);
+                if (a == 0) continue;
+                const double theta = (matrix[q * (count + 1)] - matrix[p * (count + 1)]) / (2 * a);
+                const double t = (theta < 0 ? -1 : 1) / (fabs(theta) + sqrt(theta * theta + 1)),
+                             c = 1 / sqrt(t * t + 1), s = t * c;
+                for (int64_t k = 0; k < count; k++) {
+                    const double x = matrix[k * count + p], y = matrix[k * count + q];
+                    matrix[k * count + p] = c * x - s * y, matrix[k * count + q] = s * x + c * y;
+                }
+                for (int64_t k = 0; k < count; k++) {
+                    const double x = matrix[p * count + k], y = matrix[q * count + k];
+                    matrix[p * count + k] = c * x - s * y, matrix[q * count + k] = s * x + c * y;
+                    const double u = vectors[p * count + k], v = vectors[q * count + k];
+                    vectors[p * count + k] = c * u - s * v, vectors[q * count + k] = s * u + c * v;
+                }
+                matrix[p * count + q] = matrix[q * count + p] = 0;
+            }
+        if (off == 0) break;
+    }
+    for (int64_t k = 0; k < count; k++) values[k] = matrix[k * (count + 1)];
+    for (int64_t k = 0; k < count; k++) /* the smallest first */
+        for (int64_t l = k + 1; l < count; l++) {
+            if (!(values[l] < values[k])) continue;
+            const double value = values[k];
+            values[k] = values[l], values[l] = value;
+            for (int64_t c = 0; c < count; c++) {
+                const double v = vectors[k * count + c];
+                vectors[k * count + c] = vectors[l * count + c], vectors[l * count + c] = v;
+            }
+        }
+}
+
+static void add_lags(const reg_shrunk *s, const double *left, reg_rest *rest) {
+    for (int64_t p = 0; p < s->rows * s->columns; p++) {
+        const int64_t row = p / s->columns, column = p % s->columns;
+        if (!(s->mask[p] > 0)) continue;
+        for (int64_t k = 1; k <= LAGS; k++) {
+            if (column + k < s->columns && s->mask[p + k] > 0)
+                rest->lag[k] += left[p] * left[p + k], rest->lags[k]++;
+            if (row + k < s->rows && s->mask[p + k * s->columns] > 0)
+                rest->lag[k] += left[p] * left[p + k * s->columns], rest->lags[k]++;
+        }
+        if (column + 1 >= s->columns || row + 1 >= s->rows) continue;
+        const int64_t q = p + s->columns;
+        if (!(s->mask[p + 1] > 0 && s->mask[q] > 0 && s->mask[q + 1] > 0)) continue;
+        const double twist = left[p] - left[p + 1] - left[q] + left[q + 1];
+        rest->noise += twist * twist / 4, rest->blocks++;
+    }
+}
+
+/* The cell of the image with the largest mean square. */
+static void find_worst(const reg_shrunk *s, int64_t image, const double *left, reg_rest *rest) {
+    for (int64_t cell = 0; cell < CELLS * CELLS; cell++) {
+        const int64_t top = cell / CELLS * s->rows / CELLS, bottom = (cell / CELLS + 1) * s->rows / CELLS,
+                      first = cell % CELLS * s->columns / CELLS,
+                      last = (cell % CELLS + 1) * s->columns / CELLS;
+        double sum = 0, count = 0;
+        for (int64_t row = top; row < bottom; row++)
+            for (int64_t column = first; column < last; column++) {
+                const int64_t p = row * s->columns + column;
+                if (s->mask[p] > 0) sum += left[p] * left[p], count++;
+            }
+        if (count * 4 < (double)((bottom - top) * (last - first)) || !(sum > rest->worst * count)) continue;
+        rest->worst = sum / count;
+        rest->worst_image = image;
+        rest->worst_row = (top + bottom) / 2, rest->worst_column = (first + last) / 2;
+    }
+}
+
+static void add_rest(const reg_shrunk *s, int64_t image, const double *left, reg_rest *rest) {
+    for (int64_t p = 0; p < s->rows * s->columns; p++) {
+        if (!(s->mask[p] > 0)) continue;
+        rest->squares += left[p] * left[p], rest->pixels++;
+        rest->fixed += s->fixed[p], rest->fixed_squares += s->fixed[p] * s->fixed[p];
+    }
+    add_lags(s, left, rest);
+    find_worst(s, image, left, rest);
+}
+
+static void set_rest(const reg_rest *rest, skg_registration_result *result) {
+    const double pixels = (double)rest->pixels, variance = rest->squares / pixels,
+                 fixed = rest->fixed_squares / pixels - pow(rest->fixed / pixels, 2);
+    double correlated = 1;
+    result->residual = sqrt(variance);
+    result->noise = rest->blocks > 0 ? fmin(sqrt(rest->noise / (double)rest->blocks), result->residual)
+                                     : result->residual;
+    for (int k = 1; k <= LAGS && rest->lags[k] > 0 && variance > 0; k++) {
+        const double share = rest->lag[k] / (double)rest->lags[k] / variance;
+        if (share < 0.1) break; /* noise of the estimate from here on */
+        correlated += 2 * share;
+    }
+    result->correlation_pixels = correlated;
+    result->explained = fixed > 0 ? 1 - variance / fixed : 0;
+}
+
+static void set_uncertainty(skg_registration *r, const double *values, const double *vectors, double pixels) {
+    const int64_t count = reg_count(r);
+    skg_registration_result *result = &r->result;
+    const double noise = result->noise / sqrt(pixels),
+                 structure = fmax(noise, result->residual * result->correlation_pixels / sqrt(pixels));
+    double variances[REG_POSE] = {0};
+    for (int64_t d = 0; d < count; d++) {
+        const double *vector = vectors + d * count, value = values[d];
+        skg_registration_direction *direction = &r->directions[d];
+        const double spread = value > 1e-14 * values[count - 1] ? 1 / sqrt(value) : HUGE_VAL;
+        skg_registration_direction_init(direction);
+        direction->sigma_mm = noise * spread, direction->sigma_structure_mm = structure * spread;
+        direction->determined = direction->sigma_structure_mm <= r->options.need_mm;
+        reg_name_direction(r, vector, r->names[d], sizeof *r->names);
+        direction->name = r->names[d];
+        for (int k = 0; k < REG_POSE && r->options.free == SKG_REGISTRATION_FREE_POSE; k++)
+            if (vector[k] != 0) variances[k] += pow(vector[k] * spread, 2);
+    }
+    for (int k = 0; k < REG_POSE && r->options.free == SKG_REGISTRATION_FREE_POSE; k++) {
+        const double mm = sqrt(variances[k]), unit = k < 3 ? 1 : 1 / r->radius;
+        result->sigma[k] = noise * mm * unit, result->sigma_structure[k] = structure * mm * unit;
+        result->determined[k] = structure * mm <= r->options.need_mm;
+    }
+}
+
+/* The parts' contrast in a radiograph: their attenuation less that of what they displace. */
+static skg_status add_contrast(skg_registration *r, const reg_scene *around, const reg_level *level,
+                               int64_t image, const float *body, double sums[3]) {
+    const reg_shrunk *s = &level->images[image];
+    double *contrast = NULL;
+    SKG_TRY(skg_alloc(s->rows * s->columns, sizeof *contrast, "contrast", &contrast));
+    const skg_status status = reg_render_once(r, around, NULL, &r->state.views[image], 2, NULL, contrast);
+    for (int64_t p = 0; p < s->rows * s->columns; p++) contrast[p] = (double)body[p] - contrast[p];
+    if (status == SKG_OK) reg_contrast(level, &r->state, image, body, contrast, sums);
+    skg_free(&contrast);
+    return status;
+}
+
+typedef struct {
+    float **images;
+    double *model, *derivatives, *values, *vectors;
+    reg_equations equations;
+    reg_scene around;
+    reg_rest rest;
+    double contrast[3];
+} judging;
+
+static skg_status begin(skg_registration *r, const reg_level *level, judging *j) {
+    const int64_t count = reg_count(r);
+    int64_t most = 0;
+    for (int64_t i = 0; i < r->image_count; i++) {
+        const int64_t size = level->images[i].rows * level->images[i].columns;
+        most = size > most ? size : most;
+    }
+    SKG_TRY(reg_images_create(r, level, &j->images));
+    SKG_TRY(skg_alloc(most, sizeof *j->model, "model", &j->model));
+    SKG_TRY(skg_alloc(most * reg_local_count(r), sizeof *j->derivatives, "derivatives", &j->derivatives));
+    SKG_TRY(skg_alloc(count, sizeof *j->values, "directions", &j->values));
+    SKG_TRY(skg_alloc(count * count, sizeof *j->vectors, "directions", &j->vectors));
+    skg_free(&r->directions);
+    skg_free(&r->names);
+    SKG_TRY(skg_alloc(count, sizeof *r->directions, "directions", &r->directions));
+    SKG_TRY(skg_alloc(count, sizeof *r->names, "directions", &r->names));
+    SKG_TRY(reg_equations_create(r, &j->equations));
+    return reg_scene_make(r, REG_AROUND, &j->around);
+}
+
+static void end(const skg_registration *r, judging *j) {
+    reg_images_free(r, &j->images);
+    skg_free(&j->model);
+    skg_free(&j->derivatives);
+    skg_free(&j->values);
+    skg_free(&j->vectors);
+    reg_equations_free(&j->equations);
+    reg_scene_free(&j->around);
+}
+
+static skg_status judge_image(skg_registration *r, const reg_level *level, int64_t i, judging *j) {
+    const reg_shrunk *s = &level->images[i];
+    SKG_TRY(reg_differentiate(r, level, &r->state, i, j->derivatives));
+    reg_equations_add(r, level, &r->state, i, j->images[i], j->derivatives, 0, &j->equations);
+    reg_model(r, level, &r->state, i, j->images[i], j->model);
+    for (int64_t p = 0; p < s->rows * s->columns; p++) j->model[p] -= s->fixed[p];
+    add_rest(s, i, j->model, &j->rest);
+    return add_contrast(r, &j->around, level, i, j->images[i], j->contrast);
+}
+
+static void describe_motion(skg_registration *r) {
+    double moved[3], shift[3];
+    skg_registration_result *result = &r->result;
+    reg_twist_of(r->state.motion, result->twist);
+    skg_pose_point(r->state.motion, r->middle, moved);
+    skg_add_scaled(moved, -1, r->middle, shift);
+    memcpy(result->middle, r->middle, sizeof result->middle);
+    result->radius_mm = r->radius;
+    result->shift_mm = skg_length(shift);
+    result->turn_rad = skg_length(result->twist + 3);
+    result->directions = reg_count(r);
+}
+
+static skg_status judge(skg_registration *r, const reg_level *level, judging *j) {
+    SKG_TRY(begin(r, level, j));
+    SKG_TRY(reg_render(r, level, &r->state, j->images));
+    r->result.loss = reg_loss(r, level, &r->state, j->images);
+    r->loss = SKG_REGISTRATION_LOSS_LSQ; /* whatever was minimized: in units of attenuation */
+    SKG_TRY(reg_nuisances_find(r, level, &r->state, j->images));
+    for (int64_t i = 0; i < r->image_count; i++) SKG_TRY(judge_image(r, level, i, j));
+    set_rest(&j->rest, &r->result);
+    reg_eigen(reg_count(r), j->equations.matrix, j->values, j->vectors);
+    set_uncertainty(r, j->values, j->vectors, (double)j->rest.pixels);
+    const double *c = j->contrast, radiograph = c[0] - 2 * c[1] + c[2];
+    r->result.agreement = c[0] > 0 && radiograph > 0 ? (c[0] - c[1]) / sqrt(c[0] * radiograph) : 0;
+    describe_motion(r);
+    reg_say_verdict(r, &j->rest);
+    return SKG_OK;
+}
+
+skg_status reg_judge(skg_registration *r) {
+    judging j = {0};
+    const skg_status status = judge(r, &r->levels[r->level_count - 1], &j);
+    end(r, &j);
+    return status;
+}
