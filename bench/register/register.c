@@ -8,14 +8,13 @@
 #include <string.h>
 
 static const char usage[] =
-    "[--data FOLDER] [--part LABEL] [--kind clean|noise|hard] [--views N] [--side N] [--shift MM] [--turn DEGREES] "
+    "[--data FOLDER] [--part LABEL] [--kind clean|noise|spectrum|tissue|scatter|hard] [--views N] [--side N] [--shift MM] [--turn DEGREES] "
     "[--trials N] [--first N] [--restarts N] [--loss lsq|ncc|gradient-ncc] [--polish] [--verbose]";
 
 typedef struct {
-    const char *data, *part;
-    subject_kind kind;
+    const char *data, *part, *kind_name;
     long views, side, shift, turn, trials, first, restarts, loss;
-    int polish, verbose;
+    int kind, polish, verbose;
 } wishes;
 
 typedef struct {
@@ -71,8 +70,8 @@ static outcome run(const wishes *w, const subject *s, double *const *values, lon
     skg_registration_options_init(&options);
     options.loss = (int32_t)w->loss, options.polish = w->polish, options.restarts = w->restarts;
     draw_start(w, s, trial, options.start);
-    bench_try(skg_registration_create(s->context, s->scene, w->kind == HARD ? s->tube : s->mono, NULL,
-                                      &options, &r),
+    bench_try(skg_registration_create(s->context, s->scene, w->kind & SUBJECT_SPECTRUM ? s->tube : s->mono,
+                                      NULL, &options, &r),
               "registration");
     for (int64_t p = 0; p < s->part_count; p++) bench_try(skg_registration_part_add(r, s->parts[p]), "part");
     add_radiographs(w, s, values, r);
@@ -129,7 +128,6 @@ static double median(long count, const outcome *all, size_t offset) {
 }
 
 static void report(const wishes *w, const outcome *all) {
-    static const char *const kinds[] = {"clean", "noise", "hard"};
     int within[4] = {0}, verdicts[6] = {0}, wrong_but_praised = 0;
     const double bars[4] = {0.1, 0.5, 1, 2};
     double images = 0, jacobians = 0, worst = 0;
@@ -145,7 +143,7 @@ static void report(const wishes *w, const outcome *all) {
         "%s, %ld views, %ld mm and %ld degrees, loss %ld%s, %ld restarts: of %ld under .1 mm %d, .5 mm %d, 1 mm %d, 2 mm %d; median "
         "%.4f mm, worst %.3f mm; %.0f images, %.0f jacobians, %.0f ms; agrees %d, structure %d, not determined %d, failed %d; more "
         "than 2 mm off and not said %d\n",
-        kinds[w->kind], w->views, w->shift, w->turn, w->loss, w->polish ? " polished" : "", w->restarts,
+        w->kind_name, w->views, w->shift, w->turn, w->loss, w->polish ? " polished" : "", w->restarts,
         w->trials, within[0], within[1], within[2], within[3],
         median(w->trials, all, offsetof(outcome, error)), worst, images, jacobians,
         median(w->trials, all, offsetof(outcome, cpu)), verdicts[1], verdicts[2], verdicts[3], verdicts[4],
@@ -159,9 +157,15 @@ static int word_of(const char *value, const char *const *words, int count) {
 }
 
 static wishes read_wishes(int count, char **words) {
-    static const char *const kinds[] = {"clean", "noise", "hard"}, *const losses[] = {"lsq", "ncc",
-                                                                                      "gradient-ncc"};
-    wishes w = {.views = 2, .side = 256, .shift = 10, .turn = 10, .trials = 20};
+    static const char *const kinds[] = {"clean", "noise", "spectrum", "tissue", "scatter", "hard"};
+    static const int bits[] = {0,
+                               SUBJECT_NOISE,
+                               SUBJECT_NOISE | SUBJECT_SPECTRUM,
+                               SUBJECT_NOISE | SUBJECT_TISSUE,
+                               SUBJECT_NOISE | SUBJECT_SCATTER,
+                               SUBJECT_NOISE | SUBJECT_SPECTRUM | SUBJECT_TISSUE | SUBJECT_SCATTER};
+    static const char *const losses[] = {"lsq", "ncc", "gradient-ncc"};
+    wishes w = {.kind_name = "clean", .views = 2, .side = 256, .shift = 10, .turn = 10, .trials = 20};
     bench_arguments arguments = {count, words, 1};
     const char *value;
     const struct {
@@ -180,7 +184,8 @@ static wishes read_wishes(int count, char **words) {
         if (bench_option(&arguments, "--data", &w.data)) continue;
         if (bench_option(&arguments, "--part", &w.part)) continue;
         if (bench_option(&arguments, "--kind", &value)) {
-            w.kind = (subject_kind)word_of(value, kinds, 3);
+            w.kind_name = value;
+            w.kind = bits[word_of(value, kinds, 6)];
         } else if (bench_option(&arguments, "--loss", &value)) {
             w.loss = word_of(value, losses, 3);
         } else if (bench_flag(&arguments, "--polish")) {

@@ -43,8 +43,8 @@ static char *text_of_folder(const char *data) {
         "{\"Source\": {\"Position\": [0, -1000, 1150, \"mm\"], \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": "
         "1}]}, \"Detector\": {\"Position\": [0, 500, 1150, \"mm\"], \"UpVector\": [0, 0, -1], \"NumberOfPixels\": [64, 64], "
         "\"Size\": [560, 560, \"mm\"]}, \"Samples\": [{\"Label\": \"soft\", \"Cylinder\": [60, 600, 1, \"mm\"], "
-        "\"Parent\": null, \"Material\": [\"HU\", 30], \"Transform\": [[\"Translation\", 0, -105, 1150, \"mm\"], "
-        "[\"Scaling\", 220, 150, 1], [\"Rotation\", 90, 1, 0, 0]]}",
+        "\"Parent\": null, \"Material\": [\"HU\", 30], \"Transform\": [[\"Translation\", 0, -98, 1150, \"mm\"], "
+        "[\"Scaling\", 175, 125, 1], [\"Rotation\", 90, 1, 0, 0]]}",
         stream);
     for (size_t k = 0; k < count; k++) {
         fprintf(stream,
@@ -196,7 +196,7 @@ static void add_tissue(const subject *s, int64_t *parts, double *ratios, skg_fra
     frame->override_count = 1, frame->override_parts = parts, frame->density_ratios = ratios;
 }
 
-double *subject_radiograph(const subject *s, int view, subject_kind kind) {
+double *subject_radiograph(const subject *s, int view, int kind) {
     const int64_t count = s->views[view].rows * s->views[view].columns;
     skg_plan_options options;
     skg_scatter scatter;
@@ -215,15 +215,13 @@ double *subject_radiograph(const subject *s, int view, subject_kind kind) {
     options.quantity = SKG_QUANTITY_TRANSMISSION;
     options.supersampling = 3; /* another number than a registration's */
     options.overlaps = 0;
-    options.noise = kind != CLEAN;
-    if (kind == HARD) {
-        options.tolerance = 1e-3;
-        options.scatter = &scatter;
-        add_tissue(s, &part, &ratio, &frame);
-    }
+    options.noise = (kind & SUBJECT_NOISE) != 0;
+    options.tolerance = 1e-3; /* of the spectrum */
+    if (kind & SUBJECT_SCATTER) options.scatter = &scatter;
+    if (kind & SUBJECT_TISSUE) add_tissue(s, &part, &ratio, &frame);
     frame.index = view;
-    bench_try(skg_plan_create(s->context, s->scene, &s->views[view], kind == HARD ? s->tube : s->mono,
-                              &options, &plan),
+    bench_try(skg_plan_create(s->context, s->scene, &s->views[view],
+                              kind & SUBJECT_SPECTRUM ? s->tube : s->mono, &options, &plan),
               "radiograph");
     skg_output_init(&output);
     output.data = values;

@@ -6,8 +6,8 @@
 
 enum { SUBJECT_VIEWS = 2 };
 
-/* What a radiograph has beside the clean image of one energy. */
-typedef enum { CLEAN, NOISE, HARD } subject_kind;
+/* What a radiograph has beside the clean image of one energy: bits. */
+enum { SUBJECT_NOISE = 1, SUBJECT_SPECTRUM = 2, SUBJECT_TISSUE = 4, SUBJECT_SCATTER = 8 };
 
 typedef struct {
     skg_context *context;
@@ -26,9 +26,9 @@ typedef struct {
 void subject_make(const char *data, const char *part, long side, subject *out);
 void subject_free(subject *s);
 
-/* A radiograph of the scene as it stands, as transmission: [side][side], which the caller frees. HARD: with its own scatter, a spectrum,
- * noise, and a tenth more of what the parts lie inside. */
-double *subject_radiograph(const subject *s, int view, subject_kind kind);
+/* A radiograph of the scene as it stands, as transmission: [side][side], which the caller frees. kind: noise of 2e5 photons, a
+ * tube's spectrum, a tenth more of what the parts lie inside, scatter as the scene makes it. */
+double *subject_radiograph(const subject *s, int view, int kind);
 
 /* Mean distance of the body's vertices from where they are after a twist about the world's origin. */
 double subject_error(const subject *s, const double *twist);

@@ -44,8 +44,9 @@ static void columns_at(const columns_of *c, int64_t pixel, double *values) {
         reg_basis(s->rows, s->columns, pixel / s->columns, pixel % s->columns, basis);
         for (int k = 0; k < REG_BASIS; k++) {
             exponent += c->nuisances[k] * basis[k];
-            added += c->nuisances[REG_BASIS + k] * basis[k];
+            added += c->nuisances[REG_ADDED + k] * basis[k];
         }
+        exponent += c->nuisances[REG_BASIS] * s->rest[pixel];
     }
     const modelled m = model_at(exponent, added);
     for (int64_t k = 0; k < c->local; k++) {
@@ -55,8 +56,9 @@ static void columns_at(const columns_of *c, int64_t pixel, double *values) {
     if (c->loss == SKG_REGISTRATION_LOSS_LSQ) {
         for (int k = 0; k < REG_BASIS; k++) {
             values[k] = m.slope * basis[k];
-            values[REG_BASIS + k] = -m.inverse * basis[k];
+            values[REG_ADDED + k] = -m.inverse * basis[k];
         }
+        values[REG_BASIS] = m.slope * s->rest[pixel];
         values[REG_NUISANCES] = m.value - s->fixed[pixel];
         return;
     }
@@ -146,7 +148,10 @@ static void add_squares(const skg_registration *r, int64_t image, int64_t local,
     for (int a = 0; a < REG_NUISANCES; a++)
         for (int b = 0; b < REG_NUISANCES; b++) own[a * REG_NUISANCES + b] = gram[local + a][local + b];
     /* Polynomials of both kinds are nearly the same where the transmission is: a rounding error more keeps them apart. */
-    for (int a = 0; a < REG_NUISANCES; a++) own[a * (REG_NUISANCES + 1)] *= 1 + 1e-8 + damping;
+    for (int a = 0; a < REG_NUISANCES; a++) {
+        double *diagonal = &own[a * (REG_NUISANCES + 1)];
+        *diagonal = *diagonal > 0 ? *diagonal * (1 + 1e-8 + damping) : 1; /* 0: nothing is at rest */
+    }
     for (int64_t k = 0; k <= local; k++)
         for (int a = 0; a < REG_NUISANCES; a++)
             x[k * REG_NUISANCES + a] = gram[local + a][k < local ? k : last];
@@ -323,7 +328,8 @@ void reg_contrast(const reg_level *level, const reg_state *state, int64_t image,
     make_gram(&c, 0, gram);
     for (int a = 0; a < REG_NUISANCES; a++) {
         for (int b = 0; b < REG_NUISANCES; b++) own[a * REG_NUISANCES + b] = gram[1 + a][1 + b];
-        own[a * (REG_NUISANCES + 1)] *= 1 + 1e-8; /* as add_squares */
+        double *diagonal = &own[a * (REG_NUISANCES + 1)];
+        *diagonal = *diagonal > 0 ? *diagonal * (1 + 1e-8) : 1; /* as add_squares */
         for (int k = 0; k < 2; k++) x[k * REG_NUISANCES + a] = gram[1 + a][which[k]];
     }
     if (!reg_solve(REG_NUISANCES, own, 2, x)) memset(x, 0, sizeof x);
@@ -333,4 +339,34 @@ void reg_contrast(const reg_level *level, const reg_state *state, int64_t image,
             for (int a = 0; a < REG_NUISANCES; a++) sum -= gram[1 + a][which[k]] * x[l * REG_NUISANCES + a];
             sums[at] += sum;
         }
+}
+
+void reg_scores(const skg_registration *r, const reg_level *level, const reg_state *state, int64_t image,
+                const float *body, const double *derivatives, const reg_equations *equations, double *meat) {
+    enum { CELLS = 16 };
+    const columns_of c = {.shrunk = &level->images[image],
+                          .body = body,
+                          .derivatives = derivatives,
+                          .nuisances = state->nuisances + image * REG_NUISANCES,
+                          .local = reg_local_count(r),
+                          .loss = SKG_REGISTRATION_LOSS_LSQ};
+    const reg_shrunk *s = c.shrunk;
+    const double *x = equations->coupling + image * (REG_LOCAL + 1) * REG_NUISANCES;
+    const int64_t count = reg_count(r), first = reg_first(r, image);
+    double sums[CELLS * CELLS][REG_LOCAL] = {{0}}, values[REG_GRAM];
+    for (int64_t p = 0; p < s->rows * s->columns; p++) {
+        if (!(s->mask[p] > 0)) continue;
+        double *sum = sums[p / s->columns * CELLS / s->rows * CELLS + p % s->columns * CELLS / s->columns];
+        columns_at(&c, p, values);
+        const double left = values[c.local + REG_NUISANCES];
+        for (int64_t k = 0; k < c.local; k++) {
+            double slope = values[k];
+            for (int a = 0; a < REG_NUISANCES; a++) slope -= values[c.local + a] * x[k * REG_NUISANCES + a];
+            sum[k] += slope * left;
+        }
+    }
+    for (int64_t cell = 0; cell < CELLS * CELLS; cell++)
+        for (int64_t k = 0; k < c.local; k++)
+            for (int64_t l = 0; l < c.local; l++)
+                meat[(first + k) * count + first + l] += sums[cell][k] * sums[cell][l];
 }

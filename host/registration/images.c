@@ -102,6 +102,9 @@ skg_status skg_registration_image_add(skg_registration *registration, const skg_
     SKG_TRY(skg_struct_read(theirs, "skg_radiograph", &given, sizeof given));
     if (!given.view || !given.values)
         return skg_fail(SKG_ERR_ARGUMENT, "registration: a radiograph needs a view and values");
+    if (r->image_count == REG_IMAGES)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "registration: at most %d radiographs can be registered at once",
+                        REG_IMAGES);
     reg_image image = {.view = *given.view};
     snprintf(image.name, sizeof image.name, "%s", given.name ? given.name : "");
     if (!given.name) snprintf(image.name, sizeof image.name, "radiograph %" PRId64, r->image_count + 1);

@@ -109,28 +109,61 @@ static void set_rest(const reg_rest *rest, skg_registration_result *result) {
     result->explained = fixed > 0 ? 1 - variance / fixed : 0;
 }
 
-static void set_uncertainty(skg_registration *r, const double *values, const double *vectors, double pixels) {
+typedef struct {
+    float **images;
+    double *model, *derivatives, *values, *vectors, *meat;
+    reg_equations equations;
+    reg_scene around;
+    reg_rest rest;
+    double contrast[3];
+} judging;
+
+/* The standard deviation along a direction, mm. values, vectors: of the normal matrix, which is a mean over pixels. meat: NULL: from noise
+ * alone. */
+static double spread_along(const skg_registration *r, const double *along, const double *values,
+                           const double *vectors, const double *meat, double pixels) {
     const int64_t count = reg_count(r);
-    skg_registration_result *result = &r->result;
-    const double noise = result->noise / sqrt(pixels),
-                 structure = fmax(noise, result->residual * result->correlation_pixels / sqrt(pixels));
-    double variances[REG_POSE] = {0};
+    double solved[REG_LONGEST] = {0}, variance = 0;
     for (int64_t d = 0; d < count; d++) {
-        const double *vector = vectors + d * count, value = values[d];
-        skg_registration_direction *direction = &r->directions[d];
-        const double spread = value > 1e-14 * values[count - 1] ? 1 / sqrt(value) : HUGE_VAL;
-        skg_registration_direction_init(direction);
-        direction->sigma_mm = noise * spread, direction->sigma_structure_mm = structure * spread;
-        direction->determined = direction->sigma_structure_mm <= r->options.need_mm;
-        reg_name_direction(r, vector, r->names[d], sizeof *r->names);
-        direction->name = r->names[d];
-        for (int k = 0; k < REG_POSE && r->options.free == SKG_REGISTRATION_FREE_POSE; k++)
-            if (vector[k] != 0) variances[k] += pow(vector[k] * spread, 2);
+        const double *vector = vectors + d * count, share = skg_dot_long(count, along, vector);
+        if (share == 0) continue;
+        if (!(values[d] > 1e-14 * values[count - 1])) {
+            if (fabs(share) > 1e-6) return HUGE_VAL;
+            continue;
+        }
+        for (int64_t k = 0; k < count; k++) solved[k] += share / values[d] / pixels * vector[k];
+        variance += share * share / values[d] / pixels * r->result.noise * r->result.noise;
     }
+    if (!meat) return sqrt(variance);
+    variance = 0;
+    for (int64_t k = 0; k < count; k++) variance += solved[k] * skg_dot_long(count, meat + k * count, solved);
+    return sqrt(fmax(variance, 0));
+}
+
+static void set_direction(skg_registration *r, int64_t d, const judging *j) {
+    const double *vector = j->vectors + d * reg_count(r), pixels = (double)j->rest.pixels;
+    skg_registration_direction *direction = &r->directions[d];
+    skg_registration_direction_init(direction);
+    direction->sigma_mm = spread_along(r, vector, j->values, j->vectors, NULL, pixels);
+    direction->sigma_structure_mm =
+        fmax(direction->sigma_mm, spread_along(r, vector, j->values, j->vectors, j->meat, pixels));
+    direction->determined = direction->sigma_structure_mm <= r->options.need_mm;
+    reg_name_direction(r, vector, r->names[d], sizeof *r->names);
+    direction->name = r->names[d];
+}
+
+static void set_uncertainty(skg_registration *r, const judging *j) {
+    skg_registration_result *result = &r->result;
+    const double pixels = (double)j->rest.pixels;
+    for (int64_t d = 0; d < reg_count(r); d++) set_direction(r, d, j);
     for (int k = 0; k < REG_POSE && r->options.free == SKG_REGISTRATION_FREE_POSE; k++) {
-        const double mm = sqrt(variances[k]), unit = k < 3 ? 1 : 1 / r->radius;
-        result->sigma[k] = noise * mm * unit, result->sigma_structure[k] = structure * mm * unit;
-        result->determined[k] = structure * mm <= r->options.need_mm;
+        const double unit = k < 3 ? 1 : 1 / r->radius;
+        double along[REG_POSE] = {0};
+        along[k] = 1;
+        const double noise = spread_along(r, along, j->values, j->vectors, NULL, pixels),
+                     structure = fmax(noise, spread_along(r, along, j->values, j->vectors, j->meat, pixels));
+        result->sigma[k] = noise * unit, result->sigma_structure[k] = structure * unit;
+        result->determined[k] = structure <= r->options.need_mm;
     }
 }
 
@@ -147,15 +180,6 @@ static skg_status add_contrast(skg_registration *r, const reg_scene *around, con
     return status;
 }
 
-typedef struct {
-    float **images;
-    double *model, *derivatives, *values, *vectors;
-    reg_equations equations;
-    reg_scene around;
-    reg_rest rest;
-    double contrast[3];
-} judging;
-
 static skg_status begin(skg_registration *r, const reg_level *level, judging *j) {
     const int64_t count = reg_count(r);
     int64_t most = 0;
@@ -168,6 +192,7 @@ static skg_status begin(skg_registration *r, const reg_level *level, judging *j)
     SKG_TRY(skg_alloc(most * reg_local_count(r), sizeof *j->derivatives, "derivatives", &j->derivatives));
     SKG_TRY(skg_alloc(count, sizeof *j->values, "directions", &j->values));
     SKG_TRY(skg_alloc(count * count, sizeof *j->vectors, "directions", &j->vectors));
+    SKG_TRY(skg_alloc(count * count, sizeof *j->meat, "directions", &j->meat));
     skg_free(&r->directions);
     skg_free(&r->names);
     SKG_TRY(skg_alloc(count, sizeof *r->directions, "directions", &r->directions));
@@ -182,6 +207,7 @@ static void end(const skg_registration *r, judging *j) {
     skg_free(&j->derivatives);
     skg_free(&j->values);
     skg_free(&j->vectors);
+    skg_free(&j->meat);
     reg_equations_free(&j->equations);
     reg_scene_free(&j->around);
 }
@@ -190,6 +216,7 @@ static skg_status judge_image(skg_registration *r, const reg_level *level, int64
     const reg_shrunk *s = &level->images[i];
     SKG_TRY(reg_differentiate(r, level, &r->state, i, j->derivatives));
     reg_equations_add(r, level, &r->state, i, j->images[i], j->derivatives, 0, &j->equations);
+    reg_scores(r, level, &r->state, i, j->images[i], j->derivatives, &j->equations, j->meat);
     reg_model(r, level, &r->state, i, j->images[i], j->model);
     for (int64_t p = 0; p < s->rows * s->columns; p++) j->model[p] -= s->fixed[p];
     add_rest(s, i, j->model, &j->rest);
@@ -218,9 +245,12 @@ static skg_status judge(skg_registration *r, const reg_level *level, judging *j)
     for (int64_t i = 0; i < r->image_count; i++) SKG_TRY(judge_image(r, level, i, j));
     set_rest(&j->rest, &r->result);
     reg_eigen(reg_count(r), j->equations.matrix, j->values, j->vectors);
-    set_uncertainty(r, j->values, j->vectors, (double)j->rest.pixels);
-    const double *c = j->contrast, radiograph = c[0] - 2 * c[1] + c[2];
-    r->result.agreement = c[0] > 0 && radiograph > 0 ? (c[0] - c[1]) / sqrt(c[0] * radiograph) : 0;
+    set_uncertainty(r, j);
+    /* Noise hides what agrees; its own share of the radiographs' squares is left out. */
+    const double *c = j->contrast,
+                 radiograph =
+                     c[0] - 2 * c[1] + fmax(c[2] - pow(r->result.noise, 2) * (double)j->rest.pixels, 0);
+    r->result.agreement = c[0] > 0 && radiograph > 0 ? fmin((c[0] - c[1]) / sqrt(c[0] * radiograph), 1) : 0;
     describe_motion(r);
     reg_say_verdict(r, &j->rest);
     return SKG_OK;

@@ -12,11 +12,15 @@
 
 enum {
     REG_BASIS = 6,             /* polynomials of order 2 over the image */
-    REG_NUISANCES = 12,        /* of a radiograph: those of attenuation, then those of transmission */
+    REG_ADDED = REG_BASIS + 1, /* what adds to attenuation: polynomials, and a share of what does not move */
+    REG_NUISANCES =
+        REG_ADDED + REG_BASIS, /* of a radiograph: those of attenuation, then those of transmission */
     REG_POSE = 6,              /* free directions of a pose */
     REG_LOCAL = 9,             /* most free directions that a radiograph sees */
-    REG_GRAM = REG_LOCAL + 14, /* most rows of a Gram matrix */
+    REG_GRAM = REG_LOCAL + REG_NUISANCES + 2, /* most rows of a Gram matrix */
     REG_LEVELS = 12,
+    REG_IMAGES = 64, /* most radiographs */
+    REG_LONGEST = REG_IMAGES * REG_LOCAL,
     REG_NAME = 96
 };
 
@@ -196,6 +200,12 @@ skg_status reg_nuisances_find(const skg_registration *r, const reg_level *level,
 /* -ln of the transmission that the model has, polynomials included: [rows][columns]. */
 void reg_model(const skg_registration *r, const reg_level *level, const reg_state *state, int64_t image,
                const float *body, double *model);
+
+/* Adds to `meat`, [count][count], the products of the slopes of the sum of squares, summed over cells of a radiograph: what is left in
+ * different cells is taken to be independent (K.-Y. Liang and S. L. Zeger, Biometrika 73 (1986) 13-22). The equations are those of
+ * the same state. */
+void reg_scores(const skg_registration *r, const reg_level *level, const reg_state *state, int64_t image,
+                const float *body, const double *derivatives, const reg_equations *equations, double *meat);
 
 /* Adds sums over a radiograph of what is left of two columns when the polynomials have taken their share: the body's contrast, and model
  * less radiograph. sums: contrast^2, contrast times difference, difference^2. */

@@ -147,7 +147,7 @@ typedef struct {
 
 SKG_INIT(skg_radiograph)
 
-/** Adds a radiograph. All is copied.
+/** Adds a radiograph, the 64th at most. All is copied.
  *
  *     errors   SKG_ERR_ARGUMENT: values that are not finite (with row and column), an image that is the same everywhere, a flat field that
  *              is not above 0, a mask that hides everything; SKG_ERR_SCENE: a view that cannot be imaged */
@@ -171,7 +171,8 @@ typedef struct {
     /** [6] shift of the body's middle along x, y and z, mm, and rotation about x, y and z, rad: by how much noise alone displaces the result
      * (one standard deviation). It is no error: what the model lacks displaces it further. */
     double sigma[6];
-    /** [6] the same, if what is left in the images, with its correlation from pixel to pixel, is taken for noise. */
+    /** [6] the same, if what is left in the images is taken for noise that is independent in 16 x 16 cells of a radiograph, and correlated
+     * within them as it is. */
     double sigma_structure[6];
     /** [6] 1: both are at most need_mm (angles: at the body's radius). */
     int32_t determined[6];
