@@ -6,7 +6,21 @@
 void reg_basis(int64_t rows, int64_t columns, int64_t row, int64_t column, double *basis) {
     const double y = (2 * (double)row + 1) / (double)rows - 1,
                  x = (2 * (double)column + 1) / (double)columns - 1;
-    const double values[REG_BASIS] = {1, x, y, x * x, x * y, y * y};
+    const double values[REG_BASIS] = {1,
+                                      x,
+                                      y,
+                                      x * x,
+                                      x * y,
+                                      y * y,
+                                      x * x * x,
+                                      x * x * y,
+                                      x * y * y,
+                                      y * y * y,
+                                      x * x * x * x,
+                                      x * x * x * y,
+                                      x * x * y * y,
+                                      x * y * y * y,
+                                      y * y * y * y};
     memcpy(basis, values, sizeof values);
 }
 
@@ -42,6 +56,7 @@ static void columns_at(const columns_of *c, int64_t pixel, double *values) {
     double exponent = (double)c->body[pixel] + s->rest[pixel], added = 0, basis[REG_BASIS];
     if (c->loss == SKG_REGISTRATION_LOSS_LSQ) {
         reg_basis(s->rows, s->columns, pixel / s->columns, pixel % s->columns, basis);
+        for (int64_t k = s->terms; k < REG_BASIS; k++) basis[k] = 0;
         for (int k = 0; k < REG_BASIS; k++) {
             exponent += c->nuisances[k] * basis[k];
             added += c->nuisances[REG_ADDED + k] * basis[k];

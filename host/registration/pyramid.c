@@ -125,6 +125,8 @@ skg_status reg_levels_create(skg_registration *r) {
         r->level_count++;
         for (int64_t i = 0; i < r->image_count; i++) {
             SKG_TRY(shrink_image(r, i, factor, &level->images[i]));
+            /* More polynomials come nearer, and are misled from farther away (docs/register.md). */
+            level->images[i].terms = factor == 1 && r->level_count > 1 ? REG_BASIS : REG_COARSE_BASIS;
             SKG_TRY(plan_image(r, level, i));
         }
     }

@@ -11,7 +11,8 @@
 #include <skiagraph/registration.h>
 
 enum {
-    REG_BASIS = 6,             /* polynomials of order 2 over the image */
+    REG_BASIS = 15,            /* polynomials of order 4 over the image */
+    REG_COARSE_BASIS = 6,      /* those of order 2 */
     REG_ADDED = REG_BASIS + 1, /* what adds to attenuation: polynomials, and a share of what does not move */
     REG_NUISANCES =
         REG_ADDED + REG_BASIS, /* of a radiograph: those of attenuation, then those of transmission */
@@ -44,7 +45,8 @@ typedef struct {
     int64_t rows, columns;
     double *fixed; /* -ln(transmission + floor) */
     double *rest;
-    double *mask; /* 1: counts */
+    double *mask;  /* 1: counts */
+    int64_t terms; /* polynomials of each kind: the first ones of REG_BASIS */
     skg_plan *plan;
 } reg_shrunk;
 
