@@ -61,6 +61,14 @@ skg_status skg_registration_view_get(const skg_registration *registration, int64
     return skg_struct_write(&registration->state.views[image], sizeof(skg_view), "skg_view", view);
 }
 
+skg_status skg_registration_motion_get(const skg_registration *registration, double *motion) {
+    SKG_NEEDS(registration);
+    SKG_NEEDS(motion);
+    SKG_TRY(need_end(registration, __func__));
+    memcpy(motion, registration->state.motion, sizeof registration->state.motion);
+    return SKG_OK;
+}
+
 skg_status skg_registration_pose_get(const skg_registration *registration, int64_t part, double *pose) {
     const skg_registration *r = registration;
     skg_part one;
@@ -81,10 +89,15 @@ skg_status skg_registration_pose_get(const skg_registration *registration, int64
 /* The model at the end, from its images. */
 static skg_status model_of(skg_registration *r, int64_t image, double *values) {
     const reg_level *level = &r->levels[r->level_count - 1];
+    const reg_shrunk *shrunk = &level->images[image];
     float **images = NULL;
     skg_status status = reg_images_create(r, level, &images);
     if (status == SKG_OK) status = reg_render(r, level, &r->state, images);
     if (status == SKG_OK) reg_model(r, level, &r->state, image, images[image], values);
+    /* Where no pixel counts, polynomials mean nothing. */
+    for (int64_t p = 0; p < shrunk->rows * shrunk->columns && status == SKG_OK; p++)
+        if (!(shrunk->mask[p] > 0))
+            values[p] = -log(exp(-((double)images[image][p] + shrunk->rest[p])) + REG_FLOOR);
     reg_images_free(r, &images);
     return status;
 }

@@ -11,10 +11,10 @@
  *     method    Levenberg and Marquardt on the derivatives of the images (gradient.h), with H. B. Nielsen's damping
  *               (IMM-REP-1999-05, Technical University of Denmark), on a pyramid of images whose pixels are means of 2, 4, ...
  *               pixels as transmission; the model's rays are means as well. Steps of more than 15 mm are cut
- *     model     of SKG_REGISTRATION_LOSS_LSQ: -ln(exp(-(b + r + P c)) + P d), where b is the attenuation of the parts that move, r that
- *               of the rest, which is rendered once, and P are the six polynomials of order 2 over the image. c takes what adds to
- *               the attenuation (tissue that the scene lacks, another gain), d what adds to the transmission (scatter). Both are
- *               found with the pose
+ *     model     of SKG_REGISTRATION_LOSS_LSQ: -ln(exp(-(b + (1 + g) r + P c)) + P d), where b is the attenuation of the parts that move, r
+ *               that of the rest, which is rendered once, and P are polynomials over the image, of order 2, at the finest level of several
+ *               of order 4. c takes what adds to the attenuation (tissue that the scene lacks, another gain), d what adds to the
+ *               transmission (scatter). g, c and d are found with the pose. 1e-4 is added to the transmissions of model and radiograph
  *     energy    one: that of the spectrum, or the one at which the scene attenuates as it does with the spectrum
  *     detector  noise, blur, steps, scatter, jaws, focal spot, heel, bow-tie filter and grid of the plan's options are left out
  *
@@ -247,6 +247,11 @@ SKG_API skg_status skg_registration_direction_get(const skg_registration *regist
 SKG_API skg_status skg_registration_view_get(const skg_registration *registration, int64_t image,
                                              skg_view *view);
 
+/** Gets the motion of the body, whose twist skg_registration_result has.
+ *
+ *     motion   result: [16] affine matrix, row by row */
+SKG_API skg_status skg_registration_motion_get(const skg_registration *registration, double *motion);
+
 /** Gets the pose of a part as it was found.
  *
  *     pose   result: [16] */
@@ -257,7 +262,7 @@ SKG_API skg_status skg_registration_pose_get(const skg_registration *registratio
 enum skg_registration_picture {
     /** The radiograph, -ln of the transmission. */
     SKG_REGISTRATION_PICTURE_FIXED = 0,
-    /** The model at the end, polynomials included. */
+    /** The model at the end, polynomials included where pixels count. */
     SKG_REGISTRATION_PICTURE_MODEL = 1,
     /** Model less radiograph at the start. 0 where pixels do not count. */
     SKG_REGISTRATION_PICTURE_BEFORE = 2,
