@@ -28,12 +28,20 @@ static void find_range(int64_t count, const double *values, double *low, double 
 
 /* Intensities over their flat field. */
 static skg_status normalize(const skg_radiograph *given, reg_image *image) {
+    enum {
+        MOST = 1000
+    }; /* of an implant some hundred; bytes as grey values pass, as attenuations of metal do */
     const int64_t count = image->view.rows * image->view.columns;
     double low, high;
     find_range(count, given->values, &low, &high);
     if (!(low < high))
         return skg_fail(SKG_ERR_ARGUMENT, "%s: every value is %g; a radiograph shows something", image->name,
                         low);
+    if (given->quantity == SKG_QUANTITY_ATTENUATION && high > MOST)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: an attenuation of %g lets nothing pass; if these are grey values, give them as "
+                        "intensities, or divide them by what an attenuation of 1 has",
+                        image->name, high);
     const double flat = given->flat_field != 0 ? given->flat_field : high;
     const int is_intensity =
         given->quantity != SKG_QUANTITY_TRANSMISSION && given->quantity != SKG_QUANTITY_ATTENUATION;

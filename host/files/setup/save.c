@@ -169,6 +169,15 @@ static skg_status write_scan(const skg_setup *setup, json_t *scene, const skg_se
     return status;
 }
 
+/* Says who wrote the file, beside what its author says, so that it is known as one that may be written again. */
+static int sign(json_t *scene) {
+    const char *said = json_string_value(get(scene, "Comment"));
+    char text[1024];
+    if (said && strstr(said, "skiagraph")) return 1;
+    snprintf(text, sizeof text, "%s%swritten by skiagraph", said ? said : "", said ? "; " : "");
+    return put(scene, "Comment", json_string(text));
+}
+
 static skg_status change(const skg_setup *setup, const skg_setup_changes *changes, const char *path,
                          json_t *scene) {
     int64_t of_scan = 0;
@@ -191,6 +200,7 @@ static skg_status change(const skg_setup *setup, const skg_setup_changes *change
                             path);
         }
     }
+    if (!sign(scene)) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for its text", path);
     if (of_scan > 0 && !setup->scan.scan)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: views of a scan are given, and the scene has none", path);
     return of_scan > 0 ? write_scan(setup, scene, changes) : SKG_OK;
