@@ -196,6 +196,24 @@ static void add_tissue(const subject *s, int64_t *parts, double *ratios, skg_fra
     frame->override_count = 1, frame->override_parts = parts, frame->density_ratios = ratios;
 }
 
+/* Prints the mean of scattered over direct photons in a radiograph. */
+static void tell_scatter(skg_plan *plan, const skg_frame *frame, int view, int64_t count,
+                         const double *whole) {
+    skg_output output;
+    skg_job *job;
+    float *scattered = bench_alloc((size_t)count, sizeof *scattered);
+    double sum = 0;
+    skg_output_init(&output);
+    output.kind = SKG_OUTPUT_SCATTER;
+    output.data = scattered;
+    bench_try(skg_plan_submit(plan, 1, frame, &output, &job), "scatter");
+    bench_try(skg_job_wait(&job), "scatter");
+    for (int64_t p = 0; p < count; p++)
+        sum += (double)scattered[p] / fmax(whole[p] - (double)scattered[p], 1e-4) / (double)count;
+    printf("view %d: scatter to primary %.2g, mean over pixels\n", view + 1, sum);
+    free(scattered);
+}
+
 double *subject_radiograph(const subject *s, int view, int kind) {
     const int64_t count = s->views[view].rows * s->views[view].columns;
     skg_plan_options options;
@@ -227,8 +245,9 @@ double *subject_radiograph(const subject *s, int view, int kind) {
     output.data = values;
     bench_try(skg_plan_submit(plan, 1, &frame, &output, &job), "radiograph");
     bench_try(skg_job_wait(&job), "radiograph");
-    skg_plan_release(&plan);
     for (int64_t p = 0; p < count; p++) transmission[p] = (double)values[p];
+    if (kind & SUBJECT_SCATTER) tell_scatter(plan, &frame, view, count, transmission);
+    skg_plan_release(&plan);
     free(values);
     return transmission;
 }

@@ -1,5 +1,5 @@
 /* Losses of a registration and their normal equations, from Gram matrices of columns over the pixels. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <string.h>
 

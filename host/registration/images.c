@@ -1,5 +1,5 @@
 /* Radiographs that a registration is given. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include "core/text.h"
 

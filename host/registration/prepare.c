@@ -1,5 +1,5 @@
 /* What a registration needs before it can search: checks, the energy of the model, masks, and what does not move. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <inttypes.h>
 #include <string.h>

@@ -1,36 +1,10 @@
 /* The pyramid of a registration: radiographs, masks and views of coarser pixels. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <string.h>
 
 /* Sides of a radiograph at the coarsest level: at most this where a level more would not go below the least. */
 enum { COARSE_SIDE = 64, LEAST_SIDE = 24, MOST_SAMPLES = 8 };
-
-skg_view reg_view_shrunk(const skg_view *view, int64_t factor) {
-    skg_view shrunk = *view;
-    shrunk.columns = view->columns / factor;
-    shrunk.rows = view->rows / factor;
-    /* Columns and rows that are left over at the end are left out. */
-    const double c = 0.5 * (double)(shrunk.columns * factor - view->columns),
-                 l = 0.5 * (double)(shrunk.rows * factor - view->rows);
-    skg_add_scaled(shrunk.centre, c, view->column_step, shrunk.centre);
-    skg_add_scaled(shrunk.centre, l, view->row_step, shrunk.centre);
-    skg_scale_vector((double)factor, view->column_step, shrunk.column_step);
-    skg_scale_vector((double)factor, view->row_step, shrunk.row_step);
-    return shrunk;
-}
-
-void reg_shrink(const skg_view *view, int64_t factor, const double *from, double *to) {
-    const int64_t rows = view->rows / factor, columns = view->columns / factor;
-    for (int64_t l = 0; l < rows; l++)
-        for (int64_t c = 0; c < columns; c++) {
-            double sum = 0;
-            for (int64_t y = 0; y < factor; y++)
-                for (int64_t x = 0; x < factor; x++)
-                    sum += from[(l * factor + y) * view->columns + c * factor + x];
-            to[l * columns + c] = sum / (double)(factor * factor);
-        }
-}
 
 /* One pass of a chamfer transform: distances from a pixel to its neighbours before it, in the order of `sign`. */
 static void spread(int64_t rows, int64_t columns, int64_t sign, double *far) {

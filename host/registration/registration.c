@@ -1,5 +1,5 @@
 /* A registration as a handle: options, parts, radiographs, and the run. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include "core/clock.h"
 #include "core/log.h"
@@ -8,22 +8,6 @@
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-void skg_registration_options_init_sized(void *options, int32_t size) {
-    const skg_registration_options defaults = {.free = SKG_REGISTRATION_FREE_POSE,
-                                               .seed = 1,
-                                               .spread_mm = 20,
-                                               .spread_rad = 15 * SKG_PI / 180,
-                                               .steps = 30,
-                                               .margin_mm = 25,
-                                               .need_mm = 1};
-    skg_struct_init(options, size, &defaults, sizeof defaults);
-}
-
-void skg_radiograph_init_sized(void *image, int32_t size) {
-    const skg_radiograph defaults = {.quantity = SKG_QUANTITY_ENERGY};
-    skg_struct_init(image, size, &defaults, sizeof defaults);
-}
 
 static skg_status check_range(const char *name, double value, double low, double high) {
     if (value >= low && value <= high) return SKG_OK;

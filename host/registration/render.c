@@ -1,5 +1,5 @@
 /* Images of a registration's scenes, and their derivatives. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,20 +1,10 @@
 /* What a registration tells: numbers, words, views, poses, pictures. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include "core/text.h"
 
 #include <inttypes.h>
 #include <string.h>
-
-void skg_registration_result_init_sized(void *result, int32_t size) {
-    const skg_registration_result defaults = {0};
-    skg_struct_init(result, size, &defaults, sizeof defaults);
-}
-
-void skg_registration_direction_init_sized(void *direction, int32_t size) {
-    const skg_registration_direction defaults = {0};
-    skg_struct_init(direction, size, &defaults, sizeof defaults);
-}
 
 static skg_status need_end(const skg_registration *r, const char *call) {
     if (r->ended) return SKG_OK;

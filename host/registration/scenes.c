@@ -1,5 +1,5 @@
 /* Scenes that a registration renders, made of the parts of the caller's. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <string.h>
 

@@ -1,5 +1,5 @@
 /* Levenberg's and Marquardt's search at one level of the pyramid. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include "core/log.h"
 

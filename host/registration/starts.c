@@ -1,5 +1,5 @@
 /* Further starts of a registration: drawn about the first one and from neighbours alike, ranked on small images. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <stdlib.h>
 #include <string.h>

@@ -1,5 +1,5 @@
 /* Motions of the body, of source and detector: twists, steps, directions of derivatives. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <string.h>
 

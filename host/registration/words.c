@@ -1,5 +1,5 @@
 /* The result in words. */
-#include "registration/registration.h"
+#include "registration/types.h"
 
 #include <inttypes.h>
 #include <stdio.h>

@@ -71,6 +71,7 @@ START_TEST(a_body_is_found_and_written) {
     /* in the scene that was written nothing is left to move */
     ck_run(0, "register found.json " TWO "-o again.json --json --quiet");
     object = said_json(), part = json_array_get(member(object, "parts"), 0);
+    /* as above, and both are beside the truth by the same */
     ck_assert_double_lt(json_number_value(member(part, "shift_mm")), 0.05);
     json_decref(object);
     ck_run(0, "register scene.json " TWO "-o found.json");
@@ -84,6 +85,7 @@ START_TEST(bodies_follow_each_other) {
     ck_run(0, "register scene.json " TWO "--part 'bone 1' -o found.json --json --quiet");
     json_t *object = said_json(), *parts = member(object, "parts");
     ck_assert_uint_eq(json_array_size(parts), 2);
+    /* a twentieth of a pixel, as above */
     ck_assert_double_eq_tol(number_at(json_array_get(parts, 0), "twist", 0), 4, 0.1);
     ck_assert_double_lt(json_number_value(member(json_array_get(parts, 1), "shift_mm")), 0.1);
     json_decref(object);
@@ -97,6 +99,7 @@ START_TEST(other_radiographs_are_taken) {
         "register scene.json --image front.tif --quantity intensity --flat 60000 --mask front.tif --part 'bone*' "
         "-o found.json --json --quiet --need 50");
     json_t *object = said_json();
+    /* a quarter of a pixel: one view turns the body a little for what it does not see along the beam */
     ck_assert_double_eq_tol(number_at(json_array_get(member(object, "parts"), 0), "twist", 0), 4, 0.5);
     json_decref(object);
     ck_run(0, "image truth.json -o front.png --display transmission --range 0:1 --quiet");
@@ -104,6 +107,7 @@ START_TEST(other_radiographs_are_taken) {
         0,
         "register scene.json --image front.png --flat 65535 --loss ncc --part 'bone*' -o found.json --json --quiet --need 50");
     object = said_json();
+    /* a quarter of a pixel, as above */
     ck_assert_double_eq_tol(number_at(json_array_get(member(object, "parts"), 0), "twist", 0), 4, 0.5);
     json_decref(object);
     ck_run_fails(

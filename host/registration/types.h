@@ -139,7 +139,7 @@ void reg_scene_free(reg_scene *made);
 /* Middle, radius and long axis of the body; whether attenuations add. */
 skg_status reg_body_measure(skg_registration *r);
 
-/* --- The pyramid: pyramid.c */
+/* --- The pyramid: shrink.c, pyramid.c */
 
 /* The view whose pixels are means of factor x factor pixels. */
 skg_view reg_view_shrunk(const skg_view *view, int64_t factor);
@@ -248,6 +248,8 @@ typedef struct {
 skg_status reg_judge(skg_registration *r);
 void reg_say_verdict(skg_registration *r, const reg_rest *rest);
 void reg_name_direction(const skg_registration *r, const double *vector, char *name, size_t size);
+
+/* Eigenvalues, the smallest first, and their vectors, a row each, of a symmetric matrix, which is overwritten: eigen.c. */
 void reg_eigen(int64_t count, double *matrix, double *values, double *vectors);
 
 #endif
