@@ -116,6 +116,7 @@ static void set_uncertainty(skg_registration *r, const judging *j) {
     skg_registration_result *result = &r->result;
     const double pixels = (double)j->rest.pixels;
     for (int64_t d = 0; d < reg_count(r); d++) set_direction(r, d, j);
+    if (r->options.free == SKG_REGISTRATION_FREE_POSE) memcpy(r->least, j->vectors, sizeof r->least);
     for (int k = 0; k < REG_POSE && r->options.free == SKG_REGISTRATION_FREE_POSE; k++) {
         const double unit = k < 3 ? 1 : 1 / r->radius;
         double along[REG_POSE] = {0};
@@ -200,6 +201,7 @@ static skg_status judge(skg_registration *r, const reg_level *level, judging *j)
     SKG_TRY(begin(r, level, j));
     SKG_TRY(reg_render(r, level, &r->state, j->images));
     r->result.loss = reg_loss(r, level, &r->state, j->images);
+    r->minimized = r->loss;
     r->loss = SKG_REGISTRATION_LOSS_LSQ; /* whatever was minimized: in units of attenuation */
     SKG_TRY(reg_nuisances_find(r, level, &r->state, j->images));
     for (int64_t i = 0; i < r->image_count; i++) SKG_TRY(judge_image(r, level, i, j));

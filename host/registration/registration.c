@@ -83,6 +83,7 @@ static void forget_run(skg_registration *r) {
     skg_free(&r->directions);
     skg_free(&r->names);
     r->path_count = 0;
+    r->apart = 0;
     r->ended = 0;
 }
 
@@ -189,8 +190,15 @@ skg_status skg_registration_run(skg_registration *registration) {
     if (status != SKG_OK) return status;
     status = search(r);
     if (status != SKG_OK && status != SKG_ERR_CANCELLED) return status;
-    const int stopped = status == SKG_ERR_CANCELLED;
+    int stopped = status == SKG_ERR_CANCELLED;
     SKG_TRY(reg_judge(r));
+    status = stopped ? SKG_OK : reg_probe(r);
+    if (status == SKG_ERR_CANCELLED) { /* the result stands without it */
+        stopped = 1;
+        SKG_TRY(reg_judge(r));
+    } else if (status != SKG_OK) {
+        return status;
+    }
     r->ended = 1;
     r->result.seconds = skg_seconds() - begin;
     if (!stopped) return SKG_OK;

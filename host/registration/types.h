@@ -29,6 +29,9 @@ enum {
  * weight gradually. An assumption: a tenth of a thousandth of the open beam is less than any detector's scatter. */
 #define REG_FLOOR 1e-4
 
+/* Losses that differ by less than this share are called the same where the model lacks something. An assumption. */
+#define REG_SAME 0.01
+
 typedef struct {
     char name[REG_NAME];
     skg_view view;        /* as given */
@@ -105,6 +108,9 @@ struct skg_registration {
     int32_t loss;  /* that is minimized now */
     int32_t ended; /* 1: results can be asked for */
     skg_registration_result result;
+    int32_t minimized;      /* the loss that was minimized last */
+    double least[REG_POSE]; /* the least certain direction of a pose */
+    double apart;           /* of two places that agree almost equally, mm; 0: none is known */
     char verdict[512];
     skg_registration_direction *directions;
     char (*names)[REG_NAME];
@@ -246,6 +252,9 @@ typedef struct {
 } reg_rest;
 
 skg_status reg_judge(skg_registration *r);
+
+/* After reg_judge: looks for other places that agree as well, and judges again: probe.c. */
+skg_status reg_probe(skg_registration *r);
 void reg_say_verdict(skg_registration *r, const reg_rest *rest);
 void reg_name_direction(const skg_registration *r, const double *vector, char *name, size_t size);
 

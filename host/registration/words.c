@@ -116,6 +116,13 @@ void reg_say_verdict(skg_registration *r, const reg_rest *rest) {
                  "not determined: %s (standard deviation %s, and %.2g mm are asked for); a view from another "
                  "side determines it",
                  open->name, length, r->options.need_mm);
+    } else if (r->apart > 0) {
+        result->verdict = SKG_REGISTRATION_VERDICT_UNDETERMINED;
+        snprintf(
+            r->verdict, sizeof r->verdict,
+            "not determined: two places %.2g mm apart agree almost equally, since the model lacks something; a better "
+            "start, another view, or what is missing in the scene decides between them",
+            r->apart);
     } else if (result->residual > 1.1 * result->noise && result->residual > least_residual) {
         result->verdict = SKG_REGISTRATION_VERDICT_STRUCTURE;
         snprintf(
