@@ -20,6 +20,7 @@ const cli_verb cli_verbs[] = {
     {&cli_manual_make, cli_make},
     {&cli_manual_breathe, cli_breathe},
     {&cli_manual_fit, cli_fit},
+    {&cli_manual_register, cli_register},
     {&cli_manual_scan, cli_scan},
     {&cli_manual_reconstruct, cli_reconstruct},
     {NULL, NULL},

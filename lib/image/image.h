@@ -1,4 +1,4 @@
-/* The writers of image files and what they share. Private. */
+/* The writers and readers of image files and what they share. Private. */
 #ifndef SKG_IMAGE_PRIVATE_H
 #define SKG_IMAGE_PRIVATE_H
 
@@ -50,6 +50,23 @@ void skg_picture_describe(const skg_picture *picture, char *text, size_t length)
 skg_status skg_png_write(const skg_picture *picture, skg_output_file *file);
 skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file);
 skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file);
+
+/* Each looks at a file, and reads a page of it if values is not NULL. The number of rows and columns is at most 32768. */
+skg_status skg_png_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
+skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
+skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
+
+/* The value of a number of `bytes` bytes of a file. kind: 'u' unsigned, 'i' signed, 'f' float; swapped: 1: of the other byte order. */
+double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped);
+
+/* The quantity that a heading of skg_picture_title begins with; -1: none. */
+int32_t skg_quantity_of_title(const char *title);
+
+/* SKG_ERR_FORMAT if an image has no pixels or too many. */
+skg_status skg_picture_size_check(const char *path, double columns, double rows, double pages);
+
+/* SKG_ERR_ARGUMENT if there is no such page. */
+skg_status skg_picture_page_check(const char *path, int64_t page, int64_t pages);
 
 /* SKG_ERR_UNSUPPORTED if the steps of the detector are not at right angles. */
 skg_status skg_metaimage_check(const skg_picture *picture, const char *path);

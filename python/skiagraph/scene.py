@@ -10,7 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _edit, _gradient, _images, _look, _pickle, _projections, _save, _scatter, _show, _source
+from . import _arrays, _command, _edit, _gradient, _images, _look, _pickle, _projections, _register, _save, _scatter, _show, _source
 from ._device import Device
 from ._frames import Batch
 from ._interface import ArgumentError, SceneError
@@ -391,6 +391,27 @@ class Scene(_gradient.Differentiable):
                 raise SceneError("the scene was changed since it was read, and cost() compares it as it was read; put "
                                  "the changes into the file, the dictionary or settings")
         return _command.cost(self._state.source, quick, within, frames, sensitivity)
+
+    def register(self, images: Any, parts: str | Sequence[str] = (), *, free: str = "pose", loss: str = "lsq",
+                 quantity: str | None = "attenuation", out: str | os.PathLike[str] | None = None, polish: bool = False,
+                 start: Sequence[float] | None = None, restarts: int = 0, seed: int = 1, mask: Any = None, flat: Any = None,
+                 report: str | os.PathLike[str] | None = None) -> dict[str, Any]:
+        """Finds where parts are in radiographs, or where source and detector were, as the command `skiagraph register`.
+
+        images: an array [row, column] of the scene's own view, a list of arrays of the projections of the scene's scan, or
+        {projection: array}; an array may be a file. parts: a label, in which * stands for any text; all that fit move as one. Of
+        several, each is registered after the one before. free: "pose", "source", "detector" or "geometry". loss: "lsq", "ncc" or
+        "gradient-ncc". quantity: "attenuation", "transmission" or "intensity"; None: as the files say. start: six numbers, a twist in mm
+        and rad. out: the scene with what was found, .json; report: a page, .html.
+
+        Returns what the command prints: status, verdict, parts (label, twist, sigma, determined, directions), loss and more. The
+        scene itself stays as it is. The command has to be installed.
+        """
+        with self._state.calls():
+            flags = {"--free": free, "--loss": loss, "--quantity": quantity, "--polish": polish, "--restarts": restarts or None,
+                     "--seed": seed, "--start": None if start is None else tuple(float(x) for x in start),
+                     "--report": None if report is None else os.fspath(report)}
+            return _register.register(self._state, images, parts, out, flags, mask, flat)
 
     # Life
 

@@ -62,3 +62,31 @@ def test_a_thorax_is_a_scene_in_one_call():
         assert "liver" in scene
         image = scene.image(quantity="transmission")
         assert image.min() < 0.5 < image.max()
+
+
+def test_a_body_is_registered(command, tmp_path):
+    """A ball and a bar that stand 3 mm beside where the scene has them."""
+    def text(x):
+        return {"Source": {"Position": [0, -600, 0, "mm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+                "Detector": {"Position": [0, 200, 0, "mm"], "UpVector": [0, 0, -1], "NumberOfPixels": [64, 64], "Spacing": [3, 3, "mm"],
+                             "Oversampling": 2},
+                "Scan": {"NumberOfProjections": 2, "AngleStep": 90},
+                "Samples": [{"Label": "bar", "Cuboid": [20, 26, 44, "mm"], "Material": ["mu", 0.5],
+                             "Transform": [["Translation", x, 2, -3, "mm"], ["Rotation", 15, 1, 2, 3]]}]}
+
+    truth, scene = sk.Scene(text(3.0)), sk.Scene(text(0.0))
+    images = truth.scan(quantity="attenuation")
+    found = scene.register(list(images), "bar", out=tmp_path / "registered.json", report=tmp_path / "report.html")
+    # a thirtieth of the pixel of 2.2 mm at the bar; ray for ray the images are the same
+    np.testing.assert_allclose(found["parts"][0]["twist"][:3], [3, 0, 0], atol=0.08)
+    assert found["status"] == "agrees" and (tmp_path / "report.html").exists()
+    registered = sk.Scene(tmp_path / "registered.json")
+    np.testing.assert_allclose(registered["bar"].pose, truth["bar"].pose, atol=0.08)
+    assert scene.register({1: images[1]}, "bar", loss="ncc")["parts"][0]["directions"]
+    with pytest.raises(sk.ArgumentError, match="shape"):
+        scene.register(images[0][0], "bar")
+    with pytest.raises(sk.OutputError, match="did you mean"):
+        scene.register(list(images), "bat")
+    scene["bar"].pose = np.eye(4)
+    with pytest.raises(sk.SceneError, match="was changed"):
+        scene.register(list(images), "bar")

@@ -1,19 +1,15 @@
 /* Writes the fitted parameters into the scene. */
-#define _XOPEN_SOURCE 700 /* realpath */
-/* The fitted scene as a file. */
 #include "scene/scene.h"
 #include "body/links.h"
-#include "core/files.h"
 #include "core/text.h"
 #include "fit/types.h"
+#include "setup/save.h"
 #include "json/json.h"
 
 #include <jansson.h>
 
 #include <stdio.h>
-#include <stdlib.h>
 #include <string.h>
-#include <sys/stat.h>
 
 /* The member of an object whose name is this one as keys are compared; its own name is stored in *name. */
 static json_t *member(json_t *object, const char **name) {
@@ -116,55 +112,19 @@ static int set_parameters(const skg_fit *fit, json_t *scene) {
     return done;
 }
 
-/* The name by which a scene at `path` finds a file: its own, if that leads there, otherwise its absolute path. */
-static void name_file(const skg_setup_file *file, const char *path, char *name, size_t size) {
-    const char *slash = strrchr(path, '/');
-    struct stat there, here;
-    snprintf(name, size, "%.*s%s", slash ? (int)(slash - path) + 1 : 0, path, file->name);
-    if (file->name[0] == '/') snprintf(name, size, "%s", file->name);
-    const int same = stat(file->path, &there) == 0 && stat(name, &here) == 0 && there.st_ino == here.st_ino &&
-                     there.st_dev == here.st_dev;
-    char *absolute = same ? NULL : realpath(file->path, NULL);
-    snprintf(name, size, "%s", absolute ? absolute : file->name);
-    free(absolute);
-}
-
-/* Replaces the names of files in a value and everything below it. */
-static void rename_files(const skg_setup *setup, const char *path, json_t *value) {
-    const char *key;
-    json_t *below;
-    size_t index;
-    json_object_foreach(value, key, below) rename_files(setup, path, below);
-    json_array_foreach(value, index, below) rename_files(setup, path, below);
-    if (!json_is_string(value)) return;
-    for (int64_t f = 0; f < setup->file_count; f++) {
-        char name[4096];
-        if (strcmp(json_string_value(value), setup->files[f].name) != 0) continue;
-        name_file(setup->files + f, path, name, sizeof name);
-        json_string_set(value, name);
-        return;
-    }
-}
-
 skg_status skg_fit_scene_save(const skg_fit *fit, const char *path) {
     SKG_PLAIN;
-    skg_output_file file;
     SKG_NEEDS(fit);
     SKG_NEEDS(path);
     if (!fit->began) return skg_fail(SKG_ERR_ARGUMENT, "fit: nothing is fitted yet; call skg_fit_step first");
     json_t *scene = json_loads(fit->setup->text, 0, NULL);
-    char *text = NULL;
+    skg_status status;
     if (scene && set_parameters(fit, scene)) {
-        rename_files(fit->setup, path, scene);
-        text = json_dumps(scene, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
+        skg_setup_rename_files(fit->setup, path, scene);
+        status = skg_setup_write_text(scene, path);
+    } else {
+        status = skg_fail(SKG_ERR_MEMORY, "%s: no memory for its text", path);
     }
     json_decref(scene);
-    if (!text) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for its text", path);
-    skg_status status = skg_output_open(path, &file);
-    if (status == SKG_OK) {
-        fprintf(file.stream, "%s\n", text);
-        status = skg_output_commit(&file);
-    }
-    free(text);
     return status;
 }

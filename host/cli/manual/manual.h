@@ -48,7 +48,7 @@ void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
     cli_manual_distance, cli_manual_fit, cli_manual_image, cli_manual_lbuffer, cli_manual_live,
     cli_manual_material, cli_manual_make, cli_manual_mesh, cli_manual_plan, cli_manual_reconstruct,
-    cli_manual_parts, cli_manual_scan, cli_manual_thorax, cli_manual_view;
+    cli_manual_parts, cli_manual_register, cli_manual_scan, cli_manual_thorax, cli_manual_view;
 
 extern const cli_flag cli_flag_help; /* of every verb */
 
@@ -79,6 +79,11 @@ extern const cli_flag cli_flag_distance_map, cli_flag_distance_output, cli_flag_
 extern const cli_flag cli_flag_fit_target, cli_flag_fit_phase, cli_flag_fit_output, cli_flag_fit_parameters,
     cli_flag_fit_bounds, cli_flag_fit_evaluations, cli_flag_fit_seed, cli_flag_fit_method,
     cli_flag_fit_checkpoint;
+extern const cli_flag cli_flag_register_image, cli_flag_register_part, cli_flag_register_output,
+    cli_flag_register_report, cli_flag_register_free, cli_flag_register_loss, cli_flag_register_polish,
+    cli_flag_register_start, cli_flag_register_mask, cli_flag_register_quantity, cli_flag_register_flat,
+    cli_flag_register_restarts, cli_flag_register_seed, cli_flag_register_spread, cli_flag_register_margin,
+    cli_flag_register_need;
 extern const cli_flag cli_flag_material_energy, cli_flag_material_density, cli_flag_material_list,
     cli_flag_material_naive;
 extern const cli_flag cli_flag_beam_kvp, cli_flag_beam_filter, cli_flag_beam_angle, cli_flag_beam_anode,

@@ -49,20 +49,32 @@ static int fail_unknown(const choice *c, const cli_flag *flag, const char *patte
                      near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
 }
 
-/* Marks the parts that the patterns of a flag name, with commas between them. */
+/* Marks the parts that patterns of a flag name, with commas between them. */
+static int mark_text(const choice *c, const cli_flag *flag, const char *text, char value) {
+    for (const char *at = text; at; at = *at == ',' ? at + 1 : NULL) {
+        const char *pattern = at;
+        const size_t length = strcspn(at, ",");
+        int64_t found = 0;
+        at += length;
+        for (int64_t p = 0; p < c->count; p++)
+            if (fits(label_of(c, p), pattern, length)) c->chosen[p] = value, found++;
+        if (!found) return fail_unknown(c, flag, pattern, length);
+    }
+    return CLI_DONE;
+}
+
 static int mark(const choice *c, const cli_arguments *arguments, const cli_flag *flag, char value) {
     const char *text;
-    for (int i = 0; (text = cli_nth_value(arguments, flag, i)); i++)
-        for (const char *at = text; at; at = *at == ',' ? at + 1 : NULL) {
-            const char *pattern = at;
-            const size_t length = strcspn(at, ",");
-            int64_t found = 0;
-            at += length;
-            for (int64_t p = 0; p < c->count; p++)
-                if (fits(label_of(c, p), pattern, length)) c->chosen[p] = value, found++;
-            if (!found) return fail_unknown(c, flag, pattern, length);
-        }
-    return CLI_DONE;
+    int exit_status = CLI_DONE;
+    for (int i = 0; exit_status == CLI_DONE && (text = cli_nth_value(arguments, flag, i)); i++)
+        exit_status = mark_text(c, flag, text, value);
+    return exit_status;
+}
+
+int cli_mark_parts(const skg_scene *scene, const cli_flag *flag, const char *text, int64_t count,
+                   char *chosen) {
+    const choice c = {.scene = scene, .count = count, .chosen = chosen};
+    return mark_text(&c, flag, text, 1);
 }
 
 /* Adds the parts whose surroundings are there; those of a part that is left out are what it lies in. Returns how many. */

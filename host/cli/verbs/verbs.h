@@ -18,6 +18,7 @@ int cli_make(const cli_arguments *arguments);
 int cli_breathe(const cli_arguments *arguments);
 int cli_cost(const cli_arguments *arguments);
 int cli_fit(const cli_arguments *arguments);
+int cli_register(const cli_arguments *arguments);
 int cli_scan(const cli_arguments *arguments);
 int cli_reconstruct(const cli_arguments *arguments);
 int cli_view(const cli_arguments *arguments);

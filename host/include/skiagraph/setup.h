@@ -88,6 +88,36 @@ SKG_API skg_status skg_setup_file_count(const skg_setup *setup, int64_t *count);
 SKG_API skg_status skg_setup_file_get(const skg_setup *setup, int64_t index, const char **name,
                                       const char **path);
 
+/** What skg_setup_save changes. Prepare with skg_setup_changes_init: nothing. */
+typedef struct {
+    /** Set by skg_setup_changes_init. */
+    int32_t size;
+    /** 0 */
+    int32_t reserved;
+    /** Number of parts that are moved. */
+    int64_t part_count;
+    /** [part_count] their numbers */
+    const int64_t *parts;
+    /** [part_count][16] their motions, in the world and in addition to their poses: affine matrices, row by row. */
+    const double *motions;
+    /** Number of views that are replaced. */
+    int64_t view_count;
+    /** [view_count] projections of the key Scan, which becomes a table of poses, or -1 for source and detector of the scene; NULL: -1. */
+    const int64_t *projections;
+    /** [view_count] the views */
+    const skg_view *views;
+} skg_setup_changes;
+
+SKG_INIT(skg_setup_changes)
+
+/** Writes a set-up as a scene file, which appears whole or not at all. Paths of files stay relative if they lead to the same file from the
+ * folder of the scene that is written, and become absolute otherwise.
+ *
+ *     changes   NULL: the scene as it was read, after its settings
+ *     errors    SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for a part that cannot be moved in the text, since a command among the samples
+ *               places all of them together */
+SKG_API skg_status skg_setup_save(const skg_setup *setup, const skg_setup_changes *changes, const char *path);
+
 /** Frees a set-up and releases what it holds. Plans retain what they need of it. */
 SKG_API void skg_setup_release(skg_setup **setup);
 

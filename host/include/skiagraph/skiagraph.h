@@ -31,6 +31,7 @@
 #include <skiagraph/progress.h>
 #include <skiagraph/readout.h>
 #include <skiagraph/reconstruct.h>
+#include <skiagraph/registration.h>
 #include <skiagraph/scan.h>
 #include <skiagraph/scan_file.h>
 #include <skiagraph/scan_reader.h>

@@ -1,5 +1,5 @@
 /** @file
- * Image files: TIFF, MetaImage and PNG. A file appears whole or not at all. */
+ * Image files: TIFF, MetaImage and PNG, written and read. A file that is written appears whole or not at all. */
 #ifndef SKIAGRAPH_IMAGE_H
 #define SKIAGRAPH_IMAGE_H
 
@@ -83,6 +83,39 @@ SKG_API skg_status skg_picture_range_get(const skg_picture *picture, double *low
  *     errors         SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
 SKG_API skg_status skg_picture_window_get(const skg_picture *picture, double below, double above, double *low,
                                           double *high);
+
+/** What an image file holds. The library fills it; prepare with skg_picture_contents_init. */
+typedef struct {
+    /** Set by skg_picture_contents_init. */
+    int32_t size;
+    /** enum skg_quantity of the values, if the file says so as skg_picture_save writes it; otherwise -1. */
+    int32_t quantity;
+    /** Number of columns. */
+    int64_t columns;
+    /** Number of rows. */
+    int64_t rows;
+    /** Number of pages of a TIFF, or slices of a MetaImage. */
+    int64_t pages;
+} skg_picture_contents;
+
+SKG_INIT(skg_picture_contents)
+
+/** Looks at an image file.
+ *
+ *     path       .mha or .mhd: of two or three dimensions, any type of number, not compressed, one channel
+ *                .tif, .tiff: grey, 8 to 64 bits, in strips, compressed or not
+ *                .png: grey, 1 to 16 bits
+ *     contents   in and out: prepared with skg_picture_contents_init
+ *     errors     SKG_ERR_FILE; SKG_ERR_FORMAT if it is no such file, or is damaged; SKG_ERR_UNSUPPORTED for colours, tiles,
+ *                compressed MetaImages and other extensions */
+SKG_API skg_status skg_picture_contents_get(const char *path, skg_picture_contents *contents);
+
+/** Reads a page of an image file as numbers: those of the file, without display curve or scale.
+ *
+ *     page     0 <= page < number of pages
+ *     values   result: [rows][columns]
+ *     errors   as above; SKG_ERR_ARGUMENT (page) */
+SKG_API skg_status skg_picture_load(const char *path, int64_t page, double *values);
 
 #ifdef __cplusplus
 }

@@ -1,0 +1,149 @@
+/* Reads the radiographs that flags name, with views, flat fields and masks. */
+#include "register/work.h"
+
+#include "common/say.h"
+
+#include <inttypes.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* In the order of --quantity. */
+static const int32_t register_quantities[] = {SKG_QUANTITY_ENERGY, SKG_QUANTITY_TRANSMISSION,
+                                              SKG_QUANTITY_ATTENUATION};
+
+/* Splits FILE@K; a name that has no number behind its last @ is one of a file. */
+static int split(const char *value, register_image *image) {
+    char *end = NULL;
+    image->projection = -1;
+    image->path = strdup(value);
+    if (!image->path) return cli_error(CLI_DEVICE, "out of host memory");
+    char *at = strrchr(image->path, '@');
+    const long number = at && at[1] ? strtol(at + 1, &end, 10) : -1;
+    if (!at || !end || *end || number < 0) return CLI_DONE;
+    *at = '\0';
+    image->projection = number;
+    return CLI_DONE;
+}
+
+/* The view of the scene, or of a projection. */
+static int find_view(const register_work *work, register_image *image) {
+    skg_scan *scan = NULL;
+    int64_t count = 0;
+    image->view = work->session.view;
+    if (image->projection < 0) return CLI_DONE;
+    skg_status status = skg_setup_scan_get(work->session.setup, &scan);
+    if (status != SKG_OK)
+        return cli_error(CLI_INPUT,
+                         "--image %s@%" PRId64
+                         ": the scene has no Scan that gives the view of a projection; leave @%" PRId64
+                         " out, or add the key Scan",
+                         image->path, image->projection, image->projection);
+    status = skg_scan_projection_count(scan, &count);
+    if (status != SKG_OK) return cli_fail(status);
+    if (image->projection >= count)
+        return cli_error(CLI_INPUT,
+                         "--image %s@%" PRId64 ": the Scan has %" PRId64 " projections, counted from 0",
+                         image->path, image->projection, count);
+    status = skg_scan_view_get(scan, image->projection, &image->view);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+/* Reads an image that has to have the size of the view. page: of a file that has several; otherwise its only one. */
+static int read_values(const char *path, const skg_view *view, int64_t page, double **values,
+                       int32_t *quantity) {
+    skg_picture_contents contents;
+    skg_picture_contents_init(&contents);
+    skg_status status = skg_picture_contents_get(path, &contents);
+    if (status != SKG_OK) return cli_fail(status);
+    if (contents.columns != view->columns || contents.rows != view->rows)
+        return cli_error(CLI_INPUT,
+                         "%s: has %" PRId64 " x %" PRId64 " pixels, and its view has %" PRId64 " x %" PRId64
+                         "; set Detector.NumberOfPixels and Size of the scene, or give another file",
+                         path, contents.columns, contents.rows, view->columns, view->rows);
+    if (contents.pages > 1 && page < 0)
+        return cli_error(CLI_INPUT,
+                         "%s: has %" PRId64 " pages; say by @K which one, and thus which projection", path,
+                         contents.pages);
+    *values = malloc((size_t)(view->columns * view->rows) * sizeof **values);
+    if (!*values) return cli_error(CLI_DEVICE, "out of host memory");
+    status = skg_picture_load(path, contents.pages > 1 ? page : 0, *values);
+    if (quantity) *quantity = contents.quantity;
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static int count_values(const cli_arguments *arguments, const cli_flag *flag) {
+    int count = 0;
+    while (cli_nth_value(arguments, flag, count)) count++;
+    return count;
+}
+
+/* The value of a flag that is given once for all radiographs, or once for each; NULL: not given. */
+static int value_for(const register_work *work, const cli_flag *flag, int64_t image, const char **value) {
+    const int count = count_values(work->arguments, flag);
+    *value = NULL;
+    if (count > 1 && count != work->image_count)
+        return cli_error(CLI_USAGE,
+                         "%s is given %d times for %" PRId64 " radiographs; give it once, or once for each",
+                         flag->name, count, work->image_count);
+    if (count > 0) *value = cli_nth_value(work->arguments, flag, count > 1 ? (int)image : 0);
+    return CLI_DONE;
+}
+
+static int read_beside(const register_work *work, int64_t index, register_image *image) {
+    const char *flat = NULL, *mask = NULL;
+    char *end = NULL;
+    int exit_status = value_for(work, &cli_flag_register_flat, index, &flat);
+    if (exit_status == CLI_DONE) exit_status = value_for(work, &cli_flag_register_mask, index, &mask);
+    if (exit_status == CLI_DONE && flat) {
+        image->flat_field = strtod(flat, &end);
+        if (end == flat || *end) {
+            image->flat_field = 0;
+            exit_status = read_values(flat, &image->view, image->projection, &image->flat, NULL);
+        } else if (!(image->flat_field > 0)) {
+            exit_status = cli_error(CLI_USAGE, "--flat %s: a flat field is above 0", flat);
+        }
+    }
+    if (exit_status == CLI_DONE && mask)
+        exit_status = read_values(mask, &image->view, image->projection, &image->mask, NULL);
+    return exit_status;
+}
+
+static int read_image(const register_work *work, int64_t index, const char *value, register_image *image) {
+    int32_t said = -1, chosen = -1;
+    int exit_status = split(value, image);
+    if (exit_status == CLI_DONE) exit_status = find_view(work, image);
+    if (exit_status == CLI_DONE)
+        exit_status = read_values(image->path, &image->view, image->projection, &image->values, &said);
+    if (exit_status == CLI_DONE)
+        exit_status = cli_choice(work->arguments, &cli_flag_register_quantity, &chosen);
+    image->quantity = chosen >= 0 ? register_quantities[chosen] : said >= 0 ? said : SKG_QUANTITY_ENERGY;
+    if (exit_status == CLI_DONE) exit_status = read_beside(work, index, image);
+    const int is_ratio =
+        image->quantity == SKG_QUANTITY_TRANSMISSION || image->quantity == SKG_QUANTITY_ATTENUATION;
+    if (exit_status == CLI_DONE && !is_ratio && !image->flat && !(image->flat_field > 0))
+        cli_note("%s: no --flat is given; its largest intensity stands for it", image->path);
+    return exit_status;
+}
+
+int register_read_images(register_work *work) {
+    const int count = count_values(work->arguments, &cli_flag_register_image);
+    int exit_status = CLI_DONE;
+    if (count == 0) return cli_error(CLI_USAGE, "register: give at least one radiograph: --image FILE.mha");
+    work->images = calloc((size_t)count, sizeof *work->images);
+    if (!work->images) return cli_error(CLI_DEVICE, "out of host memory");
+    work->image_count = count;
+    for (int i = 0; i < count && exit_status == CLI_DONE; i++)
+        exit_status = read_image(work, i, cli_nth_value(work->arguments, &cli_flag_register_image, i),
+                                 &work->images[i]);
+    return exit_status;
+}
+
+void register_free_images(register_work *work) {
+    for (int64_t i = 0; i < work->image_count && work->images; i++) {
+        free(work->images[i].path);
+        free(work->images[i].values);
+        free(work->images[i].flat);
+        free(work->images[i].mask);
+    }
+    free(work->images);
+}

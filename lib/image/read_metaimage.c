@@ -1,0 +1,139 @@
+/* Reads MetaImages. */
+#include "image/image.h"
+
+#include "core/text.h"
+
+#include <stdlib.h>
+#include <string.h>
+
+enum { LINE = 4096, LINES = 200 };
+
+/* What the header says. */
+typedef struct {
+    double size[3];
+    int dimensions, bytes, swapped, compressed, channels;
+    char kind;
+    char data[LINE]; /* ElementDataFile */
+    long header;     /* HeaderSize; 0: the data follow the header, or begin the file */
+    int32_t quantity;
+} metaimage;
+
+static const struct {
+    const char *name;
+    int bytes;
+    char kind;
+} types[] = {{"MET_UCHAR", 1, 'u'}, {"MET_CHAR", 1, 'i'},      {"MET_USHORT", 2, 'u'},
+             {"MET_SHORT", 2, 'i'}, {"MET_UINT", 4, 'u'},      {"MET_INT", 4, 'i'},
+             {"MET_ULONG", 4, 'u'}, {"MET_LONG", 4, 'i'},      {"MET_ULONG_LONG", 8, 'u'},
+             {"MET_FLOAT", 4, 'f'}, {"MET_LONG_LONG", 8, 'i'}, {"MET_DOUBLE", 8, 'f'}};
+
+static int is_true(const char *value) {
+    return skg_same_name(value, "True") || !strcmp(value, "1");
+}
+
+static void read_sizes(const char *value, metaimage *image) {
+    for (int k = 0; k < 3; k++) {
+        const char *end = value;
+        const double size = skg_read_number(value, &end);
+        if (end == value) return;
+        image->size[k] = size, value = end;
+        image->dimensions = k + 1;
+    }
+}
+
+/* One line "key = value" of the header. Keys that say nothing of the values are passed over. */
+static void read_line(const char *key, const char *value, metaimage *image) {
+    if (!strcmp(key, "DimSize")) read_sizes(value, image);
+    if (!strcmp(key, "ElementNumberOfChannels")) image->channels = atoi(value);
+    if (!strcmp(key, "CompressedData")) image->compressed = is_true(value);
+    if (!strcmp(key, "BinaryDataByteOrderMSB") || !strcmp(key, "ElementByteOrderMSB"))
+        image->swapped = is_true(value) != skg_host_is_big_endian();
+    if (!strcmp(key, "HeaderSize")) image->header = atol(value);
+    if (!strcmp(key, "Comment")) image->quantity = skg_quantity_of_title(value);
+    for (size_t t = 0; t < sizeof types / sizeof *types && !strcmp(key, "ElementType"); t++)
+        if (!strcmp(value, types[t].name)) image->bytes = types[t].bytes, image->kind = types[t].kind;
+    if (!strcmp(key, "ElementDataFile")) snprintf(image->data, sizeof image->data, "%s", value);
+}
+
+static void trim(char *text) {
+    size_t length = strlen(text);
+    while (length > 0 && strchr(" \t\r\n", text[length - 1])) text[--length] = '\0';
+}
+
+static skg_status read_header(const char *path, FILE *stream, metaimage *image) {
+    char line[LINE];
+    for (int k = 0; k < LINES && !image->data[0] && fgets(line, sizeof line, stream); k++) {
+        char *equals = strchr(line, '=');
+        if (!equals) break;
+        *equals++ = '\0';
+        while (*equals == ' ' || *equals == '\t') equals++;
+        trim(line);
+        trim(equals);
+        read_line(line, equals, image);
+    }
+    if (!image->data[0] || image->dimensions < 2)
+        return skg_fail(SKG_ERR_FORMAT,
+                        "%s: is no MetaImage: its header has no DimSize or no ElementDataFile", path);
+    if (!image->bytes) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its ElementType is none of a number", path);
+    if (image->compressed || image->channels > 1)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is %s; write it %s", path,
+                        image->compressed ? "compressed" : "of several channels",
+                        image->compressed ? "without compression" : "with one");
+    if (image->dimensions < 3) image->size[2] = 1;
+    return skg_picture_size_check(path, image->size[0], image->size[1], image->size[2]);
+}
+
+/* The stream of the values, at the first one. */
+static skg_status open_data(const char *path, const metaimage *image, FILE **stream) {
+    char beside[2 * LINE];
+    const char *slash = strrchr(path, '/');
+    if (!strcmp(image->data, "LOCAL")) return SKG_OK;
+    if (strchr(image->data, '%') || !strcmp(image->data, "LIST"))
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its values are in several files; write one", path);
+    snprintf(beside, sizeof beside, "%.*s%s", slash && image->data[0] != '/' ? (int)(slash - path) + 1 : 0,
+             path, image->data);
+    fclose(*stream);
+    *stream = NULL;
+    SKG_TRY(skg_input_open(beside, SKG_INPUT_LARGE, stream, NULL));
+    if (image->header > 0 && fseek(*stream, image->header, SEEK_SET) != 0)
+        return skg_fail(SKG_ERR_FORMAT, "%s: ends within its header", beside);
+    return SKG_OK;
+}
+
+static skg_status read_values(const char *path, FILE *stream, const metaimage *image, int64_t page,
+                              double *values) {
+    const int64_t count = (int64_t)image->size[0] * (int64_t)image->size[1];
+    unsigned char *row = NULL;
+    SKG_TRY(skg_alloc((int64_t)image->size[0], (size_t)image->bytes, "row of a MetaImage", &row));
+    skg_status status = SKG_OK;
+    if (fseek(stream, (long)(page * count * image->bytes), SEEK_CUR) != 0) status = SKG_ERR_FORMAT;
+    for (int64_t at = 0; at < count && status == SKG_OK; at += (int64_t)image->size[0]) {
+        if (fread(row, (size_t)image->bytes, (size_t)image->size[0], stream) != (size_t)image->size[0])
+            status = SKG_ERR_FORMAT;
+        for (int64_t c = 0; c < (int64_t)image->size[0] && status == SKG_OK; c++)
+            values[at + c] =
+                skg_number_of_bytes(row + c * image->bytes, image->bytes, image->kind, image->swapped);
+    }
+    skg_free(&row);
+    if (status == SKG_OK) return SKG_OK;
+    return skg_fail(SKG_ERR_FORMAT, "%s: ends before its last value", path);
+}
+
+skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents,
+                              double *values) {
+    metaimage image = {.quantity = -1, .channels = 1};
+    FILE *stream = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
+    SKG_TRY_CLEANUP(read_header(path, stream, &image));
+    contents->columns = (int64_t)image.size[0], contents->rows = (int64_t)image.size[1];
+    contents->pages = (int64_t)image.size[2];
+    contents->quantity = image.quantity;
+    SKG_TRY_CLEANUP(skg_picture_page_check(path, page, contents->pages));
+    if (!values) goto cleanup;
+    SKG_TRY_CLEANUP(open_data(path, &image, &stream));
+    SKG_TRY_CLEANUP(read_values(path, stream, &image, page, values));
+cleanup:
+    if (stream) fclose(stream);
+    return status;
+}

@@ -1,0 +1,115 @@
+/* Reads grey TIFFs. */
+#include "image/image.h"
+
+#include <stdarg.h>
+#include <string.h>
+#include <tiffio.h>
+
+typedef struct {
+    char text[256];
+} reason;
+
+/* Keeps the first sentence. Returns 1, so that libtiff does not print it. */
+static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+    reason *kept = user;
+    (void)tiff;
+    (void)module;
+    if (!kept->text[0]) vsnprintf(kept->text, sizeof kept->text, format, arguments);
+    return 1;
+}
+
+static int on_warning(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
+    (void)tiff;
+    (void)user;
+    (void)module;
+    (void)format;
+    (void)arguments;
+    return 1;
+}
+
+/* What a page says of its values. */
+typedef struct {
+    uint32_t columns, rows;
+    uint16_t bits, samples, format, photometric;
+} page_of;
+
+static skg_status look(const char *path, TIFF *tiff, page_of *page) {
+    uint16_t samples = 1, format = SAMPLEFORMAT_UINT, bits = 1, photometric = PHOTOMETRIC_MINISBLACK;
+    if (!TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page->columns) ||
+        !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page->rows))
+        return skg_fail(SKG_ERR_FORMAT, "%s: has no image", path);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLESPERPIXEL, &samples);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
+    TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
+    page->bits = bits, page->samples = samples, page->format = format, page->photometric = photometric;
+    SKG_TRY(skg_picture_size_check(path, page->columns, page->rows, 1));
+    if (samples != 1 || photometric > PHOTOMETRIC_MINISBLACK)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: has colours; write it grey", path);
+    if (TIFFIsTiled(tiff)) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is tiled; write it in strips", path);
+    const int whole = bits == 8 || bits == 16 || bits == 32 || bits == 64;
+    const int is_float = format == SAMPLEFORMAT_IEEEFP, known = format == SAMPLEFORMAT_UINT ||
+                                                                format == SAMPLEFORMAT_INT ||
+                                                                format == SAMPLEFORMAT_VOID || is_float;
+    if (!whole || !known || (is_float && bits < 32))
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s: has %d bits of sample format %d; write 8, 16, 32 or 64 bits", path, bits,
+                        format);
+    return SKG_OK;
+}
+
+/* Scan lines have the byte order of the host. */
+static skg_status read_rows(const char *path, TIFF *tiff, const page_of *page, double *values) {
+    const int bytes = page->bits / 8;
+    const char kind = page->format == SAMPLEFORMAT_IEEEFP ? 'f'
+                      : page->format == SAMPLEFORMAT_INT  ? 'i'
+                                                          : 'u';
+    unsigned char *row = NULL;
+    const int64_t line = (int64_t)TIFFScanlineSize64(tiff), least = (int64_t)page->columns * bytes;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(line > least ? line : least, 1, "row of a TIFF file", &row));
+    for (uint32_t r = 0; r < page->rows && status == SKG_OK; r++) {
+        if (TIFFReadScanline(tiff, row, r, 0) < 0)
+            status = skg_fail(SKG_ERR_FORMAT, "%s: row %u cannot be read", path, r);
+        for (uint32_t c = 0; c < page->columns && status == SKG_OK; c++) {
+            const double value = skg_number_of_bytes(row + (size_t)c * (size_t)bytes, bytes, kind, 0);
+            values[(size_t)r * page->columns + c] = value;
+        }
+    }
+    skg_free(&row);
+    return status;
+}
+
+static skg_status read_page(const char *path, TIFF *tiff, int64_t page, skg_picture_contents *contents,
+                            double *values) {
+    const char *description = NULL;
+    page_of one = {0};
+    contents->pages = TIFFNumberOfDirectories(tiff);
+    SKG_TRY(skg_picture_page_check(path, page, contents->pages));
+    if (!TIFFSetDirectory(tiff, (tdir_t)page))
+        return skg_fail(SKG_ERR_FORMAT, "%s: page %d cannot be read", path, (int)page);
+    SKG_TRY(look(path, tiff, &one));
+    contents->columns = one.columns, contents->rows = one.rows;
+    if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &description) && description)
+        contents->quantity = skg_quantity_of_title(description);
+    return values ? read_rows(path, tiff, &one, values) : SKG_OK;
+}
+
+skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values) {
+    reason kept = {""};
+    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    TIFF *tiff = NULL;
+    if (options) {
+        TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, &kept);
+        TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, NULL);
+        tiff = TIFFOpenExt(path, "rm",
+                           options); /* m: not mapped into memory, so that a file that shrinks is an error */
+        TIFFOpenOptionsFree(options);
+    }
+    if (!tiff)
+        return skg_fail(SKG_ERR_FORMAT, "%s: is no TIFF: %s", path,
+                        kept.text[0] ? kept.text : "libtiff gives no reason");
+    const skg_status status = read_page(path, tiff, page, contents, values);
+    TIFFClose(tiff);
+    return status;
+}

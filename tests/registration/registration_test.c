@@ -1,0 +1,406 @@
+/* A body is found again in radiographs of its scene; what is wrong with radiographs is named. */
+#include "registration/types.h"
+#include "suite.h"
+
+#include <skiagraph/skiagraph.h>
+
+#include <float.h>
+#include <math.h>
+#include <string.h>
+
+enum { SIDE = 96, VIEWS = 2, PIXELS = SIDE * SIDE };
+
+static skg_context *context;
+static skg_spectrum *mono;
+
+static void set_up(void) {
+    ck_skg(skg_context_create(NULL, &context));
+    ck_skg(skg_spectrum_create_mono(60, 1e5, &mono));
+}
+
+static void tear_down(void) {
+    skg_spectrum_release(&mono);
+    skg_context_release(&context);
+}
+
+/* Takes the mesh. */
+static int64_t add(skg_scene *scene, skg_mesh *mesh, double mu, const char *label, int64_t inside, double x,
+                   double y, double z) {
+    skg_part part;
+    int64_t id;
+    skg_part_init(&part);
+    ck_skg(skg_material_create_mu(label, mu, &part.material));
+    part.mesh = mesh, part.label = label, part.inside = inside;
+    skg_pose_translation(x, y, z, part.pose);
+    ck_skg(skg_scene_part_add(scene, &part, &id));
+    skg_mesh_release(&mesh);
+    skg_material_release(&part.material);
+    return id;
+}
+
+enum { SKIN, LUNG, BLOCK, KNOB, ARM, PARTS };
+
+/* A body of three parts without symmetry, inside a sphere that holds something light as well. */
+static skg_scene *make_scene(void) {
+    skg_scene *scene;
+    skg_mesh *skin, *lung, *block, *knob, *arm;
+    ck_skg(skg_scene_create(context, &scene));
+    ck_skg(skg_mesh_create_sphere(80, 48, &skin));
+    ck_skg(skg_mesh_create_sphere(20, 24, &lung));
+    ck_skg(skg_mesh_create_cuboid(18, 26, 40, &block));
+    ck_skg(skg_mesh_create_sphere(9, 24, &knob));
+    ck_skg(skg_mesh_create_cuboid(34, 6, 8, &arm));
+    ck_assert_int_eq(add(scene, skin, 0.2, "skin", -1, 0, 0, 0), SKIN);
+    ck_assert_int_eq(add(scene, lung, 0.05, "lung", SKIN, -42, 10, 8), LUNG);
+    ck_assert_int_eq(add(scene, block, 0.5, "body block", SKIN, 3, -2, 4), BLOCK);
+    ck_assert_int_eq(add(scene, knob, 0.6, "body knob", SKIN, 14, 20, 28), KNOB);
+    ck_assert_int_eq(add(scene, arm, 0.5, "body arm", SKIN, 20, -18, -14), ARM);
+    return scene;
+}
+
+/* From the front and from the side; the detector is square. */
+static skg_view view_from(int which) {
+    skg_view view;
+    skg_view_init(&view);
+    view.columns = view.rows = SIDE;
+    view.source[1 - which] = which == 0 ? -600 : 600;
+    view.centre[1 - which] = which == 0 ? 200 : -200;
+    view.column_step[which] = 2;
+    view.row_step[2] = -2;
+    return view;
+}
+
+static void render(skg_scene *scene, const skg_view *view, int32_t quantity, int noise, double *values) {
+    skg_plan_options options;
+    skg_plan *plan;
+    skg_output output;
+    static float image[PIXELS];
+    skg_plan_options_init(&options);
+    options.quantity = quantity, options.supersampling = 2, options.noise = noise;
+    ck_skg(skg_plan_create(context, scene, view, mono, &options, &plan));
+    skg_output_init(&output);
+    output.data = image;
+    ck_skg(skg_plan_image(plan, &output));
+    skg_plan_release(&plan);
+    for (int p = 0; p < PIXELS; p++) values[p] = (double)image[p];
+}
+
+static void add_image(skg_registration *r, const skg_view *view, const double *values) {
+    skg_radiograph image;
+    skg_radiograph_init(&image);
+    image.view = view, image.values = values, image.quantity = SKG_QUANTITY_ATTENUATION;
+    ck_skg(skg_registration_image_add(r, &image));
+}
+
+/* What each test changes of the usual run: two views, from a start some mm and degrees off. */
+typedef struct {
+    int views, noise;
+    double shift, turn;
+    skg_registration_options options;
+} run_of;
+
+static run_of usual(void) {
+    run_of run = {.views = VIEWS, .shift = 6, .turn = 6 * SKG_PI / 180};
+    skg_registration_options_init(&run.options);
+    return run;
+}
+
+static skg_registration *prepare(run_of *run, skg_scene *scene) {
+    static double values[PIXELS];
+    skg_registration *r;
+    const double start[6] = {0.6 * run->shift, -0.64 * run->shift, 0.48 * run->shift,
+                             0.48 * run->turn, 0.6 * run->turn,    -0.64 * run->turn};
+    memcpy(run->options.start, start, sizeof start);
+    ck_skg(skg_registration_create(context, scene, mono, NULL, &run->options, &r));
+    for (int64_t p = BLOCK; p <= ARM; p++) ck_skg(skg_registration_part_add(r, p));
+    for (int v = 0; v < run->views; v++) {
+        const skg_view view = view_from(v);
+        render(scene, &view, SKG_QUANTITY_ATTENUATION, run->noise, values);
+        add_image(r, &view, values);
+    }
+    return r;
+}
+
+static skg_registration_result result_of(skg_registration *r) {
+    skg_registration_result result;
+    skg_registration_result_init(&result);
+    ck_skg(skg_registration_result_get(r, &result));
+    return result;
+}
+
+/* How far the corners of a box about the body are from where they are in the scene, at most. */
+static double error_of(const skg_registration_result *result) {
+    double motion[16], most = 0;
+    reg_motion_of(result->twist, motion);
+    for (int corner = 0; corner < 8; corner++) {
+        const double at[3] = {corner & 1 ? 30 : -10, corner & 2 ? 30 : -20, corner & 4 ? 35 : -20};
+        double moved[3];
+        skg_pose_point(motion, at, moved);
+        skg_add_scaled(moved, -1, at, moved);
+        most = fmax(most, skg_length(moved));
+    }
+    return most;
+}
+
+static skg_registration_result run(run_of *run, double bar) {
+    skg_scene *scene = make_scene();
+    skg_registration *r = prepare(run, scene);
+    ck_skg(skg_registration_run(r));
+    const skg_registration_result result = result_of(r);
+    ck_assert_msg(error_of(&result) < bar, "%g mm instead of less than %g (loss %g -> %g, verdict %s)",
+                  error_of(&result), bar, result.loss_start, result.loss, r->verdict);
+    ck_assert(result.loss < result.loss_start);
+    skg_registration_release(&r);
+    skg_scene_release(&scene);
+    return result;
+}
+
+START_TEST(twists_are_their_own_inverse) {
+    static const double twists[][6] = {{1, 2, 3, 0, 0, 0},
+                                       {4, -5, 6, 1e-7, -2e-7, 3e-7},
+                                       {4, -5, 6, 0.3, -0.2, 0.1},
+                                       {10, 0, -3, 0.02, 3.1, 0.03},
+                                       {-7, 8, 1, -1.2, -1.9, 2.0}};
+    for (size_t t = 0; t < sizeof twists / sizeof *twists; t++) {
+        double motion[16], back[6];
+        reg_motion_of(twists[t], motion);
+        ck_assert_double_eq_tol(skg_pose_determinant(motion), 1, 64 * DBL_EPSILON);
+        reg_twist_of(motion, back);
+        for (int k = 0; k < 6; k++) /* near pi the axis has the square root of an epsilon's part */
+            ck_assert_double_eq_tol(back[k], twists[t][k], 1e-9);
+    }
+}
+END_TEST
+
+START_TEST(every_loss_finds_the_body) {
+    /* a hundredth of a pixel at the body, which is 1.5 mm; the samples of model and radiograph are the same there */
+    static const struct {
+        int32_t loss, polish;
+        double bar;
+    } ways[] = {{SKG_REGISTRATION_LOSS_LSQ, 0, 0.015},
+                {SKG_REGISTRATION_LOSS_NCC, 0, 0.03},
+                {SKG_REGISTRATION_LOSS_GRADIENT_NCC, 0, 0.03},
+                {SKG_REGISTRATION_LOSS_LSQ, 1, 0.015}};
+    for (size_t k = 0; k < sizeof ways / sizeof *ways; k++) {
+        run_of one = usual();
+        one.options.loss = ways[k].loss, one.options.polish = ways[k].polish;
+        const skg_registration_result result = run(&one, ways[k].bar);
+        ck_assert_int_eq(result.verdict, SKG_REGISTRATION_VERDICT_AGREES);
+        ck_assert(result.agreement > 0.99 && result.explained > 0.99);
+        for (int d = 0; d < 6; d++) ck_assert(result.determined[d] && result.sigma[d] < 0.1);
+    }
+}
+END_TEST
+
+/* With noise the error is that of sigma: within five of them, which less than one of a million exceed. */
+START_TEST(noise_displaces_as_sigma_says) {
+    run_of one = usual();
+    one.noise = 1;
+    const skg_registration_result result = run(&one, 0.5);
+    ck_assert_int_eq(result.verdict, SKG_REGISTRATION_VERDICT_AGREES);
+    double moved[3], motion[16];
+    reg_motion_of(result.twist, motion);
+    skg_pose_point(motion, result.middle, moved);
+    for (int k = 0; k < 3; k++) { /* five of them, as above */
+        ck_assert(result.sigma[k] > 0);
+        ck_assert_double_le(fabs(moved[k] - result.middle[k]), 5 * result.sigma_structure[k]);
+        /* five of them, as above */
+        ck_assert_double_le(fabs(result.twist[3 + k]), 5 * result.sigma_structure[3 + k]);
+    }
+}
+END_TEST
+
+/* One view sees little along its beam, and says so. */
+START_TEST(the_beam_of_one_view_is_the_least_certain) {
+    run_of one = usual();
+    skg_scene *scene = make_scene();
+    skg_registration_direction worst;
+    const char *sentence;
+    one.views = 1, one.noise = 1, one.shift = 3, one.turn = 0.03;
+    one.options.need_mm = 0.05;
+    skg_registration *r = prepare(&one, scene);
+    ck_skg(skg_registration_run(r));
+    skg_registration_direction_init(&worst);
+    ck_skg(skg_registration_direction_get(r, 0, &worst));
+    ck_assert_str_eq(worst.name, "shift along the beam of view 1");
+    ck_assert_int_eq(worst.determined, 0);
+    ck_assert_int_eq(result_of(r).verdict, SKG_REGISTRATION_VERDICT_UNDETERMINED);
+    ck_assert_int_eq(result_of(r).determined[1], 0); /* along y */
+    ck_skg(skg_registration_verdict_get(r, &sentence));
+    ck_assert_ptr_nonnull(strstr(sentence, "not determined: shift along the beam of view 1"));
+    skg_registration_release(&r);
+    skg_scene_release(&scene);
+}
+END_TEST
+
+START_TEST(restarts_find_it_from_afar) {
+    run_of one = usual();
+    one.shift = 30, one.turn = 25 * SKG_PI / 180;
+    one.options.restarts = 40, one.options.spread_mm = 40, one.options.spread_rad = 0.6;
+    one.options.margin_mm = 60;
+    run(&one, 0.03);
+}
+END_TEST
+
+static int32_t stop_after(int64_t done, int64_t total, void *user) {
+    ck_assert(done <= total);
+    return done >= *(int64_t *)user;
+}
+
+START_TEST(a_cancelled_one_keeps_the_best) {
+    int64_t limit = 3;
+    run_of one = usual();
+    skg_scene *scene = make_scene();
+    ck_skg(skg_progress_create(stop_after, &limit, &one.options.progress));
+    skg_registration *r = prepare(&one, scene);
+    skg_progress_release(&one.options.progress);
+    ck_skg_fails(skg_registration_run(r), SKG_ERR_CANCELLED, "the best pose so far stands");
+    const skg_registration_result result = result_of(r);
+    ck_assert_int_eq(result.verdict, SKG_REGISTRATION_VERDICT_STOPPED);
+    ck_assert(result.loss <= result.loss_start);
+    skg_registration_release(&r);
+    skg_scene_release(&scene);
+}
+END_TEST
+
+/* Twelve balls whose place is known give the nine numbers of a view. */
+START_TEST(a_phantom_calibrates_a_view) {
+    skg_scene *scene;
+    skg_registration *r;
+    skg_registration_options options;
+    static double values[PIXELS];
+    ck_skg(skg_scene_create(context, &scene));
+    for (int b = 0; b < 12; b++) {
+        char label[16];
+        skg_mesh *ball;
+        snprintf(label, sizeof label, "ball %d", b);
+        ck_skg(skg_mesh_create_sphere(4, 24, &ball));
+        add(scene, ball, 2, label, -1, 35 * cos(1.9 * b), 35 * sin(1.9 * b), -44 + 8.0 * b);
+    }
+    const skg_view truth = view_from(0);
+    skg_view wrong = truth, found;
+    render(scene, &truth, SKG_QUANTITY_ATTENUATION, 0, values);
+    skg_registration_options_init(&options);
+    options.free = SKG_REGISTRATION_FREE_SOURCE | SKG_REGISTRATION_FREE_DETECTOR;
+    options.steps = 60, options.margin_mm = 8;
+    wrong.source[0] += 3, wrong.source[1] -= 4, wrong.source[2] += 2;
+    wrong.centre[0] -= 2, wrong.centre[1] += 2, wrong.centre[2] += 1.5;
+    ck_skg(skg_registration_create(context, scene, mono, NULL, &options, &r));
+    for (int64_t p = 0; p < 12; p++) ck_skg(skg_registration_part_add(r, p));
+    add_image(r, &wrong, values);
+    ck_skg(skg_registration_run(r));
+    skg_view_init(&found);
+    ck_skg(skg_registration_view_get(r, 0, &found));
+    for (
+        int k = 0; k < 3;
+        k++) { /* a hundredth of the pixel of 2 mm; along the beam, which moves the image a tenth as much, a tenth of it */
+        ck_assert_double_eq_tol(found.centre[k], truth.centre[k], k == 1 ? 0.2 : 0.02);
+        ck_assert_double_eq_tol(found.source[k], truth.source[k], k == 1 ? 0.4 : 0.05);
+    }
+    ck_assert_int_eq(result_of(r).directions, 9);
+    skg_registration_release(&r);
+    skg_scene_release(&scene);
+}
+END_TEST
+
+static void check_image(skg_registration *r, skg_radiograph *image, const char *text) {
+    ck_skg_fails(skg_registration_image_add(r, image), SKG_ERR_ARGUMENT, text);
+}
+
+START_TEST(wrong_radiographs_are_named) {
+    run_of one = usual();
+    skg_scene *scene = make_scene();
+    skg_registration *r;
+    static double values[PIXELS], mask[PIXELS], flat[PIXELS];
+    const skg_view view = view_from(0);
+    skg_radiograph image;
+    ck_skg(skg_registration_create(context, scene, mono, NULL, &one.options, &r));
+    ck_skg_fails(skg_registration_run(r), SKG_ERR_ARGUMENT, "there is no radiograph");
+    skg_radiograph_init(&image);
+    image.view = &view, image.values = values, image.name = "a.mha";
+    check_image(r, &image, "a.mha: every value is 0");
+    for (int p = 0; p < PIXELS; p++) values[p] = flat[p] = 1 + p % 7;
+    values[2 * SIDE + 5] = (double)NAN;
+    check_image(r, &image, "row 2, column 5 is not finite");
+    values[2 * SIDE + 5] = 1;
+    image.mask = mask;
+    check_image(r, &image, "the mask hides every pixel");
+    image.mask = NULL, image.flat = flat, flat[3] = 0;
+    check_image(r, &image, "the flat field is 0 in row 0, column 3");
+    image.flat = NULL, image.flat_field = -1;
+    check_image(r, &image, "the flat field is -1");
+    image.flat_field = 0;
+    ck_skg(skg_registration_image_add(r, &image));
+    ck_skg_fails(skg_registration_run(r), SKG_ERR_ARGUMENT, "no part was chosen");
+    ck_skg_fails(skg_registration_part_add(r, PARTS), SKG_ERR_ARGUMENT, "is not below 5");
+    ck_skg(skg_registration_part_add(r, KNOB));
+    ck_skg_fails(skg_registration_part_add(r, KNOB), SKG_ERR_ARGUMENT, "was added before");
+    skg_registration_result result;
+    skg_registration_result_init(&result);
+    ck_skg_fails(skg_registration_result_get(r, &result), SKG_ERR_ARGUMENT,
+                 "call skg_registration_run first");
+    skg_registration_release(&r);
+    skg_scene_release(&scene);
+}
+END_TEST
+
+START_TEST(parts_out_of_sight_are_named) {
+    static const struct {
+        double shift[3];
+        const char *text;
+    } cases[] = {{{500, 0, 0}, "body knob is not seen in this view"},
+                 {{0, 400, 0}, "body knob lies behind the detector"},
+                 {{0, -900, 0}, "body knob lies behind the source"}};
+    skg_scene *scene = make_scene();
+    static double values[PIXELS];
+    const skg_view view = view_from(0);
+    render(scene, &view, SKG_QUANTITY_ATTENUATION, 0, values);
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        run_of one = usual();
+        skg_registration *r;
+        memcpy(one.options.start, cases[k].shift, sizeof cases[k].shift);
+        ck_skg(skg_registration_create(context, scene, mono, NULL, &one.options, &r));
+        ck_skg(skg_registration_part_add(r, KNOB));
+        add_image(r, &view, values);
+        ck_skg_fails(skg_registration_run(r), SKG_ERR_ARGUMENT, cases[k].text);
+        skg_registration_release(&r);
+    }
+    skg_scene_release(&scene);
+}
+END_TEST
+
+START_TEST(wrong_options_are_named) {
+    skg_scene *scene = make_scene();
+    skg_registration *r;
+    skg_registration_options options;
+    skg_registration_options_init(&options);
+    options.free = SKG_REGISTRATION_FREE_POSE | SKG_REGISTRATION_FREE_SOURCE;
+    ck_skg_fails(skg_registration_create(context, scene, mono, NULL, &options, &r), SKG_ERR_ARGUMENT,
+                 "cannot be told apart");
+    options.free = SKG_REGISTRATION_FREE_SOURCE, options.restarts = 3;
+    ck_skg_fails(skg_registration_create(context, scene, mono, NULL, &options, &r), SKG_ERR_ARGUMENT,
+                 "restarts are of a pose");
+    skg_registration_options_init(&options);
+    options.margin_mm = -1;
+    ck_skg_fails(skg_registration_create(context, scene, mono, NULL, &options, &r), SKG_ERR_ARGUMENT,
+                 "margin_mm");
+    ck_assert_ptr_null(r);
+    skg_scene_release(&scene);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up, tear_down);
+    tcase_add_test(tests, twists_are_their_own_inverse);
+    tcase_add_test(tests, every_loss_finds_the_body);
+    tcase_add_test(tests, noise_displaces_as_sigma_says);
+    tcase_add_test(tests, the_beam_of_one_view_is_the_least_certain);
+    tcase_add_test(tests, restarts_find_it_from_afar);
+    tcase_add_test(tests, a_cancelled_one_keeps_the_best);
+    tcase_add_test(tests, a_phantom_calibrates_a_view);
+    tcase_add_test(tests, wrong_radiographs_are_named);
+    tcase_add_test(tests, parts_out_of_sight_are_named);
+    tcase_add_test(tests, wrong_options_are_named);
+}
+
+SKG_SUITE_MAIN("registration", add_tests)
