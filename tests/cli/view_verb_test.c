@@ -92,7 +92,7 @@ START_TEST(zoom_shows_a_part_larger) {
         const json_t *cube = json_array_get(parts, 0), *bone = json_array_get(parts, 1);
         const double scale = 800 * zoom / (2 * 40 * sqrt(3)); /* pixels of a mm */
         const double column = json_number_value(json_object_get(cube, "column"));
-        ck_assert_double_eq_tol(column, 640, 1);
+        ck_assert_double_eq_tol(column, 640, 1); /* a pixel: its middle or its edge */
         ck_assert_double_eq_tol(json_number_value(json_object_get(cube, "row")), 400, 1);
         ck_assert_double_eq_tol(json_number_value(json_object_get(bone, "column")) - column, 20 * scale,
                                 1e-3 * 20 * scale); /* the eye is of floats */

@@ -12,6 +12,7 @@
 static const skg_json_key top_keys[] = {
     {"File format version", NULL, SKG_KEY_READ},
     {"WindowSize", NULL, SKG_KEY_IGNORED},
+    {"$schema", NULL, SKG_KEY_IGNORED},
     {"Source", NULL, SKG_KEY_READ},
     {"Detector", NULL, SKG_KEY_READ},
     {"Samples", NULL, SKG_KEY_READ},

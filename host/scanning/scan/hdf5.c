@@ -29,12 +29,6 @@ static skg_status fail(const char *path) {
     return skg_output_fail(path, 0, reason);
 }
 
-hid_t skg_hdf5_element_type(const skg_scan_file *file) {
-    return file->options.type == SKG_TYPE_FLOAT64  ? H5T_NATIVE_DOUBLE
-           : file->options.type == SKG_TYPE_UINT16 ? H5T_NATIVE_UINT16
-                                                   : H5T_NATIVE_FLOAT;
-}
-
 /* What depends on the projection alone: [3] source, centre, column step, row step; time; angle in degrees. */
 typedef struct {
     double *vectors[4], *time, *theta;

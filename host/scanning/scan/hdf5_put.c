@@ -1,6 +1,12 @@
 /* Attributes and datasets of numbers for files of HDF5. */
 #include "scan/hdf5_files.h"
 
+hid_t skg_hdf5_element_type(const skg_scan_file *file) {
+    return file->options.type == SKG_TYPE_FLOAT64  ? H5T_NATIVE_DOUBLE
+           : file->options.type == SKG_TYPE_UINT16 ? H5T_NATIVE_UINT16
+                                                   : H5T_NATIVE_FLOAT;
+}
+
 int skg_hdf5_put_text(hid_t object, const char *name, const char *text) {
     const hid_t type = H5Tcopy(H5T_C_S1), space = H5Screate(H5S_SCALAR);
     H5Tset_size(type, strlen(text) + 1);
