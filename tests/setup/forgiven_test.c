@@ -82,7 +82,8 @@ END_TEST
 
 START_TEST(asides_are_ignored) {
     load_edited("\"Label\": \"bone\",", "\"Label\": \"bone\", \"Colour\": [1, 0, 0], \"comment\": \"left\",");
-    load_edited("\"Source\": {", "\"Comment\": \"of a hip\", \"Source\": {\"Color\": 7,");
+    load_edited("\"Source\": {",
+                "\"$schema\": \"scene.schema.json\", \"Comment\": \"of a hip\", \"Source\": {\"Color\": 7,");
     ck_assert_int_eq(warning_count, 0);
 }
 END_TEST
