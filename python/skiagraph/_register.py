@@ -21,10 +21,10 @@ if TYPE_CHECKING:
 Radiograph = Union[ArrayLike, "os.PathLike[str]", str]
 
 
-def write(path: pathlib.Path, image: ArrayLike, name: str) -> str:
+def write(path: pathlib.Path, image: Any, name: str) -> str:
     """An array as a MetaImage of doubles; a file as it stands."""
     if isinstance(image, (str, os.PathLike)):
-        return os.fspath(image)
+        return str(os.fspath(image))
     values = np.ascontiguousarray(image, dtype="<f8")
     if values.ndim != 2:
         raise ArgumentError(f"{name}: an array of shape {values.shape}; give [row, column], or a file")

@@ -239,7 +239,7 @@ START_TEST(other_verbs_meet_the_key) {
     ck_run_fails(4, "scatter: a World of", "image scene.json -o a.mha %s --set World=water", with);
     ck_run(0, "image scene.json -o a.mha %s --set World=air", with);
     ck_run(0, "plan scene.json %s", with);
-    ck_assert_msg(strstr(said, "those that the parts scatter"), "%s", said);
+    ck_assert_msg(strstr(said, "those that parts and world scatter"), "%s", said);
     ck_run(0, "view scene.json -o v.png --size 96,64 %s", with);
     ck_run(0, "cost scene.json --quick --within 1 --json %s", with);
     ck_assert_msg(strstr(said, "without the scene's Scatter"), "%s", said);
