@@ -149,7 +149,7 @@ START_TEST(wrong_words) {
     ck_run_fails(2, "-o a.png: a picture has no --seconds", "view s.json -o a.png --seconds 4");
     ck_run_fails(2, "-o a.gif: a film has more than one moment", "view s.json -o a.gif --phase 0");
     ck_run_fails(2, "give one of them", "view s.json -o a.html --seconds 3 --at 1");
-    ck_run_fails(2, "not .png, .html, .gif, .mp4 or .webm", "view s.json -o a.avi");
+    ck_run_fails(2, "not .png, .html, .glb, .gif, .mp4 or .webm", "view s.json -o a.avi");
     ck_run_fails(5, "its folder does not exist", "view s.json -o nowhere/a.html");
     ck_run_fails(5, "needs the program ffmpeg", "PATH=/nowhere |view s.json -o a.mp4");
     ck_run_fails(3, "no organ that moves", "view s.json -o a.html --seconds 4 --set Samples.skin.Label=box");
