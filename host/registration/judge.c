@@ -1,6 +1,8 @@
 /* How far a result can be believed: noise, structure of what is left, and directions that the radiographs do not determine. */
 #include "registration/types.h"
 
+#include "core/eigen.h"
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -197,6 +199,13 @@ static void describe_motion(skg_registration *r) {
     result->directions = reg_count(r);
 }
 
+/* Eigenvalues of the normal matrix, the least certain direction first: those of its negative in falling order. */
+static void find_directions(int64_t count, judging *j) {
+    for (int64_t k = 0; k < count * count; k++) j->equations.matrix[k] = -j->equations.matrix[k];
+    skg_eigen((int)count, j->equations.matrix, j->values, j->vectors);
+    for (int64_t k = 0; k < count; k++) j->values[k] = -j->values[k];
+}
+
 static skg_status judge(skg_registration *r, const reg_level *level, judging *j) {
     SKG_TRY(begin(r, level, j));
     SKG_TRY(reg_render(r, level, &r->state, j->images));
@@ -206,7 +215,7 @@ static skg_status judge(skg_registration *r, const reg_level *level, judging *j)
     SKG_TRY(reg_nuisances_find(r, level, &r->state, j->images));
     for (int64_t i = 0; i < r->image_count; i++) SKG_TRY(judge_image(r, level, i, j));
     set_rest(&j->rest, &r->result);
-    reg_eigen(reg_count(r), j->equations.matrix, j->values, j->vectors);
+    find_directions(reg_count(r), j);
     set_uncertainty(r, j);
     /* Noise hides what agrees; its own share of the radiographs' squares is left out. */
     const double *c = j->contrast,

@@ -1,6 +1,8 @@
 /* Scenes that a registration renders, made of the parts of the caller's. */
 #include "registration/types.h"
 
+#include "core/eigen.h"
+
 #include <string.h>
 
 static int moves(const skg_registration *r, int64_t part) {
@@ -120,7 +122,7 @@ skg_status reg_body_measure(skg_registration *r) {
         for (int l = k; l < 3; l++) matrix[3 * k + l] = matrix[3 * l + k] = moved[at++] / moved[0];
     r->radius = sqrt(matrix[0] + matrix[4] + matrix[8]);
     if (!(r->radius > 0)) return skg_fail(SKG_ERR_MESH, "the parts to register have no extent");
-    reg_eigen(3, matrix, values, vectors);
-    memcpy(r->axis, vectors + 6, sizeof r->axis); /* of the largest value */
+    skg_eigen(3, matrix, values, vectors);
+    memcpy(r->axis, vectors, sizeof r->axis); /* of the largest value */
     return find_additive(r);
 }

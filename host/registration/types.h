@@ -258,7 +258,4 @@ skg_status reg_probe(skg_registration *r);
 void reg_say_verdict(skg_registration *r, const reg_rest *rest);
 void reg_name_direction(const skg_registration *r, const double *vector, char *name, size_t size);
 
-/* Eigenvalues, the smallest first, and their vectors, a row each, of a symmetric matrix, which is overwritten: eigen.c. */
-void reg_eigen(int64_t count, double *matrix, double *values, double *vectors);
-
 #endif

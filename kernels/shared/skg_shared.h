@@ -275,7 +275,7 @@ typedef struct {
 #define SKG_SCATTER_ANGLES 256    /* equally likely ranges of the angle of scattering */
 #define SKG_SCATTER_DIMENSIONS 16 /* of a history's point of the lattice */
 #define SKG_SCATTER_KINDS                                                                                    \
-    6 /* planes of sums: orders 1, 2, higher of Rayleigh scattering alone, then with Compton */
+    6 /* planes of sums: orders 1, 2, higher of Rayleigh scattering alone, then with Compton or fluorescence */
 #define SKG_SCATTER_PLANES (SKG_SCATTER_KINDS + 1) /* the last: what adds to the variance */
 #define SKG_SCATTER_COLUMNS 6                      /* of the table by energy */
 #define SKG_SCATTER_LINES 12                       /* of a shell that emits, at most */

@@ -1,5 +1,6 @@
 /* PNG: the first channel in 16 bit grey, through its display curve. */
 #include "image/image.h"
+#include "image/reasons.h"
 
 #include <skiagraph/version.h>
 
@@ -7,18 +8,6 @@
 #include <math.h>
 #include <png.h>
 #include <string.h>
-
-/* libpng reports an error here: the reason is kept, and the jump goes back into write_all. */
-static void on_error(png_structp png, png_const_charp message) {
-    const char **reason = png_get_error_ptr(png);
-    *reason = message;
-    png_longjmp(png, 1);
-}
-
-static void on_warning(png_structp png, png_const_charp message) {
-    (void)png;
-    (void)message;
-}
 
 static void set_texts(png_structp png, png_infop info, const skg_picture *picture) {
     char description[SKG_DESCRIPTION_LENGTH], curve[256], range[128];
@@ -77,7 +66,7 @@ skg_status skg_png_write(const skg_picture *theirs, skg_output_file *file) {
     png_bytep bytes = NULL;
     if (picture.low == 0 && picture.high == 0) skg_picture_shown_range(theirs, &picture.low, &picture.high);
     SKG_TRY(skg_alloc(2 * picture.columns, 1, "row of a PNG file", &bytes));
-    png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &reason, on_error, on_warning);
+    png = png_create_write_struct(PNG_LIBPNG_VER_STRING, &reason, skg_png_error, skg_png_warning);
     info = png ? png_create_info_struct(png) : NULL;
     if (!info) {
         status = skg_fail(SKG_ERR_MEMORY, "%s: out of host memory", file->path);

@@ -1,21 +1,10 @@
 /* Reads grey PNGs. */
 #include "image/image.h"
+#include "image/reasons.h"
 
 #include <png.h>
 #include <setjmp.h>
 #include <string.h>
-
-/* libpng reports an error here: the reason is kept, and the jump goes back into read_header or read_rows. */
-static void on_error(png_structp png, png_const_charp message) {
-    const char **reason = png_get_error_ptr(png);
-    *reason = message;
-    png_longjmp(png, 1);
-}
-
-static void on_warning(png_structp png, png_const_charp message) {
-    (void)png;
-    (void)message;
-}
 
 /* Nothing is allocated here, so that libpng may jump out of it. Samples become 16 bits, 8 of them without a scale: bytes keep their
  * numbers. */
@@ -72,7 +61,7 @@ skg_status skg_png_read(const char *path, int64_t page, skg_picture_contents *co
     const char *reason = "libpng gives no reason";
     FILE *stream = NULL;
     SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
-    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reason, on_error, on_warning);
+    png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reason, skg_png_error, skg_png_warning);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     const skg_status status = info ? read_page(path, png, info, stream, page, contents, &reason, values)
                                    : skg_fail(SKG_ERR_MEMORY, "%s: no memory to read it", path);

@@ -1,31 +1,9 @@
 /* Reads grey TIFFs. */
 #include "image/image.h"
+#include "image/reasons.h"
 
-#include <stdarg.h>
 #include <string.h>
 #include <tiffio.h>
-
-typedef struct {
-    char text[256];
-} reason;
-
-/* Keeps the first sentence. Returns 1, so that libtiff does not print it. */
-static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
-    reason *kept = user;
-    (void)tiff;
-    (void)module;
-    if (!kept->text[0]) vsnprintf(kept->text, sizeof kept->text, format, arguments);
-    return 1;
-}
-
-static int on_warning(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
-    (void)tiff;
-    (void)user;
-    (void)module;
-    (void)format;
-    (void)arguments;
-    return 1;
-}
 
 /* What a page says of its values. */
 typedef struct {
@@ -96,19 +74,15 @@ static skg_status read_page(const char *path, TIFF *tiff, int64_t page, skg_pict
 }
 
 skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values) {
-    reason kept = {""};
-    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    skg_tiff_reason kept = {""};
+    TIFFOpenOptions *options = skg_tiff_options(&kept);
     TIFF *tiff = NULL;
     if (options) {
-        TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, &kept);
-        TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, NULL);
         tiff = TIFFOpenExt(path, "rm",
                            options); /* m: not mapped into memory, so that a file that shrinks is an error */
         TIFFOpenOptionsFree(options);
     }
-    if (!tiff)
-        return skg_fail(SKG_ERR_FORMAT, "%s: is no TIFF: %s", path,
-                        kept.text[0] ? kept.text : "libtiff gives no reason");
+    if (!tiff) return skg_fail(SKG_ERR_FORMAT, "%s: is no TIFF: %s", path, skg_tiff_said(&kept));
     const skg_status status = read_page(path, tiff, page, contents, values);
     TIFFClose(tiff);
     return status;

@@ -2,11 +2,11 @@
 #include "core/maths.h"
 #include "core/text.h"
 #include "image/image.h"
+#include "image/reasons.h"
 
 #include <skiagraph/version.h>
 
 #include <errno.h>
-#include <stdarg.h>
 #include <string.h>
 #include <tiffio.h>
 #include <unistd.h>
@@ -14,28 +14,6 @@
 /* Bytes of pixels beyond which a BigTIFF is written: the offsets of a classic TIFF have 32 bits, and its tags
  * take the rest of the 4.29e9. */
 static const double classic_limit = 4.0e9;
-
-typedef struct {
-    char text[256];
-} reason;
-
-/* Keeps the first sentence. Returns 1, so that libtiff does not print it. */
-static int on_error(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
-    reason *kept = user;
-    (void)tiff;
-    (void)module;
-    if (!kept->text[0]) vsnprintf(kept->text, sizeof kept->text, format, arguments);
-    return 1;
-}
-
-static int on_warning(TIFF *tiff, void *user, const char *module, const char *format, va_list arguments) {
-    (void)tiff;
-    (void)user;
-    (void)module;
-    (void)format;
-    (void)arguments;
-    return 1;
-}
 
 static int set_tags(TIFF *tiff, const skg_picture *picture, int64_t channel) {
     skg_picture page = *picture;
@@ -81,7 +59,7 @@ static int write_pages(TIFF *tiff, const skg_picture *picture, void *row) {
 }
 
 skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
-    reason kept = {""};
+    skg_tiff_reason kept = {""};
     TIFF *tiff = NULL;
     char *row = NULL;
     int written = 0;
@@ -91,10 +69,8 @@ skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
     SKG_TRY(skg_alloc(picture->columns, (size_t)element, "row of a TIFF file", &row));
     /* TIFFClose closes the descriptor that it was given. The stream keeps its own, which is synced later. */
     int descriptor = dup(fileno(file->stream));
-    TIFFOpenOptions *options = TIFFOpenOptionsAlloc();
+    TIFFOpenOptions *options = skg_tiff_options(&kept);
     if (descriptor >= 0 && options) {
-        TIFFOpenOptionsSetErrorHandlerExtR(options, on_error, &kept);
-        TIFFOpenOptionsSetWarningHandlerExtR(options, on_warning, NULL);
         tiff = TIFFFdOpenExt(descriptor, file->path, bytes > classic_limit ? "w8" : "w", options);
     }
     if (options) TIFFOpenOptionsFree(options);
@@ -107,5 +83,5 @@ skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
     }
     skg_free(&row);
     if (written && !kept.text[0]) return SKG_OK;
-    return skg_output_fail(file->path, errno, kept.text[0] ? kept.text : "libtiff gives no reason");
+    return skg_output_fail(file->path, errno, skg_tiff_said(&kept));
 }

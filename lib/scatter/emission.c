@@ -29,7 +29,8 @@ static int holds(const skg_material *material, int32_t z, double *fraction) {
     return 0;
 }
 
-/* Photons that a gram emits, of all that it absorbs, cm2/g. An L shell gets the vacancies that K alpha leaves there, too. */
+/* The cross section of emission by an element, cm2/g: photo absorption times photons per absorption. An L shell has the vacancies that K alpha
+ * leaves there, too. */
 static double emitted(const skg_emitter *e, double kev) {
     double sections[SKG_PROCESSES];
     if (!(kev >= e->shell.edge_kev[0])) return 0;

@@ -1,9 +1,8 @@
 /* Programs and kernels for the stages: the one place that writes -D options, sets arguments and enqueues. */
 #include "stage/kernels.h"
 
-#include "device/programs.h"
-
 #include "core/maths.h"
+#include "device/programs.h"
 #include "driver/driver.h"
 
 #include <skiagraph/plan.h>

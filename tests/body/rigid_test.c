@@ -1,5 +1,6 @@
 /* Rotations, rigid fits and eigenvectors. */
 #include "body/rigid.h"
+#include "core/eigen.h"
 #include "suite.h"
 #include "support/random.h"
 

@@ -1,6 +1,7 @@
 /* Axes of organs: ribs by their bones, others by their inertia. */
 #include "body/bones.h"
 
+#include "core/eigen.h"
 #include "core/maths.h"
 
 #include <ctype.h>

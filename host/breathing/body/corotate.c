@@ -1,6 +1,7 @@
 /* Takes the common rotation out of a motion before Chain Mail, and puts it back. */
 #include "body/posed.h"
 
+#include "core/eigen.h"
 #include "core/maths.h"
 
 int skg_corotates(const skg_body *body, const skg_body_organ *o) {

@@ -1,6 +1,7 @@
 /* How ribs turn about their axes with the breath. */
 #include "body/bones.h"
 
+#include "core/eigen.h"
 #include "core/maths.h"
 
 #include <string.h>

@@ -14,11 +14,6 @@ void skg_rotation(const double vector[3], double rotation[9]);
 
 void skg_rigid_displace(const skg_rigid *rigid, const double point[3], double displacement[3]);
 
-/* Eigenvalues in falling order and eigenvectors (row k the k-th) of a symmetric n x n matrix, by Jacobi rotations. The matrix
- * is overwritten. For the few dimensions of a body, in every build and with the same bits everywhere: a search in up to 64
- * dimensions has LAPACK's (evolution/eigen.h), which is optional. */
-void skg_eigen(int n, double *matrix, double *values, double *vectors);
-
 /* The rigid motion that takes points nearest to points + displacements, by least squares (Horn, J. Opt. Soc. Am. A 4
  * (1987) 629). Both are rows of x, y, z. */
 void skg_rigid_fit(int64_t count, const double *points, const double *displacements, skg_rigid *rigid);

@@ -30,6 +30,9 @@ void cli_json_print_failure(const char *file);
  * apostrophe before it, which spreadsheets read as "this is text". */
 void cli_csv_text(const char *text, FILE *stream);
 
+/* Writes a text of a file into a page: labels and names may hold "<", "&" and quotes. */
+void cli_html_text(const char *text, FILE *page);
+
 /* `head` followed by the bytes in base 64 (RFC 4648), for pages, which the caller frees; NULL if memory is exhausted. */
 char *cli_base64(const char *head, const void *bytes, size_t count);
 

@@ -18,18 +18,6 @@ static const char head[] =
     "td,th{padding:.3em .8em;border-bottom:1px solid #ccc;text-align:right}td:first-child,th:first-child{text-align:left}"
     "img{max-width:100%}.open{color:#b03a00}</style></head><body>\n<h1>Fit of a body to surfaces</h1>\n";
 
-/* Labels come from files. */
-static void put_text(FILE *page, const char *text) {
-    for (; *text; text++) {
-        if (*text == '<')
-            fputs("&lt;", page);
-        else if (*text == '&')
-            fputs("&amp;", page);
-        else
-            fputc(*text, page);
-    }
-}
-
 static int put_picture(FILE *page, const unsigned char *png, size_t size, const char *what) {
     char *uri = cli_base64("data:image/png;base64,", png, size);
     if (!uri) return cli_error(CLI_DEVICE, "out of host memory for the page");
@@ -69,7 +57,7 @@ static void put_targets(FILE *page, const fit_work *work) {
         skg_fit_target_init(&one);
         if (skg_fit_target_get(work->fit, t, &one) != SKG_OK) continue;
         fputs("<tr><td>", page);
-        put_text(page, one.label);
+        cli_html_text(one.label, page);
         fprintf(page, "<td>%.3g<td>%.3g<td>%.3g<td>%.3g<td>%.3g<td>%.3g<td>%.3g<td>%.3g</tr>\n", one.phase,
                 one.motion_mm, one.before_mean_mm, one.after_mean_mm, one.before_rms_mm, one.after_rms_mm,
                 one.before_max_mm, one.after_max_mm);

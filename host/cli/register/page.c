@@ -30,20 +30,6 @@ static const char head[] =
     "svg{width:100%;height:auto}svg text{font:12px system-ui,sans-serif;fill:var(--faint)}.key{display:inline-block;width:14px;height:3px;"
     "vertical-align:4px;margin-right:4px}\n</style></head><body>\n<h1>Registration to radiographs</h1>\n";
 
-/* Labels and names come from files. */
-static void put_text(FILE *page, const char *text) {
-    for (; *text; text++) {
-        if (*text == '<')
-            fputs("&lt;", page);
-        else if (*text == '&')
-            fputs("&amp;", page);
-        else if (*text == '"')
-            fputs("&quot;", page);
-        else
-            fputc(*text, page);
-    }
-}
-
 static int put_picture(FILE *page, const register_png *picture, const char *kind, const char *what) {
     char *uri = cli_base64("data:image/png;base64,", picture->png, picture->size);
     if (!uri) return cli_error(CLI_DEVICE, "out of host memory for the page");
@@ -55,7 +41,7 @@ static int put_picture(FILE *page, const register_png *picture, const char *kind
 static int put_view(FILE *page, const register_work *work, int64_t image, const register_png *pictures) {
     int exit_status = CLI_DONE;
     fprintf(page, "<h2>View %" PRId64 ": ", image + 1);
-    put_text(page, work->images[image].path);
+    cli_html_text(work->images[image].path, page);
     if (work->images[image].projection >= 0) fprintf(page, "@%" PRId64, work->images[image].projection);
     fputs("</h2>\n<div class=\"views\"><figure><div class=\"stack\">", page);
     if (exit_status == CLI_DONE)
@@ -152,7 +138,7 @@ static void put_freedoms(FILE *page, const register_body *body) {
 static void put_numbers(FILE *page, const register_work *work, const register_body *body) {
     const skg_registration_result *r = &body->result;
     fputs("<p>", page);
-    put_text(page, body->label);
+    cli_html_text(body->label, page);
     if (work->options.free == SKG_REGISTRATION_FREE_POSE)
         fprintf(page, ": moved by %.3g mm, turned by %.3g degrees", r->shift_mm,
                 r->turn_rad * 57.29577951308232);
@@ -170,7 +156,7 @@ int register_write_page(const register_work *work, const char *path) {
     if (!page) return cli_error(CLI_DEVICE, "out of host memory for the page");
     fputs(head, page);
     fputs("<p id=\"verdict\">", page);
-    put_text(page, body->verdict);
+    cli_html_text(body->verdict, page);
     fputs("</p>\n", page);
     put_numbers(page, work, body);
     int exit_status = put_views(page, work);

@@ -103,11 +103,11 @@ enum skg_scatter_component {
     SKG_SCATTER_COMPONENT_RAYLEIGH_SECOND = 1,
     /** Rayleigh scattering three times or more. */
     SKG_SCATTER_COMPONENT_RAYLEIGH_HIGHER = 2,
-    /** Compton scattering once. */
+    /** Compton scattering or fluorescence once. */
     SKG_SCATTER_COMPONENT_COMPTON_FIRST = 3,
-    /** Two scatterings, at least one of them Compton. */
+    /** Two interactions, at least one of them Compton scattering or fluorescence. */
     SKG_SCATTER_COMPONENT_COMPTON_SECOND = 4,
-    /** Three scatterings or more, at least one of them Compton. */
+    /** Three interactions or more, likewise. */
     SKG_SCATTER_COMPONENT_COMPTON_HIGHER = 5
 };
 

@@ -117,7 +117,7 @@ typedef struct {
     double seconds;
     /** Share of photons with one, two, and three or more interactions; 0 for a frame of a series (scatter_series.h). */
     double orders[3];
-    /** Share of Rayleigh scattering alone; the rest had at least one Compton scattering. 0 for a frame of a series. */
+    /** Share of Rayleigh scattering alone; the rest had at least one Compton scattering or fluorescence. 0 for a frame of a series. */
     double rayleigh;
     /** Cells along x, y and z. */
     int64_t cells[3];

@@ -49,7 +49,7 @@ def main(words: list[str]) -> int:
         wheels = list(pathlib.Path(folder).glob("*.whl"))
         if done.returncode or not wheels:
             reason = (done.stderr.strip() or "there is no wheel for this system").splitlines()[-1]
-            print(f"gvxr-2.1.0-*.whl: pip could not fetch it: {reason}\nTake the wheel from https://pypi.org/project/gvxr/2.1.0/#files and "
+            print(f"gvxr-2.1.0-*.whl: pip could not fetch it: {reason}\nTake the wheel of gvxr 2.1.0 from the Python Package Index and "
                   f"give its path: python -m skiagraph.gvxr.dragon WHEEL; or put {DRAGON}, which lies in it, into {_home()}",
                   file=sys.stderr)
             return 1
