@@ -14,7 +14,7 @@ static const double ADVISED =
     0.97; /* the share of the given time after which no recommendation is measured */
 
 static double ms_of(const cost_study *study, const cost_point *point) {
-    return study->shots[point->shot].min_ms;
+    return study->shots[point->shot].price_ms;
 }
 
 /* Marks the frontier of the rays' settings: no other is both faster and better. */
@@ -33,8 +33,7 @@ static void find_frontier(cost_study *study) {
     }
 }
 
-/* The fastest of the rays' settings within a bar, otherwise the most accurate. The minimum time decides,
- * which other load disturbs least. */
+/* The fastest of the rays' settings within a bar, otherwise the most accurate. The price decides. */
 static int choose_rays(const cost_study *study, double bar) {
     int fastest = -1, best = -1;
     for (int i = 0; i < study->count; i++) {

@@ -21,7 +21,7 @@ typedef struct {
 } guess;
 
 static double ms_of(const cost_study *study, const cost_point *point) {
-    return study->shots[point->shot].min_ms;
+    return study->shots[point->shot].price_ms;
 }
 
 static void list(const cost_study *study, int reference, values *its) {
@@ -77,7 +77,7 @@ static guess *guess_all(const cost_study *study, int64_t *count) {
     guess *all = calloc(GUESSES_MAX, sizeof *all);
     *count = 1;
     if (!all) return NULL;
-    all[0] = (guess){.setting = study->own, .ms = study->shots[study->here].min_ms};
+    all[0] = (guess){.setting = study->own, .ms = study->shots[study->here].price_ms};
     for (int r = 0; r < 5; r++) {
         values its;
         const int64_t before = *count;
@@ -108,10 +108,13 @@ static int64_t keep_best(guess *all, int64_t count) {
 
 /* Measures a guess, if it is new and the time suffices. */
 static int try_guess(cost_study *study, const guess *its, double share, double *image, int *tried) {
+    const cost_shot *here = &study->shots[study->here];
     const double runs = (double)(1 + cost_first_runs(study) * study->frames);
-    if (cost_find_shot(study, &its->setting) >= 0 || its->ms > cost_patience_ms(study)) return 0;
+    const double wall_ms =
+        its->ms * here->wall_now_ms / here->price_ms; /* the time that is given is the wall's */
+    if (cost_find_shot(study, &its->setting) >= 0 || wall_ms > cost_patience_ms(study)) return 0;
     const int count = study->count;
-    if (study->plan_ms + runs * its->ms > cost_left_ms(study, share)) {
+    if (study->plan_ms + runs * wall_ms > cost_left_ms(study, share)) {
         study->left_out++;
         return 0;
     }
@@ -143,8 +146,8 @@ void cost_find_frontier(cost_study *study) {
         shot->on_frontier = !isnan(shot->total_rms);
         for (int k = 0; k < study->shot_count && shot->on_frontier; k++) {
             const cost_shot *other = &study->shots[k];
-            const int no_worse = other->min_ms <= shot->min_ms && other->total_rms <= shot->total_rms;
-            const int better = other->min_ms < shot->min_ms || other->total_rms < shot->total_rms;
+            const int no_worse = other->price_ms <= shot->price_ms && other->total_rms <= shot->total_rms;
+            const int better = other->price_ms < shot->price_ms || other->total_rms < shot->total_rms;
             if (no_worse && better) shot->on_frontier = 0;
         }
     }

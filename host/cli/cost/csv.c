@@ -1,6 +1,8 @@
 /* The points of a study as CSV. */
 #include "cost/output.h"
 
+#include "cost/clock.h"
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
@@ -31,22 +33,23 @@ char *cost_csv(const cost_study *study) {
     if (!stream) return NULL;
     fputs(
         "dial,precision,tolerance,max_bins,samples,supersampling,repair,triangles,relaxation,hysteresis,"
-        "nodes,planes,runs,plan_ms,min_ms,median_ms,spread_ms,total_rms,max_open,rms_open,max_ref,rms_ref,max_mm,rms_mm,"
-        "frontier,priced\n",
+        "nodes,planes,runs,plan_ms,price_ms,uncertainty_ms,clock,wall_now_ms,total_rms,max_open,rms_open,max_ref,rms_ref,max_mm,rms_mm,"
+        "frontier\n",
         stream);
     for (int i = 0; i < study->count; i++) {
         const cost_point *p = &study->points[i];
         const cost_shot *shot = &study->shots[p->shot];
         fprintf(stream, "%s,", cost_dial_name(p->dial));
         put_setting(stream, study, &p->setting);
-        fprintf(stream, "%" PRId64 ",%" PRId64 ",%" PRId64 ",%.6g,%.6g,%.6g,", shot->nodes, shot->planes,
-                shot->runs, shot->plan_ms, shot->min_ms, shot->median_ms);
-        put_number(stream, shot->spread_ms);
+        fprintf(stream, "%" PRId64 ",%" PRId64 ",%" PRId64 ",%.6g,%.6g,", shot->nodes, shot->planes,
+                shot->runs, shot->plan_ms, shot->price_ms);
+        put_number(stream, shot->uncertainty_ms);
+        fprintf(stream, "%s,%.6g,", cost_clock_name(study), shot->wall_now_ms);
         put_number(stream, shot->total_rms);
         fprintf(stream, "%.6g,%.6g,%.6g,%.6g,", p->max_flat, p->rms_flat, p->max_ref, p->rms_ref);
         put_number(stream, p->max_mm);
         put_number(stream, p->rms_mm);
-        fprintf(stream, "%d,%d\n", p->on_frontier, study->priced);
+        fprintf(stream, "%d\n", p->on_frontier);
     }
     if (fclose(stream) == 0) return text;
     free(text);

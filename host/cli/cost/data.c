@@ -2,6 +2,7 @@
 #include "cost/output.h"
 
 #include "common/encode.h"
+#include "cost/clock.h"
 #include "cost/findings.h"
 #include "cost/measuring.h"
 
@@ -31,6 +32,16 @@ static json_t *setting_json(const cost_study *study, const cost_setting *setting
     return object;
 }
 
+/* What an image takes on an idle machine, by which clock, and what one waits for it now. */
+static void add_price(const cost_study *study, const cost_shot *shot, json_t *object) {
+    json_t *price = json_object();
+    json_object_set_new(price, "ms", cli_json_number(shot->price_ms));
+    json_object_set_new(price, "uncertainty", cli_json_number(shot->uncertainty_ms));
+    json_object_set_new(price, "clock", cli_json_text(cost_clock_name(study)));
+    json_object_set_new(object, "price", price);
+    json_object_set_new(object, "wall_now_ms", cli_json_number(shot->wall_now_ms));
+}
+
 static json_t *point_json(const cost_study *study, const cost_point *point) {
     const cost_shot *shot = &study->shots[point->shot];
     json_t *object = json_object();
@@ -43,8 +54,7 @@ static json_t *point_json(const cost_study *study, const cost_point *point) {
     json_object_set_new(object, "planes", json_integer(shot->planes));
     json_object_set_new(object, "runs", json_integer(shot->runs));
     json_object_set_new(object, "plan_ms", cli_json_number(shot->plan_ms));
-    json_object_set_new(object, "min_ms", cli_json_number(shot->min_ms));
-    json_object_set_new(object, "median_ms", cli_json_number(shot->median_ms));
+    add_price(study, shot, object);
     json_object_set_new(object, "max_open", cli_json_number(point->max_flat));
     json_object_set_new(object, "rms_open", cli_json_number(point->rms_flat));
     json_object_set_new(object, "max_ref", cli_json_number(point->max_ref));
@@ -66,9 +76,7 @@ static json_t *shot_json(const cost_study *study, const cost_shot *shot) {
     json_object_set_new(object, "best", json_boolean(shot->on_frontier));
     json_object_set_new(object, "runs", json_integer(shot->runs));
     json_object_set_new(object, "visits", json_integer(shot->visits));
-    json_object_set_new(object, "min_ms", cli_json_number(shot->min_ms));
-    json_object_set_new(object, "median_ms", cli_json_number(shot->median_ms));
-    json_object_set_new(object, "spread_ms", cli_json_number(shot->spread_ms));
+    add_price(study, shot, object);
     json_object_set_new(object, "rms", cli_json_number(shot->total_rms));
     json_object_set_new(object, "max", cli_json_number(shot->total_max));
     json_object_set_new(object, "command", cli_json_text(shot->command));
@@ -92,7 +100,7 @@ static json_t *source_json(const cost_study *study, int number) {
     json_object_set_new(object, "max", cli_json_number(source->max));
     json_object_set_new(object, "today", *today ? cli_json_text(today) : json_null());
     json_object_set_new(object, "halving_ms", cli_json_number(source->halving_ms));
-    json_object_set_new(object, "halving_spread_ms", cli_json_number(source->halving_spread_ms));
+    json_object_set_new(object, "halving_uncertainty_ms", cli_json_number(source->halving_uncertainty_ms));
     json_object_set_new(object, "halving", source->halving < 0 ? json_null() : cli_json_text(source->buys));
     json_object_set_new(object, "command", source->command ? cli_json_text(source->command) : json_null());
     json_object_set_new(object, "reason", *source->reason ? cli_json_text(source->reason) : json_null());
@@ -154,8 +162,6 @@ static void add_run(const cost_study *study, json_t *object) {
     json_object_set_new(object, "stopped", json_boolean(study->stopped));
     json_object_set_new(object, "left_out", json_integer(study->left_out));
     json_object_set_new(object, "unrest", cli_json_number(study->unrest));
-    json_object_set_new(object, "most_unrest", cli_json_number(cost_max_unrest));
-    json_object_set_new(object, "priced", json_boolean(study->priced));
     json_object_set_new(object, "reference_error", cli_json_number(study->reference_error));
     json_object_set_new(object, "grey_levels",
                         study->grey_levels > 0 ? cli_json_number(study->grey_levels) : json_null());

@@ -24,7 +24,8 @@ const char *cost_why_absent(const cost_study *study, int source);
 /* Why a source that the scene may have is not measured. */
 const char *cost_why_not(const cost_study *study, int source);
 
-/* Fills in study->unrest and ->priced, and the uncertainty of what was timed in one visit. */
+/* Fills in study->unrest, and the uncertainty of what was timed in fewer than three runs: the unrest's share of its price, and all of
+ * it where that is not known either. */
 void cost_find_unrest(cost_study *study);
 
 /* Fills in study->reference_error and ->grey_levels, after the sources. */
@@ -38,11 +39,11 @@ void cost_summarise(cost_study *study);
 /* "0.21 %", for a fraction. size: 16 suffice. */
 const char *cost_percent(double share, char *text, size_t size);
 
-/* "8.1 ms", with "+-" and the spread where it is known and matters. */
-const char *cost_ms(double ms, double spread_ms, char *text, size_t size);
+/* "8.1 ms", with "+-" and the uncertainty where it matters. */
+const char *cost_ms(double ms, double uncertainty_ms, char *text, size_t size);
 
 /* What a change adds to a time: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "in the same time". */
-const char *cost_more(double ms, double spread_ms, char *text, size_t size);
+const char *cost_more(double ms, double uncertainty_ms, char *text, size_t size);
 
 /* Which setting to use: marks the frontier and fills study->advice; measures the combinations that were not measured
  * yet. */

@@ -2,6 +2,7 @@
 #include "cost/measuring.h"
 
 #include "common/progress.h"
+#include "cost/clock.h"
 #include "cost/dials.h"
 
 #include <math.h>
@@ -71,37 +72,39 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
-/* Minimum, median and spread of what was timed so far. */
+/* Wall time, price and its uncertainty of what was timed so far. The price is the lower quartile: a busy machine lengthens the time on
+ * the wall, and the busiest thread's by giving it work of those that wait, while the fastest of few runs is luck. The uncertainty is half
+ * of the interquartile range. */
 static void summarise(cost_shot *shot) {
-    double ms[COST_RUNS_MAX], visit[COST_VISITS_MAX];
-    memcpy(ms, shot->run_ms, sizeof ms);
-    memcpy(visit, shot->visit_ms, sizeof visit);
-    qsort(ms, (size_t)shot->runs, sizeof *ms, ascending);
-    qsort(visit, (size_t)shot->visits, sizeof *visit, ascending);
-    shot->min_ms = ms[0];
-    shot->median_ms = 0.5 * (ms[(shot->runs - 1) / 2] + ms[shot->runs / 2]);
-    shot->spread_ms = shot->visits > 1
-                          ? 0.5 * (visit[(shot->visits - 1) / 2] + visit[shot->visits / 2]) - visit[0]
-                          : (double)NAN;
+    const int64_t n = shot->runs;
+    double wall[COST_RUNS_MAX], price[COST_RUNS_MAX];
+    memcpy(wall, shot->run_wall_ms, (size_t)n * sizeof *wall);
+    memcpy(price, shot->run_price_ms, (size_t)n * sizeof *price);
+    qsort(wall, (size_t)n, sizeof *wall, ascending);
+    qsort(price, (size_t)n, sizeof *price, ascending);
+    shot->wall_now_ms = 0.5 * (wall[(n - 1) / 2] + wall[n / 2]);
+    shot->price_ms = price[n / 4];
+    shot->uncertainty_ms = n < 3 ? (double)NAN : 0.5 * (price[(3 * n) / 4] - price[n / 4]);
 }
 
 skg_status cost_time(cost_study *study, cost_run run, void *user, int64_t least, double wish_ms,
                      cost_shot *shot) {
     const double begun = cli_now_ms(), limit_ms = cost_patience_ms(study);
-    double passed = 0, fastest = HUGE_VAL;
+    cost_instant start, end;
+    double passed = 0;
     int64_t n = 0;
     while (shot->runs < COST_RUNS_MAX && n < COST_RUNS_MAX / COST_VISITS_MAX &&
            (n < least || passed < wish_ms) && (n < 2 || passed < limit_ms)) {
-        const double start = cli_now_ms();
+        cost_begin(&start);
         const skg_status status = run(user);
         if (status < SKG_OK) return status;
-        const double ms = (cli_now_ms() - start) / (double)shot->frames;
-        fastest = fmin(fastest, ms);
-        shot->run_ms[shot->runs++] = ms;
-        passed = cli_now_ms() - begun;
+        cost_end(&end);
+        shot->run_wall_ms[shot->runs] = (end.wall - start.wall) / (double)shot->frames;
+        shot->run_price_ms[shot->runs++] = cost_price_ms(study, &start, &end) / (double)shot->frames;
+        passed = end.wall - begun;
         n++;
     }
-    if (n && shot->visits < COST_VISITS_MAX) shot->visit_ms[shot->visits++] = fastest;
+    if (n && shot->visits < COST_VISITS_MAX) shot->visits++;
     if (n) summarise(shot);
     return SKG_OK;
 }
@@ -177,8 +180,8 @@ int cost_find_shot(const cost_study *study, const cost_setting *setting) {
 
 int cost_add_shot(cost_study *study, const cost_setting *setting) {
     if (study->shot_count == COST_SHOTS_MAX) return -1;
-    study->shots[study->shot_count] = (cost_shot){
-        .setting = *setting, .total_rms = (double)NAN, .total_max = (double)NAN, .spread_ms = (double)NAN};
+    study->shots[study->shot_count] =
+        (cost_shot){.setting = *setting, .total_rms = (double)NAN, .total_max = (double)NAN};
     return study->shot_count++;
 }
 
@@ -194,7 +197,7 @@ static void keep_plan(cost_study *study, int number, skg_plan **plan) {
     *plan = NULL;
 }
 
-/* Runs the scene's own image once: what it takes now, compared with other times, is the machine's unrest. */
+/* Runs the scene's own image once: how much its price varies from visit to visit is the unrest of prices. */
 static skg_status feel_pulse(cost_study *study) {
     cost_shot *own = &study->shots[study->here];
     still its = {.plan = own->plan};
@@ -207,9 +210,11 @@ static skg_status feel_pulse(cost_study *study) {
         study->pulse_capacity = capacity;
     }
     begin_still(&own->setting, study->batch, study->frames, &its);
-    const double begun = cli_now_ms();
+    cost_instant begun, end;
+    cost_begin(&begun);
     const skg_status status = make_still(&its);
-    study->pulse_ms[study->pulse_count++] = (cli_now_ms() - begun) / (double)study->frames;
+    cost_end(&end);
+    study->pulse_ms[study->pulse_count++] = cost_price_ms(study, &begun, &end) / (double)study->frames;
     return status;
 }
 
@@ -256,7 +261,7 @@ static skg_status visit(cost_study *study, int number) {
 
 /* The time that another visit takes. */
 static double visit_ms(const cost_study *study, const cost_shot *shot) {
-    const double run = shot->median_ms * (double)study->frames;
+    const double run = shot->wall_now_ms * (double)study->frames;
     return fmax(2 * run, 0.25 * cost_first_ms(study)) + (shot->plan ? 0 : shot->plan_ms + run);
 }
 

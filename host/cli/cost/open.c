@@ -1,4 +1,5 @@
 /* Opens the scene of a study, and its end. */
+#include "cost/clock.h"
 #include "cost/dials.h"
 #include "cost/measuring.h"
 
@@ -63,6 +64,7 @@ static int look_at_breath(cost_study *study) {
 
 int cost_open(cost_study *study) {
     int exit_status = cli_open_session(study->arguments, 0, &study->session);
+    cost_choose_clock(study);
     study->own_scatter = study->session.options.scatter;
     study->session.options.scatter = NULL; /* its noise would hide the errors of the primary */
     if (exit_status == CLI_DONE) exit_status = look_at_scene(study);

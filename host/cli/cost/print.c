@@ -32,11 +32,9 @@ static void print_source(const cost_study *study, int number) {
     if (source->error == 0) return; /* named in one line by print_none */
     if (!isnan(source->error)) cost_percent(source->error, error, sizeof error);
     printf("  %-21s %14s  ", cost_source_names[number], error);
-    if (source->halving >= 0 && study->priced)
+    if (source->halving >= 0)
         printf("%s, %s\n", source->buys,
-               cost_more(source->halving_ms, source->halving_spread_ms, ms, sizeof ms));
-    else if (source->halving >= 0)
-        printf("%s\n", source->buys);
+               cost_more(source->halving_ms, source->halving_uncertainty_ms, ms, sizeof ms));
     else
         printf("%s\n", source->reason);
 }
@@ -58,11 +56,10 @@ static void print_sources(const cost_study *study) {
 
 static void print_advice(const cost_study *study, const cost_advice *advice) {
     const int number = cost_find_shot(study, &advice->whole.setting);
-    char text[160], ms[64];
-    snprintf(ms, sizeof ms, "%s", study->priced ? "not timed" : "no price");
+    char text[160], ms[64] = "not timed";
     cost_describe(study, &advice->whole.setting, text, sizeof text);
-    if (number >= 0 && study->priced)
-        cost_ms(study->shots[number].min_ms, study->shots[number].spread_ms, ms, sizeof ms);
+    if (number >= 0)
+        cost_ms(study->shots[number].price_ms, study->shots[number].uncertainty_ms, ms, sizeof ms);
     printf("  %-7g %-18s %s%s%s\n", advice->tolerance, ms, *advice->reason ? "(not reached) " : "", text,
            advice->bar > advice->tolerance ? " (a tenth of the noise is enough)" : "");
 }
@@ -72,7 +69,9 @@ static void print_trust(const cost_study *study) {
     char sure[48];
     printf("\n  %lld settings in %.0f s on %s", (long long)study->shot_count,
            1e-3 * (study->ended_ms - study->begun_ms), study->session.device.name);
-    if (!isnan(study->unrest)) printf("; unrest of its times %.0f %%", 100 * study->unrest);
+    if (!isnan(study->unrest))
+        printf("; prices by %s, the same image's varied by %.0f %%",
+               study->has_processor_clock ? "processor time" : "the wall", 100 * study->unrest);
     if (study->reference_error > 0)
         printf("; best image known to %s", cost_percent(study->reference_error, sure, sizeof sure));
     putchar('\n');
@@ -114,12 +113,9 @@ void cost_print(const cost_study *study) {
     print_wrapped(study->summary);
     print_sources(study);
     print_sensitivity(study);
-    printf("\n  %-7s %-18s %s\n", "error", study->frames > 1 ? "ms a frame" : "ms an image",
-           study->priced ? "fastest setting" : "a setting with that error");
+    printf("\n  %-7s %-18s fastest setting\n", "error", study->frames > 1 ? "ms a frame" : "ms an image");
     for (int i = 0; i < COST_TOLERANCES; i++) print_advice(study, &study->advice[i]);
     if (study->buy >= 0) printf("\n  best buy: %s\n", study->shots[study->buy].command);
-    const char *halving = study->largest >= 0 ? study->sources[study->largest].command : NULL;
-    if (!study->priced && halving) printf("\n  to halve the largest error: %s\n", halving);
     if (study->saving >= 0) printf("  to save time: %s\n", study->shots[study->saving].command);
     print_trust(study);
 }

@@ -88,7 +88,8 @@ static int find_halving(const cost_study *study, int source, int today) {
         const cost_point *point = &study->points[i];
         if (i == today || !is_of_family(study, source, &own->setting, point)) continue;
         if (!(point->rms_flat <= own->rms_flat / 2)) continue;
-        if (found < 0 || study->shots[point->shot].min_ms < study->shots[study->points[found].shot].min_ms)
+        if (found < 0 ||
+            study->shots[point->shot].price_ms < study->shots[study->points[found].shot].price_ms)
             found = i;
     }
     return found;
@@ -100,9 +101,9 @@ static void price(const cost_study *study, cost_source *source) {
     const cost_shot *here = &study->shots[study->here];
     const cost_shot *from = &study->shots[study->points[source->own].shot];
     const cost_shot *to = &study->shots[study->points[source->halving].shot];
-    const double scale = from == here ? 1 : here->min_ms / from->min_ms;
-    source->halving_ms = scale * (to->min_ms - from->min_ms);
-    source->halving_spread_ms = scale * hypot(to->spread_ms, from->spread_ms); /* NaN: timed once */
+    const double scale = from == here ? 1 : here->price_ms / from->price_ms;
+    source->halving_ms = scale * (to->price_ms - from->price_ms);
+    source->halving_uncertainty_ms = scale * hypot(to->uncertainty_ms, from->uncertainty_ms);
 }
 
 /* The scene with the dial's better value, all else as it is. */
@@ -173,7 +174,7 @@ static int take_fine(cost_study *study, int number) {
                                    : "nothing is left to halve");
         return CLI_DONE;
     }
-    if (study->priced) price(study, source);
+    price(study, source);
     return name_halving(study, number, source);
 }
 
@@ -225,7 +226,7 @@ int cost_find_sources(cost_study *study) {
                                 .own = -1,
                                 .halving = -1,
                                 .halving_ms = (double)NAN,
-                                .halving_spread_ms = (double)NAN};
+                                .halving_uncertainty_ms = (double)NAN};
         if (none) {
             source->error = source->max = 0;
             snprintf(source->reason, sizeof source->reason, "%s", none);
@@ -304,14 +305,15 @@ void cost_find_trust(cost_study *study) {
 
 void cost_find_unrest(cost_study *study) {
     study->unrest = (double)NAN;
-    if (study->pulse_count < 4) return;
-    qsort(study->pulse_ms, (size_t)study->pulse_count, sizeof *study->pulse_ms, ascending);
-    const double *ms = study->pulse_ms;
-    const int64_t n = study->pulse_count;
-    study->unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];
-    study->priced = study->unrest <= cost_max_unrest;
+    if (study->pulse_count >= 4) {
+        qsort(study->pulse_ms, (size_t)study->pulse_count, sizeof *study->pulse_ms, ascending);
+        const double *ms = study->pulse_ms;
+        const int64_t n = study->pulse_count;
+        study->unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];
+    }
     for (int i = 0; i < study->shot_count; i++) {
         cost_shot *shot = &study->shots[i];
-        if (isnan(shot->spread_ms)) shot->spread_ms = study->unrest * shot->min_ms;
+        if (isnan(shot->uncertainty_ms))
+            shot->uncertainty_ms = (isnan(study->unrest) ? 1 : study->unrest) * shot->price_ms;
     }
 }

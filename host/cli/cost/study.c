@@ -21,7 +21,6 @@ const char *const cost_repair_names[3] = {
 const char *const cost_reference_names[COST_REFERENCES] = {
     "precision, tolerance, bins", "source samples",    "supersampling", "repair", "triangles",
     "relaxation, hysteresis",     "all dials together"};
-const double cost_max_unrest = 0.5; /* above it, prices would be those of the other processes */
 const double cost_tolerances[COST_TOLERANCES] = {1e-2, 1e-3, 1e-4, 1e-6};
 
 double cost_left_ms(const cost_study *study, double share) {

@@ -85,14 +85,13 @@ typedef struct {
     skg_plan *plan; /* kept for further visits while memory suffices, otherwise NULL */
     int64_t nodes, planes, bins, device_bytes;
     double plan_ms;
-    /* Times of single runs, in the order in which they were measured, and of the fastest of each visit. A visit is a number of
-     * runs in a row; visits to different shots alternate. */
+    /* Times of single runs, in the order in which they were measured, on the wall and by the clock of prices (clock.h). A visit is
+     * a number of runs in a row; visits to different shots alternate. */
     int64_t frames; /* of a run; times are those of one frame */
     int64_t runs, visits;
-    double run_ms[COST_RUNS_MAX], visit_ms[COST_VISITS_MAX];
-    double min_ms, median_ms;
-    /* The median of visit_ms minus min_ms; of a single visit, the unrest's share of min_ms, and NaN until that is known. */
-    double spread_ms;
+    double run_wall_ms[COST_RUNS_MAX], run_price_ms[COST_RUNS_MAX];
+    double wall_now_ms;              /* the median of run_wall_ms: what one waits on the machine as it is */
+    double price_ms, uncertainty_ms; /* what an image takes on an idle machine; cost_find_price */
     /* Errors against the reference COST_OF_ALL, as fractions of the flat field. NaN: not compared. */
     double total_rms, total_max;
     /* Small pictures, [thumb_rows][thumb_columns], in fractions of the flat field: of each block of pixels the difference from
@@ -154,10 +153,11 @@ typedef struct {
     int state;         /* COST_ABSENT ... */
     double error, max; /* root mean square and largest, as fractions of the flat field; NaN: not measured */
     int own, halving;  /* points: of today's setting and of the fastest with half of its error; -1: none */
-    double halving_ms, halving_spread_ms; /* what `halving` adds to the time of an image; NaN: no price */
-    char buys[96];                        /* the dial's value that halves it: "84000 triangles" */
-    char reason[320]; /* why something is not known or not measured, or why the error is 0 */
-    char *command;    /* NULL: none */
+    double halving_ms,
+        halving_uncertainty_ms; /* what `halving` adds to the price of an image; NaN: nothing halves it */
+    char buys[96];              /* the dial's value that halves it: "84000 triangles" */
+    char reason[320];           /* why something is not known or not measured, or why the error is 0 */
+    char *command;              /* NULL: none */
 } cost_source;
 
 enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };
@@ -209,6 +209,7 @@ typedef struct {
     double flat_field; /* keV per pixel */
     cost_setting own;  /* the scene's own setting */
     int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
+    int has_processor_clock; /* 1: prices are processor times (clock.h) */
     int has_tube, has_energies, has_spot, has_leaky, has_breath;
     const skg_scatter *own_scatter; /* of the scene, whose images are computed without; NULL: it has none */
     cost_scattering scattering;
@@ -241,10 +242,9 @@ typedef struct {
     int shot_count;
     int here;           /* the shot of the scene as its file has it */
     int64_t kept_bytes; /* of the plans that are kept */
-    double *pulse_ms; /* [pulse_count] times of the scene's own image between visits: the machine's unrest */
+    double *pulse_ms;   /* [pulse_count] prices of the scene's own image, taken between visits */
     int64_t pulse_count, pulse_capacity;
     double unrest; /* their interquartile range over their median; NaN: fewer than 4 */
-    int priced;    /* 1: the unrest is at most cost_max_unrest; 0: neither times nor prices are given */
     double
         reference_error; /* of the reference COST_OF_ALL, root mean square, estimated from its neighbours; NaN: not known */
     double grey_levels; /* of 256 in a PNG of transmission, for a whole flat field; 0: not known */
@@ -259,7 +259,6 @@ typedef struct {
 
 extern const char *const cost_source_names[COST_SOURCES];
 extern const char *const cost_repair_names[3]; /* by SKG_REPAIR_ value */
-extern const double cost_max_unrest;           /* for prices */
 extern const double cost_tolerances[COST_TOLERANCES];
 
 /* The dials that are compared with a reference: "precision, tolerance, bins". */

@@ -8,6 +8,7 @@
 static const double HALF = 0.55; /* of today's error counts as half */
 static const double LESS = 0.9;  /* of today's time or error counts as less */
 static const double SAME = 1.05; /* of today's error counts as the same */
+static const double BUSY = 1.5;  /* times the price: a wait that is told beside it */
 
 /* Two significant digits, without an exponent. */
 static void put_number(double value, char *text, size_t size) {
@@ -29,26 +30,24 @@ const char *cost_percent(double share, char *text, size_t size) {
     return text;
 }
 
-const char *cost_ms(double ms, double spread_ms, char *text, size_t size) {
+const char *cost_ms(double ms, double uncertainty_ms, char *text, size_t size) {
     char number[32], spread[32];
     put_number(ms, number, sizeof number);
-    put_number(ms + spread_ms, spread, sizeof spread);
-    if (spread_ms > 0.05 * ms)
-        snprintf(text, size, "%s to %s ms", number, spread);
+    put_number(uncertainty_ms, spread, sizeof spread);
+    if (uncertainty_ms > 0.05 * ms)
+        snprintf(text, size, "%s +- %s ms", number, spread);
     else
         snprintf(text, size, "%s ms", number);
     return text;
 }
 
-const char *cost_more(double ms, double spread_ms, char *text, size_t size) {
+const char *cost_more(double ms, double uncertainty_ms, char *text, size_t size) {
     char number[32], spread[32];
     put_number(ms, number, sizeof number);
-    put_number(spread_ms, spread, sizeof spread);
-    if (isnan(ms))
-        snprintf(text, size, "no price");
-    else if (fabs(ms) <= spread_ms)
+    put_number(uncertainty_ms, spread, sizeof spread);
+    if (fabs(ms) <= uncertainty_ms)
         snprintf(text, size, "the same time within +- %s ms", spread);
-    else if (spread_ms > 0.05 * fabs(ms))
+    else if (uncertainty_ms > 0.05 * fabs(ms))
         snprintf(text, size, "%s%s +- %s ms", ms > 0 ? "+" : "", number, spread);
     else
         snprintf(text, size, "%s%s ms", ms > 0 ? "+" : "", number);
@@ -66,13 +65,13 @@ static int choose_buy(const cost_study *study) {
         if (best < 0 || shot->total_rms < study->shots[best].total_rms) best = i;
         if (!(shot->total_rms <= HALF * here->total_rms)) continue;
         const double weight = cost_changed_dial(study, &shot->setting) == COST_SEVERAL ? 1.1 : 1;
-        const double its = weight * shot->min_ms;
+        const double its = weight * shot->price_ms;
         if (half < 0) {
             half = i;
             continue;
         }
         const double other = cost_changed_dial(study, &study->shots[half].setting) == COST_SEVERAL ? 1.1 : 1;
-        if (its < other * study->shots[half].min_ms) half = i;
+        if (its < other * study->shots[half].price_ms) half = i;
     }
     return half >= 0 ? half : best;
 }
@@ -83,10 +82,9 @@ static int choose_saving(const cost_study *study) {
     int found = -1;
     for (int i = 0; i < study->shot_count; i++) {
         const cost_shot *shot = &study->shots[i];
-        const double spread = isnan(shot->spread_ms) ? 0 : shot->spread_ms;
         if (!(shot->total_rms <= SAME * here->total_rms)) continue;
-        if (!(shot->min_ms + spread < LESS * here->min_ms)) continue;
-        if (found < 0 || shot->min_ms < study->shots[found].min_ms) found = i;
+        if (!(shot->price_ms + shot->uncertainty_ms < LESS * here->price_ms)) continue;
+        if (found < 0 || shot->price_ms < study->shots[found].price_ms) found = i;
     }
     return found;
 }
@@ -129,10 +127,10 @@ static void name_change(const cost_study *study, const cost_setting *setting, ch
 static void add_change(cost_study *study, const char *what, int number) {
     const cost_shot *here = &study->shots[study->here], *shot = &study->shots[number];
     char change[256], ms[64], percent[48];
-    const double more = shot->min_ms - here->min_ms, ratio = shot->total_rms / here->total_rms;
+    const double more = shot->price_ms - here->price_ms, ratio = shot->total_rms / here->total_rms;
     name_change(study, &shot->setting, change, sizeof change);
     cost_append(study->summary, sizeof study->summary, " %s: %s, %s, ", what, change,
-                cost_more(more, hypot(shot->spread_ms, here->spread_ms), ms, sizeof ms));
+                cost_more(more, hypot(shot->uncertainty_ms, here->uncertainty_ms), ms, sizeof ms));
     if (ratio <= HALF && ratio > 0.4)
         cost_append(study->summary, sizeof study->summary, "error halved.");
     else if (ratio > LESS && ratio <= SAME)
@@ -190,39 +188,22 @@ static void state_here(cost_study *study) {
     const char *each = study->frames > 1 ? "a frame in batches" : "an image";
     char ms[64], percent[48], sure[48];
     cost_append(study->summary, sizeof study->summary, "This scene: ");
-    if (study->priced)
-        cost_append(study->summary, sizeof study->summary, "%s %s",
-                    cost_ms(here->min_ms, here->spread_ms, ms, sizeof ms), each);
-    if (study->priced && !isnan(here->total_rms)) cost_append(study->summary, sizeof study->summary, ", ");
+    cost_append(study->summary, sizeof study->summary, "%s %s",
+                cost_ms(here->price_ms, here->uncertainty_ms, ms, sizeof ms), each);
+    if (here->wall_now_ms > BUSY * here->price_ms)
+        cost_append(study->summary, sizeof study->summary,
+                    " by processor time (%s on the wall, on this machine as it is now)",
+                    cost_ms(here->wall_now_ms, 0, ms, sizeof ms));
+    if (!isnan(here->total_rms)) cost_append(study->summary, sizeof study->summary, ", ");
     if (!isnan(
             here->total_rms)) /* a best image that is known less well than its distance gives a lower bound */
         cost_append(study->summary, sizeof study->summary, "%s%s off",
                     study->reference_error <= here->total_rms ? "" : "at least ",
                     cost_percent(here->total_rms, percent, sizeof percent));
-    else if (!study->priced)
-        cost_append(study->summary, sizeof study->summary, "neither its error nor its time is known");
     if (study->reference_error > 0.1 * here->total_rms && study->reference_error <= here->total_rms)
         cost_append(study->summary, sizeof study->summary, " (+- %s)",
                     cost_percent(study->reference_error, sure, sizeof sure));
     cost_append(study->summary, sizeof study->summary, ".");
-}
-
-/* Why there are no times and prices, and what halves the largest error. */
-static void refuse_prices(cost_study *study) {
-    const cost_source *largest = study->largest < 0 ? NULL : &study->sources[study->largest];
-    study->buy = study->saving = -1;
-    if (largest && largest->halving >= 0)
-        cost_append(study->summary, sizeof study->summary, " %s would halve it.", largest->buys);
-    if (isnan(study->unrest))
-        cost_append(
-            study->summary, sizeof study->summary,
-            " No price: the time of the same image was measured too rarely to know how much it varies.");
-    else
-        cost_append(
-            study->summary, sizeof study->summary,
-            " No price: the time of the same image varied by %.0f %%, more than the %.0f %% up to which prices "
-            "are given; repeat this on an idle machine.",
-            100 * study->unrest, 100 * cost_max_unrest);
 }
 
 void cost_summarise(cost_study *study) {
@@ -230,7 +211,7 @@ void cost_summarise(cost_study *study) {
     char percent[48];
     study->buy = choose_buy(study);
     study->saving = choose_saving(study);
-    if (study->buy >= 0 && study->shots[study->buy].min_ms < here->min_ms)
+    if (study->buy >= 0 && study->shots[study->buy].price_ms < here->price_ms)
         study->saving = -1; /* it saves time as well */
     state_here(study);
     name_largest(study);
@@ -240,10 +221,6 @@ void cost_summarise(cost_study *study) {
                     " The scene's noise is %s, so nothing needs to be bought.",
                     cost_percent(study->noise, percent, sizeof percent));
         study->buy = -1;
-    }
-    if (!study->priced) {
-        refuse_prices(study);
-        return;
     }
     if (study->buy >= 0)
         add_change(study, "Best buy", study->buy);

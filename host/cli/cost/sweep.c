@@ -79,7 +79,7 @@ static void drop_unmeasured(cost_study *study) {
 static int look_at_own(cost_study *study, double *image) {
     skg_status status = cost_shoot(study, &study->own, image, &study->here);
     if (status < SKG_OK) return cli_fail(status);
-    study->pass_ms = study->shots[study->here].min_ms / cost_passes(&study->own);
+    study->pass_ms = study->shots[study->here].wall_now_ms / cost_passes(&study->own);
     study->plan_ms = study->shots[study->here].plan_ms;
     return CLI_DONE;
 }

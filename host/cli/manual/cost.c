@@ -34,12 +34,11 @@ static const char *const text[] = {
     "with the finest mesh; and in a scene with Breathing, relaxation and hysteresis with no relaxation.",
     "Prints first one sentence: what an image costs, how far it is off, which error is the largest, and what to change. Then a "
     "line for each source of error, and the settings for errors of 1e-2, 1e-3, 1e-4 and 1e-6 of the flat field. The page and "
-    "the .csv have every setting. Times are the fastest runs of visits that alternate between the settings; the unrest is the "
-    "spread of the times of one image that is computed again and again meanwhile. Above an unrest of 50 % no price is given; errors need "
-    "no quiet machine.",
+    "the .csv have every setting. A price is what an image takes on an idle machine: on a CPU by processor time, which other processes "
+    "hardly change, otherwise by the wall. It has its uncertainty. What one waits now stands beside it, where that is much more.",
     "Ctrl-C stops the measurement, and what is done is kept and written.",
-    "--json prints {summary, sources, sensitivity, unrest, priced, settings, references, points, advice, notes, ...}; advice names points by their "
-    "number.",
+    "--json prints {summary, sources, sensitivity, unrest, settings, references, points, advice, notes, ...}; settings and points have "
+    "price: {ms, uncertainty, clock} and wall_now_ms; advice names points by their number.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_cost_output,

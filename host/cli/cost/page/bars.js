@@ -10,7 +10,7 @@ function bar(source, i, largest) {
   if (source.error === null)
     return `${name}<span class="track"><span class="unknown"></span></span><span class="why">${plain((source.state === "not known" ? "not known: " : "") + source.reason)}</span>`;
   const buys = source.halving === null ? `<span class="faint">${plain(source.reason || "")}</span><span></span>`
-    : `<span class="buys">half of it: ${plain(source.halving)}${extra(source.halving_ms, source.halving_spread_ms)}</span>` +
+    : `<span class="buys">half of it: ${plain(source.halving)}${extra(source.halving_ms, source.halving_uncertainty_ms)}</span>` +
       `<button data-copy="${plain(source.command)}" title="${plain(source.command)}">copy</button>`;
   return `${name}<button class="track" data-source="${i}" aria-label="${plain(source.name)}: ${percent(source.error)}; show where">` +
     `<span class="fill" style="width:${100 * source.error / largest}%;background:${colour(dialOf[source.name])}"></span></button>` +

@@ -1,6 +1,6 @@
 "use strict";
 /* The chosen setting: its numbers, command and pictures, and the controls that choose it. */
-const frontier = study.settings.map((s, i) => ({s, i})).filter(p => p.s.best && p.s.image).sort((a, b) => a.s.min_ms - b.s.min_ms);
+const frontier = study.settings.map((s, i) => ({s, i})).filter(p => p.s.best && p.s.image).sort((a, b) => a.s.price.ms - b.s.price.ms);
 let chosen = study.here, source = -1; /* source: whose difference is shown instead of the setting's; -1: none */
 let painting = null;                  /* the promise of the picture of differences */
 
@@ -10,8 +10,8 @@ function head() {
   byId("summary").textContent = study.summary.replace(/\+-/g, "\u00b1");
   byId("trust").textContent = (study.stopped ? "Stopped by hand: what was measured until then is shown. " : "") + study.settings.length + " settings in " +
     Math.round(study.seconds) + " s on " + study.device + ", " + study.date + ". " + (study.unrest === null ? "" :
-    "The machine's unrest: the time of the same image varied by " + Math.round(100 * study.unrest) + " % (middle half of its runs)" +
-    (study.priced ? ". " : "; above " + Math.round(100 * study.most_unrest) + " % no prices are given: repeat this on an idle machine. ")) +
+    "Prices are " + (study.settings[0].price.clock === "cpu" ? "processor time" : "time on the wall") + "; that of the same image varied by " +
+    Math.round(100 * study.unrest) + " % (middle half of its runs). ") +
     (study.left_out ? study.left_out + " settings did not fit in the given time (--within). " : "");
   document.querySelector("#compared tbody").innerHTML = study.references.filter(r => r)
     .map(r => "<tr><td>" + plain(r.dials) + "</td><td>" + plain(r.text) + "</td></tr>").join("");
@@ -25,7 +25,7 @@ function advise() {
     const met = a.reason === null, its = a.settings_index === null ? null : study.settings[a.settings_index];
     const text = its ? its.setting.text : "as in the command";
     return `<tr><td class="${met ? "met" : ""}">${percent(a.tolerance)}<br><span class="faint">${a.tolerance.toExponential()}</span></td>` +
-      `<td>${its ? price(its.min_ms, its.spread_ms) : "not timed: it takes too long"}</td>` +
+      `<td>${its ? price(its.price) : "not timed: it takes too long"}</td>` +
       `<td>${plain(text)}${a.bar > a.tolerance ? `<br><span class="faint">a tenth of the noise, ${percent(a.bar)}, is enough</span>` : ""}` +
       `${met ? "" : "<br><b>not reached</b>: " + plain(a.reason)}</td><td><button data-copy="${plain(a.whole_command)}">copy</button> <code>${plain(a.whole_command)}</code></td></tr>`;
   }).join("");
@@ -36,11 +36,11 @@ const isModel = p => p.dial === "relaxation" || p.dial === "hysteresis";
 function list() {
   const cells = cells => cells.map(cell => "<td>" + plain(cell) + "</td>").join("");
   byId("rows").innerHTML = study.points.map((p, i) => isModel(p) ? "" : `<tr data-index="${p.settings_index}">` +
-    cells([p.dial + (p.frontier ? " *" : ""), p.setting.text, p.nodes, p.planes, ...[p.min_ms, p.median_ms, p.plan_ms].map(ms => study.priced ? number(ms) : ""), scientific(p.max_open),
+    cells([p.dial + (p.frontier ? " *" : ""), p.setting.text, p.nodes, p.planes, ...[p.price.ms, p.wall_now_ms, p.plan_ms].map(ms => number(ms)), scientific(p.max_open),
            scientific(p.rms_open), scientific(p.max_ref), scientific(p.rms_ref), p.max_mm === null ? "" : scientific(p.max_mm), p.rms_mm === null ? "" : scientific(p.rms_mm)]) + "</tr>").join("");
   const models = study.points.filter(isModel);
   byId("models").hidden = !models.length;
-  document.querySelector("#moved tbody").innerHTML = models.map(p => "<tr>" + cells([p.dial, p.setting[p.dial], study.priced ? number(p.min_ms) : "", number(p.max_mm), number(p.rms_mm),
+  document.querySelector("#moved tbody").innerHTML = models.map(p => "<tr>" + cells([p.dial, p.setting[p.dial], number(p.price.ms), number(p.max_mm), number(p.rms_mm),
     percent(p.rms_open)]) + "</tr>").join("");
 }
 
@@ -102,7 +102,7 @@ function choose(index, itsSource = -1) {
   source = itsSource;
   const s = study.settings[index];
   byId("name").textContent = index === study.here ? "This scene" : index === study.buy ? "Best buy: " + s.value : s.value;
-  byId("numbers").textContent = price(s.min_ms, s.spread_ms) + (s.rms === null ? "" : ", " + percent(s.rms) + " off (" + percent(s.max) + " at the worst pixel)");
+  byId("numbers").textContent = price(s.price) + (s.rms === null ? "" : ", " + percent(s.rms) + " off (" + percent(s.max) + " at the worst pixel)");
   byId("command").textContent = s.command;
   for (const row of byId("rows").children) row.classList.toggle("chosen", Number(row.dataset.index) === index);
   const exact = frontier.findIndex(p => p.i === index);
@@ -111,7 +111,7 @@ function choose(index, itsSource = -1) {
   byId("accept").value = frontier.length - 1 - at;
   byId("have").value = at;
   byId("accept").ariaValueText = byId("accepted").textContent = (exact >= 0 ? "" : "\u2248 ") + percent(s.rms);
-  byId("have").ariaValueText = byId("had").textContent = (exact >= 0 ? "" : "\u2248 ") + price(s.min_ms, 0);
+  byId("have").ariaValueText = byId("had").textContent = (exact >= 0 ? "" : "\u2248 ") + price({ms: s.price.ms, uncertainty: 0});
   showPictures();
   drawPlot(chosen);
 }

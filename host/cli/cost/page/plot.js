@@ -8,12 +8,10 @@ const scientific = value => value === null ? "not finite" : value === 0 ? "0" : 
 /* 0.21 % for a fraction; very small ones have an exponent. */
 const percent = share => share === null ? "not finite" : share === 0 ? "0 %" : (100 * share >= 1e-6 ? Number((100 * share).toPrecision(2)).toFixed(9).replace(/0+$/, "").replace(/[.]$/, "")
   : (100 * share).toExponential(0)) + " %";
-/* 8.1 to 9.2 ms: the fastest run and, where it differs, the median of the visits, to which a mark's line reaches. */
-const duration = (ms, spread) => round2(ms) + (spread > 0.05 * ms ? " to " + round2(ms + spread) : "") + " ms";
-/* The same, unless the machine was too busy for prices. */
-const price = (ms, spread) => study.priced ? duration(ms, spread) : "no price";
+/* 8.1 \u00b1 0.6 ms: with the uncertainty where it matters. */
+const price = p => round2(p.ms) + (p.uncertainty > 0.05 * p.ms ? " \u00b1 " + round2(p.uncertainty) : "") + " ms";
 /* Where the line of a mark ends. */
-const slowest = s => s.min_ms + (s.spread_ms || 0);
+const slowest = s => s.price.ms + s.price.uncertainty;
 
 const looks = { /* colour in the light, colour in the dark, path around (0, 0) */
   "scene": ["#1a1c20", "#ffffff", "M-7 0a7 7 0 1 0 14 0a7 7 0 1 0 -14 0z"],
@@ -55,14 +53,14 @@ let key = "rms"; /* of the error that is shown */
 
 /* The settings that the plot shows, with their places. */
 function placed() {
-  const shown = study.settings.map((s, i) => ({s, i})).filter(p => p.s[key] !== null && p.s.min_ms > 0 && p.s.image !== null);
-  const positive = shown.map(p => p.s[key]).filter(e => e > 0), times = shown.flatMap(p => [p.s.min_ms, slowest(p.s)]);
+  const shown = study.settings.map((s, i) => ({s, i})).filter(p => p.s[key] !== null && p.s.price.ms > 0 && p.s.image !== null);
+  const positive = shown.map(p => p.s[key]).filter(e => e > 0), times = shown.flatMap(p => [p.s.price.ms, slowest(p.s)]);
   if (study.noise !== null && key === "rms") positive.push(study.noise, study.noise / 10);
   const low = Math.min(...positive, 1) / 1.6, high = Math.max(...positive, 1e-9) * 1.6;
   const fast = Math.min(...times) / 1.25, slow = Math.max(...times) * 1.25;
   const x = ms => box.left + (box.right - box.left) * Math.log(ms / fast) / Math.log(slow / fast);
   const y = e => box.bottom - (box.bottom - box.top) * Math.max(Math.log(Math.max(e, low) / low) / Math.log(high / low), 0);
-  for (const p of shown) p.x = x(p.s.min_ms), p.y = y(p.s[key]);
+  for (const p of shown) p.x = x(p.s.price.ms), p.y = y(p.s[key]);
   return {shown, x, y, low, high, fast, slow};
 }
 
@@ -84,7 +82,7 @@ function grid(at) {
     text += `<line x1="${box.left}" x2="${box.right}" y1="${at.y(v)}" y2="${at.y(v)}" stroke="var(--rule)"/>` +
       `<text x="${box.left - 7}" y="${at.y(v) + 4}" text-anchor="end">${percent(v).replace(" %", "")}</text>`;
   text += `<text x="${(box.left + box.right) / 2}" y="${box.bottom + 44}" text-anchor="middle">${study.frames > 1
-    ? "milliseconds a frame, in batches of " + study.frames : "milliseconds an image"} ${!study.priced ? "of a busy machine: no prices" : isNarrow ? "" : "(a line reaches to the median of the visits)"}</text>` +
+    ? "milliseconds a frame, in batches of " + study.frames : "milliseconds an image"} ${isNarrow ? "" : study.settings[0].price.clock === "cpu" ? "on an idle machine, by processor time" : "on the wall"}</text>` +
     `<text transform="translate(15 ${(box.top + box.bottom) / 2}) rotate(-90)" text-anchor="middle">error, % of the open beam</text>`;
   if (isNarrow) return text;
   if (study.grey_levels !== null) text += secondScale(at, 1 / study.grey_levels, box.right, "grey levels of 256 in a PNG");
@@ -109,7 +107,7 @@ function behind(at) {
 }
 
 function mark(p, at, chosen) {
-  const far = at.x(slowest(p.s)), title = `<title>${plain(p.s.value + ": " + price(p.s.min_ms, p.s.spread_ms) + ", " + percent(p.s[key]))}</title>`;
+  const far = at.x(slowest(p.s)), title = `<title>${plain(p.s.value + ": " + price(p.s.price) + ", " + percent(p.s[key]))}</title>`;
   const whisker = far - p.x > 2 ? `<line x1="${p.x}" x2="${far}" y1="${p.y}" y2="${p.y}" stroke="${colour(p.s.dial)}" stroke-opacity="0.6"/>` +
     `<line x1="${far}" x2="${far}" y1="${p.y - 3}" y2="${p.y + 3}" stroke="${colour(p.s.dial)}" stroke-opacity="0.6"/>` : "";
   const ring = p.i === chosen ? `<circle class="ring" cx="${p.x}" cy="${p.y}" r="12" fill="none" stroke="var(--mark)" stroke-width="3"/>` : "";
