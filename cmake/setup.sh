@@ -15,7 +15,7 @@ skg_mpi_packages="libopenmpi-dev openmpi-bin"
 # manual.
 # shellcheck disable=SC2034
 skg_test_packages="check gfortran g++ python3 python3-numpy python3-cffi python3-pytest python3-scipy python3-venv oclgrind libxrl-dev \
-doxygen chromium groff-base locales dcmtk python3-pydicom"
+doxygen chromium groff-base locales dcmtk python3-pydicom python3-jsonschema"
 
 # skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {

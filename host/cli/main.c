@@ -9,6 +9,7 @@
 #include "common/values.h"
 #include "manual/manual.h"
 #include "verb_table.h"
+#include "verbs/verbs.h"
 #include "version.h"
 
 #include <errno.h>
@@ -84,6 +85,7 @@ static int run(int count, char **words) {
         cli_help_overview(stdout);
         return CLI_DONE;
     }
+    if (help && strcmp(words[2], "keys") == 0) return cli_print_keys();
     int exit_status = find_verb(words[help ? 2 : 1], &verb);
     if (exit_status != CLI_DONE) return exit_status;
     if (!help) return run_verb(verb, count - 2, words + 2);

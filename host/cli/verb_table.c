@@ -23,5 +23,6 @@ const cli_verb cli_verbs[] = {
     {&cli_manual_register, cli_register},
     {&cli_manual_scan, cli_scan},
     {&cli_manual_reconstruct, cli_reconstruct},
+    {&cli_manual_schema, cli_schema},
     {NULL, NULL},
 };

@@ -43,6 +43,7 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
         _put(text, "Scan", _scan_text(state.trajectory))
     if state.breath:
         _drop(text, "Breathing")
+    text = {"$schema": "scene.schema.json", **text}
     target.write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
 
 

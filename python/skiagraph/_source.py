@@ -13,6 +13,15 @@ from ._interface import ArgumentError, FileError
 from ._library import call, encode, ffi, integer, make, struct, text
 
 
+def schema() -> dict[str, Any]:
+    size = ffi.new("int64_t *")
+    call("skg_setup_schema_get", ffi.NULL, 0, size)
+    room = ffi.new("char[]", size[0])
+    call("skg_setup_schema_get", room, size[0], size)
+    made: dict[str, Any] = json.loads(text(room))
+    return made
+
+
 @dataclass
 class Source:
     text: bytes

@@ -306,6 +306,11 @@ class Scene(_gradient.Differentiable):
         with self._state.calls():
             return Report(self._state.plan(options), [part.label for part in self])
 
+    @staticmethod
+    def schema() -> dict[str, Any]:
+        """The JSON Schema (draft 2020-12) of scene files, made of the tables by which they are read: `jsonschema.validate(text, Scene.schema())`."""
+        return _source.schema()
+
     def save(self, path: str | os.PathLike[str], image: Any = None, quantity: str = "energy", *, display: str = "radiograph",
              range: tuple[float, float] | None = None, **options: Any) -> None:
         """Writes the scene as a scene file, .json, whose images have the same bits; or an image of it, .png, .tif, .mha or .dcm.

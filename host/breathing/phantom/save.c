@@ -46,6 +46,7 @@ static void write_scene(const skg_thorax *thorax, FILE *f) {
     fprintf(
         f,
         "{\n"
+        "    \"$schema\": \"scene.schema.json\",\n"
         "    \"Source\": {\n"
         "        \"Position\": [0, -860, -20, \"mm\"],\n"
         "        \"Shape\": \"PointSource\",\n"

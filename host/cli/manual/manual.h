@@ -48,7 +48,8 @@ void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
     cli_manual_distance, cli_manual_fit, cli_manual_image, cli_manual_lbuffer, cli_manual_live,
     cli_manual_material, cli_manual_make, cli_manual_mesh, cli_manual_plan, cli_manual_reconstruct,
-    cli_manual_parts, cli_manual_register, cli_manual_scan, cli_manual_thorax, cli_manual_view;
+    cli_manual_parts, cli_manual_register, cli_manual_scan, cli_manual_schema, cli_manual_thorax,
+    cli_manual_view;
 
 extern const cli_flag cli_flag_help; /* of every verb */
 
@@ -101,6 +102,7 @@ extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_si
     cli_flag_view_orthographic, cli_flag_view_phase, cli_flag_view_at, cli_flag_view_seconds,
     cli_flag_view_sensitivity, cli_flag_view_zoom;
 extern const cli_flag cli_flag_live_port, cli_flag_live_no_open, cli_flag_live_bind, cli_flag_live_idle;
+extern const cli_flag cli_flag_schema_output;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,
     cli_flag_reconstruct_filter, cli_flag_reconstruct_truncation, cli_flag_reconstruct_geometry;
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,

@@ -68,9 +68,9 @@ static int write_group(const char *file, const char *folder, const skg_mesh_read
 }
 
 static int write_scene(const char *path, json_t *samples) {
-    json_t *scene =
-        json_pack("{s:{s:s,s:s,s:[{s:i,s:s,s:i}]},s:O}", "Source", "Shape", "PointSource", "From", "front",
-                  "Beam", "Energy", 60, "Unit", "keV", "PhotonCount", 1000, "Samples", samples);
+    json_t *scene = json_pack("{s:s,s:{s:s,s:s,s:[{s:i,s:s,s:i}]},s:O}", "$schema", "scene.schema.json",
+                              "Source", "Shape", "PointSource", "From", "front", "Beam", "Energy", 60, "Unit",
+                              "keV", "PhotonCount", 1000, "Samples", samples);
     char *text = scene ? json_dumps(scene, JSON_INDENT(2)) : NULL;
     json_decref(scene);
     if (!text) return cli_error(CLI_DEVICE, "out of host memory");

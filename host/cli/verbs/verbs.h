@@ -12,6 +12,10 @@ int cli_lbuffer(const cli_arguments *arguments);
 int cli_material(const cli_arguments *arguments);
 int cli_mesh(const cli_arguments *arguments);
 int cli_parts(const cli_arguments *arguments);
+int cli_schema(const cli_arguments *arguments);
+
+/* Prints the keys of scene files, for `help keys`. */
+int cli_print_keys(void);
 int cli_plan(const cli_arguments *arguments);
 int cli_thorax(const cli_arguments *arguments);
 int cli_make(const cli_arguments *arguments);

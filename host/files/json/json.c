@@ -130,17 +130,21 @@ int skg_json_same_key(const char *a, const char *b) {
 
 /* What people and exporters write into any object for themselves and for displays. */
 static const skg_json_key asides[] = {
-    {"Comment", NULL, SKG_KEY_IGNORED},     {"Comments", NULL, SKG_KEY_IGNORED},
-    {"Colour", NULL, SKG_KEY_IGNORED},      {"Color", NULL, SKG_KEY_IGNORED},
-    {"Description", NULL, SKG_KEY_IGNORED},
+    {"Comment", NULL, SKG_KEY_IGNORED, "any", NULL},     {"Comments", NULL, SKG_KEY_IGNORED, "any", NULL},
+    {"Colour", NULL, SKG_KEY_IGNORED, "any", NULL},      {"Color", NULL, SKG_KEY_IGNORED, "any", NULL},
+    {"Description", NULL, SKG_KEY_IGNORED, "any", NULL},
 };
+const skg_json_table skg_json_asides = {"Asides", asides, sizeof asides / sizeof *asides};
+
+static const skg_json_key *find_in(const skg_json_table *table, const char *name) {
+    for (int64_t i = 0; i < table->count; i++)
+        if (skg_json_same_key(table->keys[i].name, name)) return &table->keys[i];
+    return NULL;
+}
 
 static const skg_json_key *find_key(const skg_json_object *object, const char *name) {
-    for (int64_t i = 0; i < object->count; i++)
-        if (skg_json_same_key(object->keys[i].name, name)) return &object->keys[i];
-    for (size_t i = 0; i < sizeof asides / sizeof *asides; i++)
-        if (skg_json_same_key(asides[i].name, name)) return &asides[i];
-    return NULL;
+    const skg_json_key *key = find_in(object->table, name);
+    return key ? key : find_in(&skg_json_asides, name);
 }
 
 static const char *canonical(const skg_json_key *key) {
@@ -149,17 +153,17 @@ static const char *canonical(const skg_json_key *key) {
 
 static skg_status unknown_key(const skg_json_object *object, const skg_json_node *member) {
     const char *names[64];
-    int64_t count = object->count < 64 ? object->count : 64;
-    for (int64_t i = 0; i < count; i++) names[i] = object->keys[i].name;
+    int64_t count = object->table->count < 64 ? object->table->count : 64;
+    for (int64_t i = 0; i < count; i++) names[i] = object->table->keys[i].name;
     const char *near = skg_nearest_name(member->key, names, count);
     return skg_json_fault(member, SKG_ERR_FORMAT, "unknown key%s%s", near ? "; did you mean " : "",
                           near ? near : "");
 }
 
-skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *keys, int64_t count,
+skg_status skg_json_read_object(const skg_json_node *node, const skg_json_table *table,
                                 skg_json_object *object) {
     if (!json_is_object(node->value)) return wrong_kind(node, "an object { ... }");
-    *object = (skg_json_object){.node = node, .keys = keys, .count = count};
+    *object = (skg_json_object){.node = node, .table = table};
     const char *name = NULL;
     json_t *value = NULL;
     json_object_foreach(node->value, name, value) {

@@ -39,17 +39,28 @@ typedef struct {
         as; /* of SKG_KEY_READ: the key of which this is another spelling; NULL: none. Of SKG_KEY_NOT_YET: what
                      * it asks for */
     int32_t kind;
+    const char *form; /* of the value, in the words of setup/keys.h */
+    const char *says; /* what it means; NULL: nothing */
 } skg_json_key;
+
+/* The keys of one kind of object. */
+typedef struct {
+    const char *name;
+    const skg_json_key *keys;
+    int64_t count;
+} skg_json_table;
+
+/* What may stand in any object besides. */
+extern const skg_json_table skg_json_asides;
 
 typedef struct {
     const skg_json_node *node;
-    const skg_json_key *keys;
-    int64_t count;
+    const skg_json_table *table;
 } skg_json_object;
 
 /* The node has to be an object with these keys only, each once. An unknown key is a fault with the nearest known name;
  * one of SKG_KEY_NOT_YET is SKG_ERR_UNSUPPORTED. Every object may have a comment and a colour, which are ignored. */
-skg_status skg_json_read_object(const skg_json_node *node, const skg_json_key *keys, int64_t count,
+skg_status skg_json_read_object(const skg_json_node *node, const skg_json_table *table,
                                 skg_json_object *object);
 
 /* The member with this name, or another spelling of it; its value is NULL where there is none. */

@@ -1,6 +1,7 @@
 /* The key Beam of a source: energies, a file of them, or a tube. */
 #include "core/context.h"
 #include "core/text.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
@@ -9,41 +10,12 @@
 
 static const char *const example = "[{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]";
 
-static const skg_json_key channel_keys[] = {
-    {"Energy", NULL, SKG_KEY_READ},
-    {"Unit", NULL, SKG_KEY_READ},
-    {"PhotonCount", NULL, SKG_KEY_READ},
-};
-
-/* A tube or a file of energies. */
-static const skg_json_key spectrum_keys[] = {
-    {"TextFile", NULL, SKG_KEY_READ},
-    {"GateMacro", NULL, SKG_KEY_READ},
-    {"Unit", NULL, SKG_KEY_READ},
-    {"kVp", NULL, SKG_KEY_READ},
-    {"PeakKiloVoltage", "kVp", SKG_KEY_READ},
-    {"TubeAngle", NULL, SKG_KEY_READ},
-    {"Anode", NULL, SKG_KEY_READ},
-    {"Model", NULL, SKG_KEY_READ},
-    {"mAs", NULL, SKG_KEY_READ},
-    {"ExposureTime", NULL, SKG_KEY_READ},
-    {"X-ray tube current", NULL, SKG_KEY_READ},
-    {"Current", "X-ray tube current", SKG_KEY_READ},
-    {"Filter", NULL, SKG_KEY_READ},
-    {"Filtration", "Filter", SKG_KEY_READ},
-    {"Filters", "Filter", SKG_KEY_READ},
-    {"MaxNumberOfEnergyBins", NULL, SKG_KEY_READ},
-    {"Output", NULL, SKG_KEY_READ},
-    {"Bins", NULL, SKG_KEY_READ},
-    {"At1m", NULL, SKG_KEY_READ},
-};
-
 static skg_status read_channel(const skg_json_node *node, double *energy_kev, double *photons) {
     skg_json_object channel;
     skg_json_node energy_node, unit_node, photons_node;
     double energy = 0, kev = 1;
     const char *unit = NULL;
-    SKG_TRY(skg_json_read_object(node, channel_keys, sizeof channel_keys / sizeof *channel_keys, &channel));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_channel, &channel));
     SKG_TRY(skg_json_need(&channel, "Energy", "60", &energy_node));
     SKG_TRY(skg_json_need(&channel, "Unit", "\"keV\"", &unit_node));
     SKG_TRY(skg_json_need(&channel, "PhotonCount", "1000", &photons_node));
@@ -276,7 +248,7 @@ cleanup:
 skg_status skg_setup_read_beam(skg_setup_reader *reader, const skg_json_node *node) {
     if (!json_is_object(node->value)) return read_channels(reader->setup, node);
     skg_json_object beam;
-    SKG_TRY(skg_json_read_object(node, spectrum_keys, sizeof spectrum_keys / sizeof *spectrum_keys, &beam));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_beam, &beam));
     skg_json_node file = skg_json_member(&beam, "TextFile"), macro = skg_json_member(&beam, "GateMacro");
     skg_json_node kvp = skg_json_member(&beam, "kVp"), bins = skg_json_member(&beam, "Bins");
     int32_t given = (file.value != NULL) + (macro.value != NULL) + (kvp.value != NULL) + (bins.value != NULL);

@@ -1,16 +1,10 @@
 /* Blur and noise power of a detector: LSF, PSF, MTF and DQE, and the Depths of a scintillator. */
 #include "core/files.h"
 #include "core/maths.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
-
-static const skg_json_key depth_keys[] = {
-    {"To", NULL, SKG_KEY_READ},
-    {"LSF", NULL, SKG_KEY_READ},
-    {"PSF", NULL, SKG_KEY_READ},
-    {"MTF", NULL, SKG_KEY_READ},
-};
 
 static const char lines_example[] = "[0.1, 0.8, 0.1]";
 static const char rows_example[] = "[[0, 0.1, 0], [0.1, 0.6, 0.1], [0, 0.1, 0]]";
@@ -162,7 +156,7 @@ skg_status skg_setup_read_depths(skg_setup_reader *reader, const skg_json_node *
         const skg_json_node element = skg_json_element(node, d);
         skg_json_object object;
         skg_json_node to;
-        SKG_TRY(skg_json_read_object(&element, depth_keys, sizeof depth_keys / sizeof *depth_keys, &object));
+        SKG_TRY(skg_json_read_object(&element, &skg_keys_depth, &object));
         SKG_TRY(skg_json_need(&object, "To", "0.5", &to));
         SKG_TRY(skg_json_number(&to, &setup->depth_to[d]));
         SKG_TRY(read_any(reader, &object, &setup->depth_blurs[d]));

@@ -1,9 +1,8 @@
 /* The key Fit of the section Breathing. */
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <string.h>
-
-static const skg_json_key fit_keys[] = {{"Parameters", NULL, SKG_KEY_READ}, {"Bounds", NULL, SKG_KEY_READ}};
 
 static skg_status read_parameters(const skg_json_node *node, skg_body_fit_section *fit) {
     static const char example[] = "[\"tendon\", \"liver-beta\"]";
@@ -38,7 +37,7 @@ skg_status skg_setup_read_body_fit(const skg_json_node *node, skg_body_fit_secti
     skg_json_object object;
     const char *name;
     json_t *value;
-    SKG_TRY(skg_json_read_object(node, fit_keys, sizeof fit_keys / sizeof *fit_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_body_fit, &object));
     const skg_json_node parameters = skg_json_member(&object, "Parameters"),
                         bounds = skg_json_member(&object, "Bounds");
     if (parameters.value) SKG_TRY(read_parameters(&parameters, fit));

@@ -1,32 +1,11 @@
 /* The section Breathing of a scene file. */
 #include "breath/signal.h"
 #include "core/maths.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
 #include <math.h>
-
-static const skg_json_key breathing_keys[] = {
-    {"Pattern", NULL, SKG_KEY_READ},       {"Waveform", NULL, SKG_KEY_READ},
-    {"Exponent", NULL, SKG_KEY_READ},      {"Period", NULL, SKG_KEY_READ},
-    {"StartPhase", NULL, SKG_KEY_READ},    {"ExpirationRatio", NULL, SKG_KEY_READ},
-    {"Thoracic", NULL, SKG_KEY_READ},      {"Diaphragmatic", NULL, SKG_KEY_READ},
-    {"ThoracicLag", NULL, SKG_KEY_READ},   {"Reference", NULL, SKG_KEY_READ},
-    {"Tendon", NULL, SKG_KEY_READ},        {"TendonPlane", NULL, SKG_KEY_READ},
-    {"Hysteresis", NULL, SKG_KEY_READ},    {"Relaxation", NULL, SKG_KEY_READ},
-    {"LungDensity", NULL, SKG_KEY_READ},   {"Organs", NULL, SKG_KEY_READ},
-    {"Events", NULL, SKG_KEY_READ},        {"RibAxes", NULL, SKG_KEY_READ},
-    {"DiaphragmRibs", NULL, SKG_KEY_READ}, {"DiaphragmLiver", NULL, SKG_KEY_READ},
-    {"Coupling", NULL, SKG_KEY_READ},      {"Fit", NULL, SKG_KEY_READ},
-    {"Domes", NULL, SKG_KEY_READ},         {"MuscleLength", NULL, SKG_KEY_READ},
-    {"RibAngles", NULL, SKG_KEY_READ},     {"LiverFollows", NULL, SKG_KEY_READ},
-    {"LiverHeld", NULL, SKG_KEY_READ},     {"Signal", NULL, SKG_KEY_READ},
-};
-
-static const skg_json_key event_keys[] = {
-    {"Hold", NULL, SKG_KEY_READ},     {"Weight", NULL, SKG_KEY_READ}, {"Needle", NULL, SKG_KEY_READ},
-    {"Contrast", NULL, SKG_KEY_READ}, {"Share", NULL, SKG_KEY_READ},
-};
 
 static const char *const points_example = "[[0, 0], [2.5, 110]]: seconds, value";
 
@@ -109,7 +88,8 @@ static skg_status read_anatomy(const skg_json_object *object, skg_body_options *
         double *value, low, high;
     } fraction[] = {{"MuscleLength", &body->muscle_length, 0.1, 1},
                     {"LiverFollows", &body->liver_follows, 0, 2},
-                    {"LiverHeld", &body->liver_held, 0, 1}};
+                    {"LiverHeld", &body->liver_held, 0, 1},
+                    {"Hysteresis", &body->hysteresis, 0, 1}};
     double domes[3] = {0}, angles[2] = {0};
     const skg_json_node dome = skg_json_member(object, "Domes"), rib = skg_json_member(object, "RibAngles");
     for (size_t f = 0; f < sizeof fraction / sizeof *fraction; f++) {
@@ -171,7 +151,7 @@ static skg_status read_body(skg_breathing_section *section, const skg_json_objec
     body->coupling = (int32_t)coupled;
     section->lung_density = 1;
     if (density.value) SKG_TRY(skg_json_flag(&density, &section->lung_density));
-    return read_number(object, "Hysteresis", &body->hysteresis);
+    return SKG_OK;
 }
 
 static skg_status read_curve(const skg_json_node *node, double lowest, double highest, skg_curve *curve) {
@@ -200,7 +180,7 @@ static skg_status read_curve(const skg_json_node *node, double lowest, double hi
 static skg_status read_event(skg_setup_reader *reader, const skg_json_node *node) {
     skg_breathing_section *section = &reader->setup->breathing;
     skg_json_object event;
-    SKG_TRY(skg_json_read_object(node, event_keys, sizeof event_keys / sizeof *event_keys, &event));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_event, &event));
     skg_json_node hold = skg_json_member(&event, "Hold"), weight = skg_json_member(&event, "Weight");
     skg_json_node needle = skg_json_member(&event, "Needle"), contrast = skg_json_member(&event, "Contrast");
     skg_json_node share = skg_json_member(&event, "Share");
@@ -267,8 +247,7 @@ skg_status skg_setup_read_breathing(skg_setup_reader *reader, const skg_json_nod
     section->lung_density = 1;
     if (!node->value || json_is_null(node->value)) return SKG_OK;
     section->is_given = 1;
-    SKG_TRY(
-        skg_json_read_object(node, breathing_keys, sizeof breathing_keys / sizeof *breathing_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_breathing, &object));
     SKG_TRY(read_waveform(section, &object));
     SKG_TRY(read_body(section, &object));
     skg_json_node organs = skg_json_member(&object, "Organs"), events = skg_json_member(&object, "Events");

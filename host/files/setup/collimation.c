@@ -1,16 +1,10 @@
 /* The key Collimation. */
 #include "geometry/optics.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 static const char *const rectangle_example = "[[-50, 50], [-40, 60], \"mm\"]";
 static const char *const distance_example = "[300, \"mm\"]";
-
-static const skg_json_key keys[] = {
-    {"Rectangle", NULL, SKG_KEY_READ},
-    {"Distance", NULL, SKG_KEY_READ},
-    {"Field", NULL, SKG_KEY_READ},
-    {"Margin", NULL, SKG_KEY_READ},
-};
 
 /* [[left, right], [bottom, top], unit]. Rows of the detector grow downward, and so does the second axis of the field. */
 static skg_status read_rectangle(const skg_json_node *node, skg_collimation *collimation) {
@@ -83,7 +77,7 @@ skg_status skg_setup_read_collimation(skg_setup_reader *reader, const skg_json_n
     if (!node->value) return SKG_OK;
     setup->has_collimation = 1;
     if (json_is_string(node->value)) return skg_json_choice(node, "collimation", names, 1, &choice);
-    SKG_TRY(skg_json_read_object(node, keys, sizeof keys / sizeof *keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_collimation, &object));
     const skg_json_node field = skg_json_member(&object, "Field");
     if (field.value)
         SKG_TRY(read_field(&object, &field, &setup->collimation));

@@ -1,22 +1,10 @@
 /* The section Detector. */
 #include "core/maths.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <math.h>
 #include <string.h>
-
-static const skg_json_key detector_keys[] = {
-    {"Position", NULL, SKG_KEY_READ},     {"UpVector", NULL, SKG_KEY_READ},
-    {"RightVector", NULL, SKG_KEY_READ},  {"NumberOfPixels", NULL, SKG_KEY_READ},
-    {"Size", NULL, SKG_KEY_READ},         {"Spacing", NULL, SKG_KEY_READ},
-    {"Oversampling", NULL, SKG_KEY_READ}, {"EnergyResponse", NULL, SKG_KEY_READ},
-    {"Scintillator", NULL, SKG_KEY_READ}, {"LSF", NULL, SKG_KEY_READ},
-    {"PSF", NULL, SKG_KEY_READ},          {"GreyValues", NULL, SKG_KEY_READ},
-    {"Grid", NULL, SKG_KEY_READ},         {"MTF", NULL, SKG_KEY_READ},
-    {"DQE", NULL, SKG_KEY_READ},          {"ColumnStep", NULL, SKG_KEY_READ},
-    {"Binning", NULL, SKG_KEY_READ},      {"BinningNoise", NULL, SKG_KEY_READ},
-    {"RowStep", NULL, SKG_KEY_READ},
-};
 
 /* Size and Spacing may both be given if they agree; if they do not, that is a fault, and Spacing holds. */
 static skg_status compare_size(const skg_json_node *node, const skg_view *view, const double *spacing) {
@@ -106,8 +94,8 @@ static skg_status read_oversampling(const skg_json_object *detector, int32_t *ra
 }
 
 static skg_status read_object(const skg_json_node *node, skg_json_object *detector) {
-    *detector = (skg_json_object){node, detector_keys, sizeof detector_keys / sizeof *detector_keys};
-    return node->value ? skg_json_read_object(node, detector_keys, detector->count, detector) : SKG_OK;
+    *detector = (skg_json_object){node, &skg_keys_detector};
+    return node->value ? skg_json_read_object(node, &skg_keys_detector, detector) : SKG_OK;
 }
 
 skg_status skg_setup_is_fitted(const skg_json_node *node, int32_t *fitted) {

@@ -2,23 +2,12 @@
 #include "beam/bowtie.h"
 #include "beam/grid.h"
 #include "core/files.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <string.h>
 
 static const char *const profile_example = "[[-20, 30], [0, 3], [20, 30]], in degrees and mm";
-
-static const skg_json_key bowtie_keys[] = {
-    {"Material", NULL, SKG_KEY_READ}, {"Density", NULL, SKG_KEY_READ},   {"Profile", NULL, SKG_KEY_READ},
-    {"Unit", NULL, SKG_KEY_READ},     {"Direction", NULL, SKG_KEY_READ},
-};
-
-static const skg_json_key grid_keys[] = {
-    {"Ratio", NULL, SKG_KEY_READ},          {"LinesPerCm", NULL, SKG_KEY_READ},
-    {"Interspace", NULL, SKG_KEY_READ},     {"FocusDistance", NULL, SKG_KEY_READ},
-    {"StripThickness", NULL, SKG_KEY_READ}, {"Strip", NULL, SKG_KEY_READ},
-    {"Direction", NULL, SKG_KEY_READ},
-};
 
 /* [[degrees, mm], ...] or a file of two columns. */
 static skg_status read_profile(skg_setup_reader *reader, const skg_json_node *node, double mm,
@@ -63,7 +52,7 @@ skg_status skg_setup_read_bowtie(skg_setup_reader *reader, const skg_json_node *
     double mm = 1;
     skg_bowtie_init(bowtie);
     if (!node->value) return SKG_OK;
-    SKG_TRY(skg_json_read_object(node, bowtie_keys, sizeof bowtie_keys / sizeof *bowtie_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_bowtie, &object));
     SKG_TRY(skg_json_need(&object, "Material", "\"Al\"", &material));
     SKG_TRY(skg_json_need(&object, "Profile", profile_example, &profile));
     const skg_json_node density = skg_json_member(&object, "Density"),
@@ -103,7 +92,7 @@ skg_status skg_setup_read_grid(skg_setup_reader *reader, const skg_json_object *
     skg_json_object object;
     skg_grid_init(grid);
     if (!node.value) return SKG_OK;
-    SKG_TRY(skg_json_read_object(&node, grid_keys, sizeof grid_keys / sizeof *grid_keys, &object));
+    SKG_TRY(skg_json_read_object(&node, &skg_keys_grid, &object));
     SKG_TRY(read_grid_numbers(&object, grid));
     const skg_json_node interspace = skg_json_member(&object, "Interspace");
     const skg_json_node strip = skg_json_member(&object, "Strip");

@@ -1,13 +1,9 @@
 /* The key Noise. */
 #include "core/text.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
-
-static const skg_json_key noise_keys[] = {
-    {"Quantum", NULL, SKG_KEY_READ}, {"Electronic", NULL, SKG_KEY_READ}, {"Step", NULL, SKG_KEY_READ},
-    {"Swank", NULL, SKG_KEY_READ},   {"Seed", NULL, SKG_KEY_READ},
-};
 
 /* An energy with its unit; 0 where it is absent. */
 static skg_status read_energy(const skg_json_object *noise, const char *name, double *kev) {
@@ -38,7 +34,7 @@ skg_status skg_setup_read_noise(skg_setup_reader *reader, const skg_json_node *n
     noise->swank = 1;
     if (!node->value) return SKG_OK;
     if (json_is_boolean(node->value)) return skg_json_flag(node, &noise->quantum);
-    SKG_TRY(skg_json_read_object(node, noise_keys, sizeof noise_keys / sizeof *noise_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_noise, &object));
     skg_json_node quantum = skg_json_member(&object, "Quantum"), swank = skg_json_member(&object, "Swank"),
                   seed = skg_json_member(&object, "Seed");
     noise->quantum = 1;

@@ -2,20 +2,11 @@
 #include "setup/types.h"
 
 #include "core/maths.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <math.h>
 #include <string.h>
-
-static const skg_json_key organ_keys[] = {
-    {"As", NULL, SKG_KEY_READ},         {"Kind", NULL, SKG_KEY_READ},  {"Tissue", NULL, SKG_KEY_READ},
-    {"Links", NULL, SKG_KEY_READ},      {"Axis", NULL, SKG_KEY_READ},  {"Angle", NULL, SKG_KEY_READ},
-    {"Centre", NULL, SKG_KEY_READ},     {"Gamma", NULL, SKG_KEY_READ}, {"Lambda", NULL, SKG_KEY_READ},
-    {"Center", "Centre", SKG_KEY_READ},
-};
-
-static const skg_json_key link_keys[] = {
-    {"To", NULL, SKG_KEY_READ}, {"Distance", NULL, SKG_KEY_READ}, {"RigidDistance", NULL, SKG_KEY_READ}};
 
 static const char *const link_example = "[{\"To\": \"rib\", \"Distance\": [15, \"mm\"]}]";
 
@@ -52,7 +43,7 @@ static skg_status read_link(const skg_json_node *node, skg_organ_link *link, cha
     skg_json_object object;
     skg_json_node name, distance;
     const char *label = NULL;
-    SKG_TRY(skg_json_read_object(node, link_keys, sizeof link_keys / sizeof *link_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_link, &object));
     SKG_TRY(skg_json_need(&object, "To", "\"rib\"", &name));
     SKG_TRY(skg_json_need(&object, "Distance", "[15, \"mm\"]", &distance));
     skg_json_node rigid = skg_json_member(&object, "RigidDistance");
@@ -93,7 +84,7 @@ static skg_status read_organ(const skg_json_node *node, struct skg_breathing_org
     double limits[3] = {0, 0, 0};
     const char *as = NULL;
     int64_t kind = SKG_ORGAN_BY_LABEL;
-    SKG_TRY(skg_json_read_object(node, organ_keys, sizeof organ_keys / sizeof *organ_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_organ, &object));
     skg_json_node alias = skg_json_member(&object, "As"), tissue = skg_json_member(&object, "Tissue");
     skg_json_node named = skg_json_member(&object, "Kind"), links = skg_json_member(&object, "Links");
     if (alias.value) SKG_TRY(skg_json_text(&alias, &as));

@@ -3,29 +3,12 @@
 #include "core/files.h"
 #include "core/maths.h"
 #include "core/text.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <string.h>
-
-static const skg_json_key grey_keys[] = {
-    {"Dark", NULL, SKG_KEY_READ},       {"Full", NULL, SKG_KEY_READ},   {"PerJoule", NULL, SKG_KEY_READ},
-    {"Curve", NULL, SKG_KEY_READ},      {"Bits", NULL, SKG_KEY_READ},   {"SNR", NULL, SKG_KEY_READ},
-    {"NoiseCurve", NULL, SKG_KEY_READ}, {"Frames", NULL, SKG_KEY_READ}, {"BadPixels", NULL, SKG_KEY_READ},
-    {"Seed", NULL, SKG_KEY_READ},
-};
-static const skg_json_key map_keys[] = {
-    {"Path", NULL, SKG_KEY_READ},
-    {"Format", NULL, SKG_KEY_READ},
-    {"ByteOrder", NULL, SKG_KEY_READ},
-    {"Header", NULL, SKG_KEY_READ},
-};
-static const skg_json_key fields_keys[] = {
-    {"Number", NULL, SKG_KEY_READ},
-    {"Frames", NULL, SKG_KEY_READ},
-    {"Noise", NULL, SKG_KEY_READ},
-};
 
 skg_status skg_setup_read_rows(const skg_json_node *node, int64_t width, const char *example, int64_t *count,
                                double **rows) {
@@ -117,7 +100,7 @@ static skg_status read_map(skg_setup_reader *reader, const skg_json_node *node, 
     const char *name = NULL, *path = NULL;
     skg_json_object map;
     skg_json_node file;
-    SKG_TRY(skg_json_read_object(node, map_keys, sizeof map_keys / sizeof *map_keys, &map));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_bad_pixels, &map));
     SKG_TRY(skg_json_need(&map, "Path", "\"bad.raw\"", &file));
     const skg_json_node kind = skg_json_member(&map, "Format"), bytes = skg_json_member(&map, "ByteOrder");
     if (kind.value) SKG_TRY(skg_json_choice(&kind, "format of pixels", formats, 6, &format));
@@ -139,7 +122,7 @@ skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_o
     int64_t bits = 16;
     skg_readout_init(r);
     if (!node.value) return SKG_OK;
-    SKG_TRY(skg_json_read_object(&node, grey_keys, sizeof grey_keys / sizeof *grey_keys, &object));
+    SKG_TRY(skg_json_read_object(&node, &skg_keys_grey_values, &object));
     grey->is_given = 1;
     SKG_TRY(read_number(&object, "Dark", &r->dark));
     SKG_TRY(read_number(&object, "Full", &r->full));
@@ -171,7 +154,7 @@ static skg_status read_fields(const skg_json_object *scan, const char *name, int
     skg_json_object fields;
     *count = 1, *frames = 1, *noise = 1;
     if (!node.value) return SKG_OK;
-    SKG_TRY(skg_json_read_object(&node, fields_keys, sizeof fields_keys / sizeof *fields_keys, &fields));
+    SKG_TRY(skg_json_read_object(&node, &skg_keys_fields, &fields));
     const skg_json_node noisy = skg_json_member(&fields, "Noise");
     SKG_TRY(read_count(&fields, "Number", 0, count));
     SKG_TRY(read_count(&fields, "Frames", 1, frames));

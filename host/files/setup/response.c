@@ -1,27 +1,10 @@
 /* What the detector makes of a photon: Energy response and Scintillator. */
 #include "core/text.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
 #include <string.h>
-
-static const skg_json_key response_keys[] = {
-    {"File", NULL, SKG_KEY_READ},    {"LUT", NULL, SKG_KEY_READ},      {"PulseHeights", NULL, SKG_KEY_READ},
-    {"Unit", NULL, SKG_KEY_READ},    {"Energy", "Unit", SKG_KEY_READ}, /* files in use have this */
-    {"Meaning", NULL, SKG_KEY_READ},
-};
-
-static const skg_json_key pulse_keys[] = {
-    {"Heights", NULL, SKG_KEY_READ},
-    {"Rows", NULL, SKG_KEY_READ},
-};
-
-static const skg_json_key scintillator_keys[] = {
-    {"Material", NULL, SKG_KEY_READ},   {"Thickness", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
-    {"Density", NULL, SKG_KEY_READ},    {"Packing", NULL, SKG_KEY_READ},   {"Oblique", NULL, SKG_KEY_READ},
-    {"Escape", NULL, SKG_KEY_READ},     {"DQE", NULL, SKG_KEY_READ},       {"Depths", NULL, SKG_KEY_READ},
-    {"Deposition", NULL, SKG_KEY_READ},
-};
 
 /* The unit of energies, and what these mean for noise. */
 typedef struct {
@@ -93,7 +76,7 @@ static skg_status read_pulses(skg_setup_reader *reader, const skg_json_node *nod
     if (form->meaning != SKG_RESPONSE_MEANING_SIGNAL)
         return skg_json_fail(node, SKG_ERR_FORMAT,
                              "says how often a pulse has each height, so there is no Meaning");
-    SKG_TRY(skg_json_read_object(node, pulse_keys, sizeof pulse_keys / sizeof *pulse_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_pulses, &object));
     SKG_TRY(skg_json_need(&object, "Heights", "[10, 20, 30]", &height_node));
     SKG_TRY(skg_json_need(&object, "Rows", "[[15, 0.1, 0.8, 0], [30, 0, 0.1, 0.7]]", &row_node));
     SKG_TRY(skg_json_array(&height_node, "[10, 20, 30]", &height_count));
@@ -125,8 +108,7 @@ cleanup:
 static skg_status read_response(skg_setup_reader *reader, const skg_json_node *node) {
     skg_json_object response;
     response_form form;
-    SKG_TRY(
-        skg_json_read_object(node, response_keys, sizeof response_keys / sizeof *response_keys, &response));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_response, &response));
     SKG_TRY(read_form(&response, &form));
     skg_json_node file = skg_json_member(&response, "File"), rows = skg_json_member(&response, "LUT");
     skg_json_node pulses = skg_json_member(&response, "PulseHeights");
@@ -222,8 +204,7 @@ static skg_status read_scintillator(skg_setup_reader *reader, const skg_json_nod
     skg_json_object object;
     skg_json_node material_node;
     skg_material *material = NULL;
-    SKG_TRY(skg_json_read_object(node, scintillator_keys,
-                                 sizeof scintillator_keys / sizeof *scintillator_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_scintillator, &object));
     SKG_TRY(skg_json_need(&object, "Material", "\"CsI\"", &material_node));
     skg_json_node density = skg_json_member(&object, "Density");
     SKG_TRY(skg_setup_read_material(reader, &material_node, &density, "scintillator", &material));

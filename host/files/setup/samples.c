@@ -1,48 +1,12 @@
 /* The section Samples. */
 #include "core/maths.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-
-static const skg_json_key sample_keys[] = {
-    {"Label", NULL, SKG_KEY_READ},
-    {"Path", NULL, SKG_KEY_READ},
-    {"Unit", NULL, SKG_KEY_READ},
-    {"Group", NULL, SKG_KEY_READ},
-    {"Cube", NULL, SKG_KEY_READ},
-    {"Cuboid", NULL, SKG_KEY_READ},
-    {"Parallelepiped", "Cuboid", SKG_KEY_READ},
-    {"Cylinder", NULL, SKG_KEY_READ},
-    {"Sphere", NULL, SKG_KEY_READ},
-    {"StepWedge", NULL, SKG_KEY_READ},
-    {"Material", NULL, SKG_KEY_READ},
-    {"Density", NULL, SKG_KEY_READ},
-    {"Type", NULL, SKG_KEY_READ},
-    {"Parent", NULL, SKG_KEY_READ},
-    {"Transform", NULL, SKG_KEY_READ},
-    {"Poses", NULL, SKG_KEY_READ},
-    {"MoveToCentre", NULL, SKG_KEY_READ},
-    {"MoveToCenter", "MoveToCentre", SKG_KEY_READ},
-    {"FlipNormals", NULL, SKG_KEY_READ},
-    {"FlipNormal", "FlipNormals", SKG_KEY_READ},
-    {"FlipNormalVectors", "FlipNormals", SKG_KEY_READ},
-    {"InvertNormal", "FlipNormals", SKG_KEY_READ},
-    {"InvertNormals", "FlipNormals", SKG_KEY_READ},
-    {"InvertNormalVectors", "FlipNormals", SKG_KEY_READ},
-    {"Opacity", NULL, SKG_KEY_IGNORED},
-    {"AmbientColour", NULL, SKG_KEY_IGNORED},
-    {"DiffuseColour", NULL, SKG_KEY_IGNORED},
-    {"SpecularColour", NULL, SKG_KEY_IGNORED},
-    {"AmbientColor", NULL, SKG_KEY_IGNORED},
-    {"DiffuseColor", NULL, SKG_KEY_IGNORED},
-    {"SpecularColor", NULL, SKG_KEY_IGNORED},
-    {"Shininess", NULL, SKG_KEY_IGNORED},
-    {"Priority", NULL, SKG_KEY_READ},
-    {"Through", NULL, SKG_KEY_READ},
-};
 
 /* What the second pass needs to know of a sample. */
 typedef struct {
@@ -59,7 +23,7 @@ typedef struct {
 } sample_list;
 
 static skg_status read_sample_object(const skg_json_node *node, skg_json_object *sample) {
-    return skg_json_read_object(node, sample_keys, sizeof sample_keys / sizeof *sample_keys, sample);
+    return skg_json_read_object(node, &skg_keys_sample, sample);
 }
 
 static skg_status read_flag(const skg_json_object *object, const char *name, int32_t *flag) {

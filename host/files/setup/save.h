@@ -10,6 +10,6 @@
 void skg_setup_rename_files(const skg_setup *setup, const char *path, json_t *value);
 
 /* Writes a text as a scene file, which appears whole or not at all. */
-skg_status skg_setup_write_text(const json_t *scene, const char *path);
+skg_status skg_setup_write_text(json_t *scene, const char *path);
 
 #endif

@@ -1,5 +1,6 @@
 /* The section Scan. */
 #include "core/maths.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <math.h>
@@ -10,46 +11,6 @@
 enum { SAMPLED_VIEWS = 16 };
 
 static const double degree = SKG_PI / 180;
-
-static const skg_json_key scan_keys[] = {
-    {"NumberOfProjections", NULL, SKG_KEY_READ},
-    {"AngleStep", NULL, SKG_KEY_READ},
-    {"StartAngle", NULL, SKG_KEY_READ},
-    {"FinalAngle", NULL, SKG_KEY_READ},
-    {"IncludeLastAngle", NULL, SKG_KEY_READ},
-    {"IncludeFinalAngle", "IncludeLastAngle", SKG_KEY_READ},
-    {"Short", NULL, SKG_KEY_READ},
-    {"Pitch", NULL, SKG_KEY_READ},
-    {"SourceTravel", NULL, SKG_KEY_READ},
-    {"FixedDetector", NULL, SKG_KEY_READ},
-    {"Table", NULL, SKG_KEY_READ},
-    {"KnownTable", NULL, SKG_KEY_READ},
-    {"Intensity", NULL, SKG_KEY_READ},
-    {"Flats", NULL, SKG_KEY_READ},
-    {"Darks", NULL, SKG_KEY_READ},
-    {"Layout", NULL, SKG_KEY_READ},
-    {"DetectorOffset", NULL, SKG_KEY_READ},
-    {"DetectorTilt", NULL, SKG_KEY_READ},
-    {"DetectorSkew", NULL, SKG_KEY_READ},
-    {"Drift", NULL, SKG_KEY_READ},
-    {"Jitter", NULL, SKG_KEY_READ},
-    {"StartTime", NULL, SKG_KEY_READ},
-    {"Interval", NULL, SKG_KEY_READ},
-    {"Exposure", NULL, SKG_KEY_READ},
-    {"Flat-Field Correction", NULL, SKG_KEY_READ},
-    {"NumberOfWhiteImages", NULL, SKG_KEY_READ},
-    {"CentreOfRotation", NULL, SKG_KEY_READ},
-    {"CenterOfRotation", "CentreOfRotation", SKG_KEY_READ},
-    {"RotationAxis", NULL, SKG_KEY_READ},
-    {"OutFolder", NULL, SKG_KEY_READ},
-    {"GifPath", NULL, SKG_KEY_IGNORED},
-};
-
-static const skg_json_key drift_keys[] = {{"Source", NULL, SKG_KEY_READ}, {"Detector", NULL, SKG_KEY_READ}};
-static const skg_json_key jitter_keys[] = {{"Source", NULL, SKG_KEY_READ},
-                                           {"Detector", NULL, SKG_KEY_READ},
-                                           {"Angle", NULL, SKG_KEY_READ},
-                                           {"Seed", NULL, SKG_KEY_READ}};
 
 /* What the section says about angles, in degrees. */
 typedef struct {
@@ -113,12 +74,12 @@ static skg_status read_errors(const skg_json_object *object, skg_scan_options *s
     const skg_json_node drift = skg_json_member(object, "Drift"), jitter = skg_json_member(object, "Jitter");
     skg_json_object errors;
     if (drift.value) {
-        SKG_TRY(skg_json_read_object(&drift, drift_keys, sizeof drift_keys / sizeof *drift_keys, &errors));
+        SKG_TRY(skg_json_read_object(&drift, &skg_keys_drift, &errors));
         SKG_TRY(read_lengths(&errors, "Source", vector, 3, scan->source_drift_mm));
         SKG_TRY(read_lengths(&errors, "Detector", vector, 3, scan->detector_drift_mm));
     }
     if (!jitter.value) return SKG_OK;
-    SKG_TRY(skg_json_read_object(&jitter, jitter_keys, sizeof jitter_keys / sizeof *jitter_keys, &errors));
+    SKG_TRY(skg_json_read_object(&jitter, &skg_keys_jitter, &errors));
     SKG_TRY(read_lengths(&errors, "Source", length, 1, &scan->source_jitter_mm));
     SKG_TRY(read_lengths(&errors, "Detector", length, 1, &scan->detector_jitter_mm));
     SKG_TRY(read_number(&errors, "Angle", degree, &scan->angle_jitter_rad, NULL));
@@ -291,7 +252,7 @@ skg_status skg_setup_read_scan(skg_setup_reader *reader, const skg_json_node *no
     skg_json_object object;
     angles a = {0};
     skg_scan_options_init(&options);
-    SKG_TRY(skg_json_read_object(node, scan_keys, sizeof scan_keys / sizeof *scan_keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_scan, &object));
     SKG_TRY(read_rotation(&object, &reader->setup->view, &options));
     SKG_TRY(read_angles(&object, &a, &options));
     SKG_TRY(read_lengths(&object, "Pitch", "[20, \"mm\"]", 1, &options.pitch_mm));

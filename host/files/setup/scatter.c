@@ -1,15 +1,10 @@
 /* The key Scatter. */
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
 
 enum { HISTORIES_MAX = 1 << 30, PLACES_MAX = 256 };
-
-static const skg_json_key keys[] = {
-    {"Tolerance", NULL, SKG_KEY_READ}, {"Histories", NULL, SKG_KEY_READ},
-    {"Seed", NULL, SKG_KEY_READ},      {"Voxel", NULL, SKG_KEY_READ},
-    {"Detector", NULL, SKG_KEY_READ},  {"Fluorescence", NULL, SKG_KEY_READ},
-};
 
 static skg_status read_tolerance(const skg_json_node *node, skg_scatter *scatter) {
     double tolerance = 0;
@@ -61,7 +56,7 @@ static skg_status read_voxel(const skg_json_node *node, skg_scatter *scatter) {
 
 static skg_status read_object(const skg_json_node *node, skg_scatter *scatter) {
     skg_json_object object;
-    SKG_TRY(skg_json_read_object(node, keys, sizeof keys / sizeof *keys, &object));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_scatter, &object));
     const skg_json_node seed = skg_json_member(&object, "Seed"), voxel = skg_json_member(&object, "Voxel"),
                         places = skg_json_member(&object, "Detector"),
                         glow = skg_json_member(&object, "Fluorescence");

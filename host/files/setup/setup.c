@@ -2,35 +2,13 @@
 #include "core/context.h"
 #include "core/text.h"
 #include "ctsimu/ctsimu.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 #include "json/json_file.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <string.h>
-
-static const skg_json_key top_keys[] = {
-    {"File format version", NULL, SKG_KEY_READ},
-    {"WindowSize", NULL, SKG_KEY_IGNORED},
-    {"$schema", NULL, SKG_KEY_IGNORED},
-    {"Source", NULL, SKG_KEY_READ},
-    {"Detector", NULL, SKG_KEY_READ},
-    {"Samples", NULL, SKG_KEY_READ},
-    {"Scan", NULL, SKG_KEY_READ},
-    {"Precision", NULL, SKG_KEY_READ},
-    {"Tolerance", NULL, SKG_KEY_READ},
-    {"SceneGraph", NULL, SKG_KEY_READ},
-    {"Breathing", NULL, SKG_KEY_READ},
-    {"Noise", NULL, SKG_KEY_READ},
-    {"Falloff", NULL, SKG_KEY_READ},
-    {"Collimation", NULL, SKG_KEY_READ},
-    {"Scatter", NULL, SKG_KEY_READ},
-    {"BandWeight", NULL, SKG_KEY_READ},
-    {"World", NULL, SKG_KEY_READ},
-    {"WorldScatter", NULL, SKG_KEY_READ},
-    {"Repair", NULL, SKG_KEY_READ},
-    {"Clip", NULL, SKG_KEY_READ},
-};
 
 /* The version is [1, 0, 0]. Any of version 1 is read. */
 static skg_status read_version(const skg_json_object *top) {
@@ -119,13 +97,12 @@ static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
 
 /* A material, {"Material": ..., "Density": ...}, or "Vacuum". */
 static skg_status read_world(skg_setup_reader *reader, const skg_json_object *top) {
-    static const skg_json_key keys[] = {{"Material", NULL, SKG_KEY_READ}, {"Density", NULL, SKG_KEY_READ}};
     skg_json_node node = skg_json_member(top, "World"), density = {0}, material = node;
     skg_json_object world;
     if (!node.value) return SKG_OK;
     if (json_is_string(node.value) && skg_same_name(json_string_value(node.value), "vacuum")) return SKG_OK;
     if (json_is_object(node.value)) {
-        SKG_TRY(skg_json_read_object(&node, keys, sizeof keys / sizeof *keys, &world));
+        SKG_TRY(skg_json_read_object(&node, &skg_keys_world, &world));
         SKG_TRY(skg_json_need(&world, "Material", "\"Air\"", &material));
         density = skg_json_member(&world, "Density");
     }
@@ -154,7 +131,7 @@ static skg_status read_all(skg_setup_reader *reader) {
     skg_json_object top;
     int32_t fitted = 0;
     skg_view_init(&reader->setup->view);
-    SKG_TRY(skg_json_read_object(&root, top_keys, sizeof top_keys / sizeof *top_keys, &top));
+    SKG_TRY(skg_json_read_object(&root, &skg_keys_scene, &top));
     SKG_TRY(need(reader, &top, "Source", "Detector", "{ ... }", &source));
     detector = skg_json_member(&top, "Detector");
     const skg_json_node graph = skg_json_member(&top, "SceneGraph");

@@ -1,6 +1,7 @@
 /* Shapes of a scene file that are made and not read. */
 #include "core/context.h"
 #include "core/maths.h"
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <inttypes.h>
@@ -120,19 +121,13 @@ static skg_status load(skg_setup_reader *reader, const skg_json_object *sample, 
     return remember(cache, path, group, unit_mm, flip, *mesh);
 }
 
-static const skg_json_key wedge_keys[] = {
-    {"NumberOfSteps", NULL, SKG_KEY_READ},   {"TotalLength", NULL, SKG_KEY_READ},
-    {"Width", NULL, SKG_KEY_READ},           {"FirstStepHeight", NULL, SKG_KEY_READ},
-    {"OtherStepHeight", NULL, SKG_KEY_READ}, {"Unit", NULL, SKG_KEY_READ},
-};
-
 static skg_status make_step_wedge(const skg_json_node *node, skg_mesh **mesh) {
     static const char *const names[] = {"TotalLength", "Width", "FirstStepHeight", "OtherStepHeight"};
     skg_json_object wedge;
     skg_json_node member;
     int64_t steps = 0;
     double length[4], mm = 1;
-    SKG_TRY(skg_json_read_object(node, wedge_keys, sizeof wedge_keys / sizeof *wedge_keys, &wedge));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_step_wedge, &wedge));
     SKG_TRY(skg_json_need(&wedge, "NumberOfSteps", "5", &member));
     SKG_TRY(skg_json_integer(&member, 1, SECTORS_MAX, &steps));
     SKG_TRY(skg_json_need(&wedge, "Unit", "\"mm\"", &member));

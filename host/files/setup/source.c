@@ -1,14 +1,6 @@
 /* The section Source. */
+#include "setup/keys.h"
 #include "setup/sections.h"
-
-static const skg_json_key source_keys[] = {
-    {"Position", NULL, SKG_KEY_READ}, {"Direction", NULL, SKG_KEY_READ},
-    {"Shape", NULL, SKG_KEY_READ},    {"Samples", NULL, SKG_KEY_READ},
-    {"Grid", NULL, SKG_KEY_READ},     {"SampleTolerance", NULL, SKG_KEY_READ},
-    {"Axis", NULL, SKG_KEY_READ},     {"Beam", NULL, SKG_KEY_READ},
-    {"From", NULL, SKG_KEY_READ},     {"Heel", NULL, SKG_KEY_READ},
-    {"Bowtie", NULL, SKG_KEY_READ},   {"LSF", NULL, SKG_KEY_READ},
-};
 
 /* Where only path lengths are wanted, any energy does for a beam that is absent. */
 static const double STAND_IN_KEV = 60;
@@ -25,11 +17,6 @@ static skg_status read_side(skg_setup_reader *reader, const skg_json_node *node)
     return SKG_OK;
 }
 
-static const skg_json_key heel_keys[] = {
-    {"AnodeAngle", NULL, SKG_KEY_READ},
-    {"Direction", NULL, SKG_KEY_READ},
-};
-
 /* Before the beam, whose tube has the angle of the anode. node->value may be NULL. */
 static skg_status read_heel(skg_setup *setup, const skg_json_node *node) {
     skg_json_object heel;
@@ -37,7 +24,7 @@ static skg_status read_heel(skg_setup *setup, const skg_json_node *node) {
     skg_heel_init(&setup->heel);
     setup->heel.angle_deg = 0; /* not given */
     if (!node->value) return SKG_OK;
-    SKG_TRY(skg_json_read_object(node, heel_keys, sizeof heel_keys / sizeof *heel_keys, &heel));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_heel, &heel));
     skg_json_node angle = skg_json_member(&heel, "AnodeAngle");
     if (angle.value) SKG_TRY(skg_json_number(&angle, &setup->heel.angle_deg));
     if (angle.value && !(setup->heel.angle_deg > 0))
@@ -54,7 +41,7 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
     skg_json_object source;
     skg_json_node beam;
     int32_t parallel = 0;
-    SKG_TRY(skg_json_read_object(node, source_keys, sizeof source_keys / sizeof *source_keys, &source));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_source, &source));
     SKG_TRY(skg_setup_read_source_shape(reader, &source, &parallel));
     skg_view_init(&setup->view);
     skg_json_node position = skg_json_member(&source, "Position");

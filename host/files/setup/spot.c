@@ -59,6 +59,18 @@ static skg_status read_sampling(const skg_json_object *source, skg_spot *spot) {
     return SKG_OK;
 }
 
+/* A point has nothing to sample. */
+static skg_status pass_over_sampling(const skg_json_object *source) {
+    static const char *const keys[] = {"Samples", "Grid", "SampleTolerance", "Axis"};
+    for (int k = 0; k < 4; k++) {
+        const skg_json_node node = skg_json_member(source, keys[k]);
+        if (!node.value) continue;
+        SKG_TRY(skg_json_remark(
+            &node, "has no effect: the source is no focal spot; give a Shape such as [\"Disc\", 1, \"mm\"]"));
+    }
+    return SKG_OK;
+}
+
 skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_object *source,
                                        int32_t *parallel) {
     static const char *const shapes[] = {"PointSource", "Point",        "Cone",
@@ -69,6 +81,7 @@ skg_status skg_setup_read_source_shape(skg_setup_reader *reader, const skg_json_
     skg_spot_init(spot);
     *parallel = 0;
     node = skg_json_member(source, "Shape");
+    if (!json_is_array(node.value)) SKG_TRY(pass_over_sampling(source));
     if (!node.value) {
         *parallel = skg_json_member(source, "Direction").value != NULL; /* only a parallel beam has one */
         return SKG_OK;

@@ -118,6 +118,15 @@ SKG_INIT(skg_setup_changes)
  *               places all of them together */
 SKG_API skg_status skg_setup_save(const skg_setup *setup, const skg_setup_changes *changes, const char *path);
 
+/** Gets the JSON Schema (draft 2020-12) of scene files, from the same tables by which they are read: names, forms, limits and meaning of
+ * every key. A file that it refuses is refused when it is read; what depends on several keys, or on other files, only reading tells.
+ *
+ *     text       result: [capacity], ends with a 0; NULL: only its size is wanted
+ *     capacity   bytes of text
+ *     size       result: bytes that text needs
+ *     errors     SKG_ERR_ARGUMENT if capacity does not suffice */
+SKG_API skg_status skg_setup_schema_get(char *text, int64_t capacity, int64_t *size);
+
 /** Frees a set-up and releases what it holds. Plans retain what they need of it. */
 SKG_API void skg_setup_release(skg_setup **setup);
 

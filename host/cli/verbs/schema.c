@@ -1,0 +1,61 @@
+/* The verb `schema`, and the keys of scene files as text. */
+#include "verbs/verbs.h"
+
+#include "common/file.h"
+#include "common/say.h"
+
+#include <jansson.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+
+/* The caller frees it; NULL: the error has been printed. */
+static char *get_schema(int *exit_status) {
+    int64_t size = 0;
+    char *text = NULL;
+    skg_status status = skg_setup_schema_get(NULL, 0, &size);
+    if (status == SKG_OK && !(text = malloc((size_t)size))) {
+        *exit_status = cli_error(CLI_DEVICE, "out of host memory for the schema");
+        return NULL;
+    }
+    if (status == SKG_OK) status = skg_setup_schema_get(text, size, &size);
+    if (status == SKG_OK) return text;
+    free(text);
+    *exit_status = cli_fail(status);
+    return NULL;
+}
+
+int cli_schema(const cli_arguments *arguments) {
+    const char *path = cli_value(arguments, &cli_flag_schema_output);
+    int exit_status = path ? cli_file_check(path) : CLI_DONE;
+    char *text = exit_status == CLI_DONE ? get_schema(&exit_status) : NULL;
+    if (!text) return exit_status;
+    if (path)
+        exit_status = cli_write_file(path, text, strlen(text));
+    else
+        puts(text);
+    if (path && exit_status == CLI_DONE && !cli_is_quiet()) printf("wrote %s\n", path);
+    free(text);
+    return exit_status;
+}
+
+int cli_print_keys(void) {
+    int exit_status = CLI_DONE;
+    char *text = get_schema(&exit_status);
+    if (!text) return exit_status;
+    json_t *schema = json_loads(text, 0, NULL), *table, *key;
+    const char *name, *spelling;
+    free(text);
+    puts(
+        "Keys of scene files, by the object that they stand in; a scene is the object Scene. docs/scene-files.md says more of each.");
+    json_object_foreach(json_object_get(schema, "$defs"), name, table) {
+        json_t *keys = json_object_get(table, "properties");
+        if (keys) printf("\n%s\n", name);
+        json_object_foreach(keys, spelling, key) {
+            const char *says = json_string_value(json_object_get(key, "description"));
+            if (says) printf("  %-22s %s\n", spelling, says);
+        }
+    }
+    json_decref(schema);
+    return CLI_DONE;
+}

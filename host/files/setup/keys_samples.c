@@ -1,0 +1,57 @@
+/* Keys of a sample: its shape, material and pose. */
+#include "setup/keys.h"
+
+static const skg_json_key sample[] = {
+    SKG_KEY("Label", "text", "its name; by default that of the mesh"),
+    SKG_KEY("Path", "text", "a mesh file"),
+    SKG_KEY("Unit", "unit",
+            "of the numbers in the file; by default what the file or its format names, otherwise mm"),
+    SKG_KEY("Group", "text", "only this group or object of the file"),
+    SKG_KEY("Cube", "lengths 1", "[edge, unit]"),
+    SKG_KEY("Cuboid", "lengths 3", "[x, y, z, unit]"),
+    SKG_ALSO("Parallelepiped", "Cuboid"),
+    SKG_KEY("Cylinder", "lengths 3", "[sectors, height, radius, unit], axis along y"),
+    SKG_KEY("Sphere", "lengths 2", "[sectors, radius, unit]"),
+    SKG_KEY("StepWedge", "object StepWedge", "steps along x that rise in z"),
+    SKG_KEY("Material", "material", "of the sample"),
+    SKG_KEY("Density", "number 0<..", "g/cm3, instead of the tables'"),
+    SKG_KEY("Type", "words inner, outer",
+            "inner by default; the one outer sample is the parent of all inner ones without Parent"),
+    SKG_KEY("Parent", "text | null",
+            "label of the sample that this one lies inside and displaces; null: none"),
+    SKG_KEY("Transform", "list transformation",
+            "rotations, translations, scalings and matrices; the last one acts first"),
+    SKG_KEY("Poses", "rows 16", "a matrix, column by column, mm, for each projection of Scan"),
+    SKG_KEY("MoveToCentre", "flag",
+            "true: the centre of the sample's bounds moves to the origin, before Transform"),
+    SKG_ALSO("MoveToCenter", "MoveToCentre"),
+    SKG_KEY("FlipNormals", "flag", "true: turns a leaky mesh inside out"),
+    SKG_ALSO("FlipNormal", "FlipNormals"),
+    SKG_ALSO("FlipNormalVectors", "FlipNormals"),
+    SKG_ALSO("InvertNormal", "FlipNormals"),
+    SKG_ALSO("InvertNormals", "FlipNormals"),
+    SKG_ALSO("InvertNormalVectors", "FlipNormals"),
+    SKG_ASIDE("Opacity"),
+    SKG_ASIDE("AmbientColour"),
+    SKG_ASIDE("DiffuseColour"),
+    SKG_ASIDE("SpecularColour"),
+    SKG_ASIDE("AmbientColor"),
+    SKG_ASIDE("DiffuseColor"),
+    SKG_ASIDE("SpecularColor"),
+    SKG_ASIDE("Shininess"),
+    SKG_KEY("Priority", "integer -2147483648..2147483646",
+            "where samples overlap, the one with the highest displaces the others; 0 by default"),
+    SKG_KEY("Through", "flag",
+            "true: the sample passes through others on purpose, as a needle does, and displaces them"),
+};
+SKG_TABLE(skg_keys_sample, "Sample", sample);
+
+static const skg_json_key step_wedge[] = {
+    SKG_KEY("NumberOfSteps", "integer 1..100000", "steps"),
+    SKG_KEY("TotalLength", "number 0<..", "of all steps, in Unit"),
+    SKG_KEY("Width", "number 0<..", "in Unit"),
+    SKG_KEY("FirstStepHeight", "number 0<..", "in Unit"),
+    SKG_KEY("OtherStepHeight", "number", "by how much each step is higher than the one before, in Unit"),
+    SKG_KEY("Unit", "unit", "of all lengths"),
+};
+SKG_TABLE(skg_keys_step_wedge, "StepWedge", step_wedge);
