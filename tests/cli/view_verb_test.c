@@ -151,7 +151,7 @@ START_TEST(wrong_words) {
     ck_run(2, "view s.json -o v.jpg");
     ck_assert_ptr_nonnull(strstr(complained, "v.jpg"));
     ck_run(2, "view s.json -o v.png --from below");
-    ck_assert_ptr_nonnull(strstr(complained, "neither front, side or top"));
+    ck_assert_ptr_nonnull(strstr(complained, "is no side; give front, side, top"));
     ck_run(2, "view s.json -o v.png --size 10,10");
     ck_assert_ptr_nonnull(strstr(complained, "64 to 8192"));
     ck_run(2, "view s.json -o v.png --phase 0.5 --at 1");

@@ -40,6 +40,7 @@ BASES = [
     scene(Source=dict(SOURCE, Shape=["Disc", 1, "mm"], Beam={"TextFile": "beam.txt", "Unit": "keV"}),
           Samples=[{"Label": "box", "Path": "box.obj", "Unit": "mm", "Material": "Water"}]),
     scene(Source=dict(SOURCE, Beam={"Bins": [[60, 100]]})),
+    {"Source": {"From": "LAO 30", "SOD": [700, "mm"], "SDD": [1000, "mm"], "Beam": SOURCE["Beam"]}, "Samples": [CUBE]},
     scene(Breathing={"Organs": {"cube": {"Kind": "Deformable", "Links": [{"To": "rib", "Distance": [15, "mm"]}]}},
                      "Events": [{"Hold": [1, 2]}], "Fit": {"Parameters": ["tendon"]}}),
 ]
@@ -183,7 +184,7 @@ def test_spellings_are_those_of_reading():
 def test_each_key_is_explained():
     page = (ROOT / "docs/scene-files.md").read_text(encoding="utf-8")
     keys = {key for table in SCHEMA["$defs"].values() for key in table.get("properties", {})}
-    keys = {key.replace("Center", "Centre").replace("Color", "Colour") for key in keys}
+    keys = {key.replace("Center", "Centre").replace("center", "centre").replace("Color", "Colour") for key in keys}
     missing = {key for key in keys if f"`{key}`" not in page and f'"{key}"' not in page}
     assert not missing, sorted(missing)
 

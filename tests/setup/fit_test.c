@@ -102,6 +102,39 @@ START_TEST(sources_stand_on_a_side) {
 }
 END_TEST
 
+/* The body's x goes to its left, y to its back, z to its head. A C-arm's angles say where the detector stands; a picture has the body's
+ * right side on the left, and rows from its head to its feet. */
+START_TEST(sides_have_the_words_of_the_clinic) {
+    static const char arm[] =
+        "\"SOD\": [800, \"mm\"], \"SDD\": [1200, \"mm\"], \"Isocentre\": [1, 2, 3, \"cm\"]";
+    static const char detector[] =
+        ", \"Detector\": {\"NumberOfPixels\": [100, 50], \"Size\": [40, 20, \"cm\"]}";
+    const double half = sqrt(0.5), c20 = cos(20 * SKG_PI / 180), s20 = sin(20 * SKG_PI / 180),
+                 h = sqrt(3) / 2;
+    const struct {
+        const char *from;
+        double side[3], right[3];
+    } all[] = {
+        {"AP", {0, -1, 0}, {1, 0, 0}},          {"pa", {0, 1, 0}, {1, 0, 0}},
+        {"LAT", {-1, 0, 0}, {0, 1, 0}},         {"LAO 90", {-1, 0, 0}, {0, 1, 0}},
+        {"LAO 30", {-0.5, h, 0}, {h, 0.5, 0}},  {"RAO 45", {half, half, 0}, {half, -half, 0}},
+        {"CRAN 20", {0, c20, -s20}, {1, 0, 0}}, {"CAU 20, LAO 30", {-0.5 * c20, h * c20, s20}, {h, 0.5, 0}},
+        {"RAO 180", {0, -1, 0}, {1, 0, 0}}};
+    for (size_t i = 0; i < sizeof all / sizeof *all; i++) {
+        char place[256];
+        snprintf(place, sizeof place, "\"From\": \"%s\", %s", all[i].from, arm);
+        write_box(place, detector);
+        ck_skg(load());
+        const double *side = all[i].side, *right = all[i].right;
+        check_vector(setup->view.source, 10 + 800 * side[0], 20 + 800 * side[1], 30 + 800 * side[2]);
+        check_vector(setup->view.centre, 10 - 400 * side[0], 20 - 400 * side[1], 30 - 400 * side[2]);
+        check_vector(setup->view.column_step, 4 * right[0], 4 * right[1], 4 * right[2]);
+        ck_assert(setup->view.row_step[2] < 0);
+        skg_setup_release(&setup);
+    }
+}
+END_TEST
+
 /* A box of 40 m: 1 m from its centre would be inside. */
 START_TEST(a_source_stands_outside) {
     static const char *const settings[] = {"Samples.box.Cuboid=[40, 20, 60, \"m\"]"};
@@ -138,6 +171,13 @@ static const struct {
     {"\"Position\": [1, 1.5, 3, \"cm\"]", "", SKG_ERR_SCENE, "the parts reach to the source"},
     {"\"From\": \"back\"", "", SKG_ERR_FORMAT, "Source.From: \"back\""},
     {"\"From\": [0, 0, 0]", "", SKG_ERR_FORMAT, "Source.From"},
+    {"\"From\": \"LAO\"", "", SKG_ERR_FORMAT, "has a word without its angle"},
+    {"\"From\": \"LAO 190\"", "", SKG_ERR_FORMAT, "has an angle out of its range"},
+    {"\"From\": \"CRAN 20 CAUD 5\"", "", SKG_ERR_FORMAT, "has two angles of one kind"},
+    {"\"From\": \"AP\", \"SOD\": [0, \"mm\"]", "", SKG_ERR_SCENE, "SOD: is 0 mm"},
+    {"\"From\": \"AP\", \"SOD\": [800, \"mm\"], \"SDD\": [700, \"mm\"]", "", SKG_ERR_SCENE, "SDD: is 700 mm"},
+    {"\"From\": \"AP\", \"SDD\": [700, \"mm\"]", "", SKG_ERR_SCENE, "SDD is 700 mm"},
+    {"\"SOD\": [1, \"mm\"], \"Position\": [0, 0, 1, \"m\"]", "", SKG_ERR_FORMAT, "goes with From"},
     {"\"From\": \"top\", \"Position\": [0, 0, 1, \"m\"]", "", SKG_ERR_FORMAT, "either From, or Position"},
     {"\"From\": \"top\"", ", \"Detector\": {\"Position\": [0, 0, 1, \"m\"]}", SKG_ERR_FORMAT,
      "Source.From is a side"},
@@ -184,6 +224,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_detector_is_fitted);
     tcase_add_test(tests, a_detector_keeps_what_it_gives);
     tcase_add_test(tests, sources_stand_on_a_side);
+    tcase_add_test(tests, sides_have_the_words_of_the_clinic);
     tcase_add_test(tests, a_source_stands_outside);
     tcase_add_test(tests, parallel_beams_are_fitted);
     tcase_add_loop_test(tests, bad_places_are_refused, 0, sizeof bad / sizeof *bad);

@@ -110,8 +110,9 @@ const cli_item cli_flag_meshes_from_names[] = {
     {"front", "the source at -y"}, {"side", "the source at +x"}, {"top", "the source at +z"}, {NULL, NULL}};
 
 const cli_flag cli_flag_meshes_from = {
-    "--from", "front|side|top|X,Y,Z",
-    "With --material: the side on which the source stands: front is -y (the default), side is +x, top is +z; or the "
+    "--from", "front|side|top|ANGLES|X,Y,Z",
+    "With --material: the side on which the source stands: front is -y (the default), side is +x, top is +z; ANGLES of a C-arm such as "
+    "'LAO 30 CRAN 20', AP, PA or LAT, where x is the body's left, y its back and z its head; or the "
     "direction from the meshes to the source. The picture is as seen from there, with +z up; from the top, with +y up.",
     NULL, CLI_NAMES_NOTHING};
 

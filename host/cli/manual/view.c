@@ -8,8 +8,9 @@ const cli_flag cli_flag_view_output = {
     "May be repeated.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_view_from = {
-    "--from", "front|side|top|X,Y,Z",
-    "The side from which the scene is seen: front is -y, side is +x, top is +z; or the direction from the scene to the "
+    "--from", "front|side|top|ANGLES|X,Y,Z",
+    "The side from which the scene is seen: front is -y, side is +x, top is +z; AP, PA, LAT or the ANGLES of a C-arm such as 'LAO 30 CRAN "
+    "20', as its radiograph is seen; or the direction from the scene to the "
     "eye. From a side +z is up, from the top +y. By default the scene is seen obliquely from the side of the source, with "
     "the detector's row 0 on top.",
     NULL, CLI_NAMES_NOTHING};

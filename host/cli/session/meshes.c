@@ -104,8 +104,10 @@ static int read_side(const cli_arguments *arguments, json_t *source) {
     if (!value) value = "front";
     if (!strchr(value, ',')) {
         json_object_set_new(source, "From", cli_json_text(value));
-        for (const cli_item *known = cli_flag_meshes_from_names; known->name; known++)
-            if (strcmp(known->name, value) == 0) return CLI_DONE;
+        double direction[3];
+        int32_t from_detector;
+        if (skg_side_get(value, direction, &from_detector) == SKG_OK) return CLI_DONE;
+        return cli_error(CLI_USAGE, "--from %s, or a direction X,Y,Z such as 1,-1,0.5", skg_last_error());
     } else {
         double x[3];
         int k = 0;
@@ -116,8 +118,7 @@ static int read_side(const cli_arguments *arguments, json_t *source) {
         json_object_set_new(source, "From", cli_json_numbers(x, k));
         if (k == 3 && (x[0] != 0 || x[1] != 0 || x[2] != 0)) return CLI_DONE;
     }
-    return cli_error(CLI_USAGE,
-                     "--from %s is neither front, side or top nor a direction X,Y,Z such as 1,-1,0.5", value);
+    return cli_error(CLI_USAGE, "--from %s is no direction X,Y,Z such as 1,-1,0.5", value);
 }
 
 /* The name of a mesh's file without folder and extension; "name 2" for the second of this name. */

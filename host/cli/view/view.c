@@ -27,24 +27,19 @@ static int read_numbers(const char *text, int count, double *numbers) {
 }
 
 static int read_side(view_work *w) {
-    static const struct {
-        const char *name;
-        double from[3], up[3];
-    } sides[] = {
-        {"front", {0, -1, 0}, {0, 0, 1}}, {"side", {1, 0, 0}, {0, 0, 1}}, {"top", {0, 0, 1}, {0, 1, 0}}};
     const char *value = cli_value(w->arguments, &cli_flag_view_from);
-    if (!value) return CLI_DONE;
-    for (size_t i = 0; i < sizeof sides / sizeof *sides; i++)
-        if (strcmp(value, sides[i].name) == 0) {
-            memcpy(w->look.from, sides[i].from, sizeof w->look.from);
-            memcpy(w->look.up, sides[i].up, sizeof w->look.up);
-            return CLI_DONE;
-        }
-    w->look.up[2] = 1;
     double *from = w->look.from;
-    if (read_numbers(value, 3, from) && (from[0] != 0 || from[1] != 0 || from[2] != 0)) return CLI_DONE;
-    return cli_error(CLI_USAGE,
-                     "--from %s is neither front, side or top nor a direction X,Y,Z such as 1,-1,0.5", value);
+    int32_t from_detector = 0;
+    if (!value) return CLI_DONE;
+    if (read_numbers(value, 3, from) && (from[0] != 0 || from[1] != 0 || from[2] != 0)) {
+        w->look.up[2] = 1;
+        return CLI_DONE;
+    }
+    if (skg_side_get(value, from, &from_detector) != SKG_OK)
+        return cli_error(CLI_USAGE, "--from %s, or a direction X,Y,Z such as 1,-1,0.5", skg_last_error());
+    for (int k = 0; k < 3; k++) from[k] = from_detector ? -from[k] : from[k];
+    w->look.up[fabs(from[2]) > 0.99 ? 1 : 2] = 1;
+    return CLI_DONE;
 }
 
 static int read_size(view_work *w) {

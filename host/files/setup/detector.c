@@ -154,7 +154,12 @@ static skg_status fit(skg_setup_reader *reader, const skg_json_object *detector)
             return skg_json_at(detector->node, status);
         }
     }
-    return skg_setup_fit_view(reader, detector);
+    double spacing[2];
+    const int sized = skg_json_member(detector, "Size").value || skg_json_member(detector, "Spacing").value;
+    if (!sized || !(reader->detector_mm > 0)) return skg_setup_fit_view(reader, detector, NULL);
+    if (view->columns < 1) SKG_TRY(read_pixels(detector, view));
+    SKG_TRY(read_spacing(detector, view, spacing));
+    return skg_setup_fit_view(reader, detector, spacing);
 }
 
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node) {

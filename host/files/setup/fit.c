@@ -89,11 +89,14 @@ static skg_status aim(skg_setup_reader *reader, const skg_json_node *node, const
     skg_view *view = &reader->setup->view;
     double centre[3], diagonal[3];
     for (int k = 0; k < 3; k++) {
-        centre[k] = 0.5 * (bounds[k] + bounds[3 + k]);
+        centre[k] = reader->has_isocentre ? reader->isocentre[k] : 0.5 * (bounds[k] + bounds[3 + k]);
         diagonal[k] = bounds[3 + k] - bounds[k];
     }
     if (reader->has_side)
-        skg_add_scaled(centre, fmax(SOURCE_MM, SOURCE_HALF_DIAGONALS * 0.5 * skg_length(diagonal)),
+        skg_add_scaled(centre,
+                       reader->source_mm > 0
+                           ? reader->source_mm
+                           : fmax(SOURCE_MM, SOURCE_HALF_DIAGONALS * 0.5 * skg_length(diagonal)),
                        reader->side, view->source);
     frame->view = view;
     const int from_infinity = view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY;
@@ -121,12 +124,17 @@ static skg_status aim(skg_setup_reader *reader, const skg_json_node *node, const
     frame->plane = fmax(from_infinity ? 0 : (1 + DETECTOR_SHARE) * distance, frame->max_depth + 0.05 * depth);
     if (from_infinity && frame->plane == frame->max_depth)
         frame->plane += 1; /* a flat part, across the beam */
+    if (reader->detector_mm > 0) frame->plane = reader->detector_mm;
+    if (!from_infinity && !(frame->plane > distance))
+        return skg_json_fail(node, SKG_ERR_SCENE,
+                             "SDD is %g mm, but the isocentre is %g mm from the source; give a larger one",
+                             frame->plane, distance);
     return SKG_OK;
 }
 
 /* The direction in which rows grow: the given one, otherwise down, or -y where the beam goes along z; perpendicular to
  * the beam. */
-static skg_status orient(const skg_json_object *detector, beam_frame *frame) {
+static skg_status orient(const skg_json_object *detector, int32_t mirrored, beam_frame *frame) {
     const skg_json_node given = skg_json_member(detector, "UpVector");
     double up[3] = {0, 0, -1};
     if (given.value)
@@ -139,6 +147,7 @@ static skg_status orient(const skg_json_object *detector, beam_frame *frame) {
         return skg_json_fail(&given, SKG_ERR_SCENE, "points along the beam; give another direction");
     skg_scale_vector(1 / length, frame->up, frame->up);
     skg_cross(frame->up, frame->axis, frame->right); /* the picture is as seen from the source */
+    if (mirrored) skg_scale_vector(-1, frame->right, frame->right);
     return SKG_OK;
 }
 
@@ -154,31 +163,32 @@ static double choose_pixels(skg_view *view, const double half[2]) {
     return 2 / COVERED * fmax(half[0] / (double)view->columns, half[1] / (double)view->rows);
 }
 
-skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *detector) {
+skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *detector,
+                              const double *spacing) {
     static const char *const placed[] = {"RightVector", "Size", "Spacing"};
     skg_view *view = &reader->setup->view;
     double bounds[6];
     beam_frame frame = {.view = view};
     for (int k = 0; k < 3; k++) {
         const skg_json_node node = skg_json_member(detector, placed[k]);
-        if (node.value)
+        if (node.value && !(k > 0 && spacing))
             return skg_json_fail(
                 &node, SKG_ERR_FORMAT,
-                "belongs to a detector with a Position; give that as well, or leave out %s: the "
-                "detector is then fitted to the parts",
+                "belongs to a detector with a Position, or to one at an SDD beside From; give one of them as well, or leave out %s: "
+                "the detector is then fitted to the parts",
                 placed[k]);
     }
     SKG_TRY(skg_setup_bounds(reader->setup->scene, bounds));
     SKG_TRY(aim(reader, detector->node, bounds, &frame));
-    SKG_TRY(orient(detector, &frame));
+    SKG_TRY(orient(detector, reader->seen_from_detector, &frame));
     SKG_TRY(visit_vertices(reader->setup->scene, measure_shadow, &frame));
     if (!(fmax(frame.half[0], frame.half[1]) > 0))
         return skg_json_fail(detector->node, SKG_ERR_SCENE,
                              "the parts have no extent, so no detector can be fitted");
-    const double pixel = choose_pixels(view, frame.half);
+    const double pixel = spacing ? spacing[0] : choose_pixels(view, frame.half);
     skg_add_scaled(frame.origin, frame.plane, frame.axis, view->centre);
     skg_scale_vector(pixel, frame.right, view->column_step);
-    skg_scale_vector(pixel, frame.up, view->row_step);
+    skg_scale_vector(spacing ? spacing[1] : pixel, frame.up, view->row_step);
     skg_logger_say(&reader->log, SKG_LOG_NOTE,
                    "the detector is fitted to the parts: %" PRId64 " x %" PRId64
                    " pixels of %.4g mm, centre at (%.4g, %.4g, %.4g) mm",

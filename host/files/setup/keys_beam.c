@@ -14,8 +14,15 @@ static const skg_json_key source[] = {
             "change, of the flat field, at which the number of samples suffices; 0.005 by default"),
     SKG_KEY("Axis", "direction", "normal of a flat focal spot; by default the line to the detector's centre"),
     SKG_KEY("Beam", "null | object Beam | list object Channel", "energies, a file of them, or a tube"),
-    SKG_KEY("From", "text | direction",
-            "the side of the samples on which the source stands, instead of Position"),
+    SKG_KEY(
+        "From", "text | direction",
+        "the side on which the source stands, instead of Position: front, side, top, AP, PA, LAT, angles such as LAO 30 CRAN 20"),
+    SKG_KEY("SOD", "length", "with From: from the source to the isocentre"),
+    SKG_KEY("SDD", "length", "with From: from the source to the detector"),
+    SKG_KEY(
+        "Isocentre", "lengths 3",
+        "with From: the point through which the beam's axis goes; the centre of the samples' bounds by default"),
+    SKG_ALSO("Isocenter", "Isocentre"),
     SKG_KEY("Heel", "object Heel", "the heel effect of a tube"),
     SKG_KEY("Bowtie", "object Bowtie", "a filter whose thickness changes along the fan of rays"),
     SKG_KEY("LSF", "any",

@@ -28,8 +28,10 @@ skg_status skg_setup_read_samples(skg_setup_reader *reader, const skg_json_node 
 /* Whether the detector is fitted: there is none, or one without Position. */
 skg_status skg_setup_is_fitted(const skg_json_node *detector, int32_t *fitted);
 
-/* Places a detector without Position behind the parts, and a source that gives a side only in front of them. */
-skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *detector);
+/* Places a detector without Position behind the parts, and a source that gives a side only in front of them. spacing: [2] of its pixels;
+ * NULL: such that the parts cover it. */
+skg_status skg_setup_fit_view(skg_setup_reader *reader, const skg_json_object *detector,
+                              const double *spacing);
 
 /* Bounds of all vertices in the world, mm: least x, y, z, largest x, y, z. */
 skg_status skg_setup_bounds(const skg_scene *scene, double *bounds);

@@ -7,14 +7,32 @@ static const double STAND_IN_KEV = 60;
 
 /* The side of the parts on which the source stands: a name, or a direction from their centre. */
 static skg_status read_side(skg_setup_reader *reader, const skg_json_node *node) {
-    static const char *const names[] = {"front", "side", "top"};
-    static const double sides[][3] = {{0, -1, 0}, {1, 0, 0}, {0, 0, 1}};
-    int64_t choice = 0;
     reader->has_side = 1;
     if (!json_is_string(node->value)) return skg_json_direction(node, reader->side);
-    SKG_TRY(skg_json_choice(node, "side", names, 3, &choice));
-    for (int k = 0; k < 3; k++) reader->side[k] = sides[choice][k];
-    return SKG_OK;
+    return skg_json_at(
+        node, skg_side_get(json_string_value(node->value), reader->side, &reader->seen_from_detector));
+}
+
+/* Distances and the point that the axis of a C-arm passes, which go with From. */
+static skg_status read_arm(skg_setup_reader *reader, const skg_json_object *source) {
+    const skg_json_node sod = skg_json_member(source, "SOD"), sdd = skg_json_member(source, "SDD"),
+                        middle = skg_json_member(source, "Isocentre");
+    const skg_json_node *const given = sod.value ? &sod : sdd.value ? &sdd : &middle;
+    if (!given->value) return SKG_OK;
+    if (!reader->has_side)
+        return skg_json_fail(given, SKG_ERR_FORMAT,
+                             "goes with From, from which source and detector are placed");
+    if (sod.value) SKG_TRY(skg_json_lengths(&sod, "[750, \"mm\"]", 1, &reader->source_mm));
+    if (sdd.value) SKG_TRY(skg_json_lengths(&sdd, "[1100, \"mm\"]", 1, &reader->detector_mm));
+    if (sod.value && !(reader->source_mm > 0))
+        return skg_json_fail(&sod, SKG_ERR_SCENE, "is %g mm; give a distance above 0", reader->source_mm);
+    if (sdd.value && !(reader->detector_mm > reader->source_mm))
+        return skg_json_fail(
+            &sdd, SKG_ERR_SCENE,
+            "is %g mm; the detector stands behind the isocentre, which is %g mm from the source",
+            reader->detector_mm, reader->source_mm);
+    reader->has_isocentre = middle.value != NULL;
+    return middle.value ? skg_json_lengths(&middle, "[0, 0, 0, \"mm\"]", 3, reader->isocentre) : SKG_OK;
 }
 
 /* Before the beam, whose tube has the angle of the anode. node->value may be NULL. */
@@ -68,6 +86,7 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
         SKG_TRY(skg_json_need(&source, "Position", example, &position));
         SKG_TRY(skg_json_lengths(&position, example, 3, setup->view.source));
     }
+    SKG_TRY(read_arm(reader, &source));
     const skg_json_node lines = skg_json_member(&source, "LSF");
     if (lines.value)
         SKG_TRY(skg_json_remark(&lines,

@@ -118,6 +118,18 @@ SKG_INIT(skg_setup_changes)
  *               places all of them together */
 SKG_API skg_status skg_setup_save(const skg_setup *setup, const skg_setup_changes *changes, const char *path);
 
+/** Gets where the source stands, for the words of `Source.From`: "front" (-y), "side" (+x), "top" (+z), and those of the clinic, for a body whose
+ * x points to its left, y to its back and z to its head: "AP" (the source in front), "PA" (behind), "LAT" (a left lateral: the source at the
+ * right side, the detector at the left), and angles of a C-arm, "LAO 30 CRAN 20", which say where the detector stands: from in front of the
+ * body towards its left (LAO) or right (RAO), 0 to 180 degrees, and towards its head (CRAN, CRA) or feet (CAUD, CAU), 0 to 90 (DICOM's
+ * positioner angles). In upper or lower case.
+ *
+ *     direction       result: [3] from the middle of the body to the source, of length 1
+ *     from_detector   result: 1: its picture is as seen from the detector, 0: from the source. The body's right side is then on the viewer's
+ *                     left, as radiographs are hung, and a left lateral faces left
+ *     errors          SKG_ERR_ARGUMENT for other words */
+SKG_API skg_status skg_side_get(const char *name, double *direction, int32_t *from_detector);
+
 /** Gets the JSON Schema (draft 2020-12) of scene files, from the same tables by which they are read: names, forms, limits and meaning of
  * every key. A file that it refuses is refused when it is read; what depends on several keys, or on other files, only reading tells.
  *
