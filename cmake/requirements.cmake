@@ -44,4 +44,3 @@ if(SKG_MISSING)
     "-DSKG_BUILD_COMMAND=OFF no Cairo.")
 endif()
 pkg_search_module(HDF5 IMPORTED_TARGET hdf5-serial hdf5) # scans as .h5
-pkg_check_modules(LAPACKE IMPORTED_TARGET lapacke) # the fit by CMA-ES

@@ -7,7 +7,7 @@ libassimp-dev libcglm-dev libjansson-dev libpng-dev zlib1g-dev libtiff-dev libca
 
 # Without these something is left out; the README has a table of it.
 # shellcheck disable=SC2034
-skg_optional_packages="libhdf5-dev libgif-dev ffmpeg libmeshoptimizer-dev libcivetweb-dev liblapacke-dev"
+skg_optional_packages="libhdf5-dev libgif-dev ffmpeg libmeshoptimizer-dev libcivetweb-dev"
 # shellcheck disable=SC2034
 skg_mpi_packages="libopenmpi-dev openmpi-bin"
 

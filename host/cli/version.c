@@ -19,7 +19,6 @@ static const struct {
     {"CivetWeb", SKG_WITH_CIVETWEB, "the verb live"},
     {"giflib", SKG_WITH_GIF, "films as .gif"},
     {"HDF5", SKG_WITH_HDF5, "scans as .h5, reconstruct"},
-    {"LAPACKE", SKG_WITH_LAPACKE, "fits by CMA-ES"},
     {"libtiff", SKG_WITH_TIFF, ""},
     {"meshoptimizer", SKG_WITH_MESHOPTIMIZER, "meshes of pages with fewer triangles"},
     {"MPI", SKG_WITH_MPI, "scans by several processes"},

@@ -3,8 +3,12 @@
 #define SKG_EIGEN_H
 
 /* Eigenvalues in falling order and eigenvectors (row k the k-th) of a symmetric n x n matrix, by Jacobi rotations. The matrix
- * is overwritten. For few dimensions, in every build and with the same bits everywhere: a search in up to 64
- * dimensions has LAPACK's (evolution/eigen.h), which is optional. */
+ * is overwritten. The same bits on every machine. Takes 72 n^3 multiplications at most. */
 void skg_eigen(int n, double *matrix, double *values, double *vectors);
+
+/* The same in rising order, with the vectors as columns (column k the k-th, matrix[n * row + k]) in place of the matrix.
+ * n <= SKG_EIGEN_MAX. */
+enum { SKG_EIGEN_MAX = 64 };
+void skg_eigen_rising(int n, double *matrix, double *values);
 
 #endif

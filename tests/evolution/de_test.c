@@ -1,4 +1,4 @@
-/* Differential evolution, which needs no LAPACKE, and the random numbers of both methods. */
+/* Differential evolution, and the random numbers of both methods. */
 #include "evolution/draw.h"
 #include "evolution/functions.h"
 

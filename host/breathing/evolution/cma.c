@@ -3,8 +3,8 @@
  * restart CMA evolution strategy with increasing population size, CEC 2005. */
 #include "evolution/methods.h"
 
+#include "core/eigen.h"
 #include "evolution/draw.h"
-#include "evolution/eigen.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -250,7 +250,7 @@ static skg_status decompose(skg_search *s, int *is_sound) {
     memcpy(c.axes, c.covariance, (size_t)(n * n) * sizeof *c.axes);
     *is_sound = 1;
     for (int64_t e = 0; e < n * n; e++) *is_sound &= isfinite(c.axes[e]) != 0;
-    if (*is_sound) SKG_TRY(skg_symmetric_eigen(n, c.axes, c.lengths));
+    if (*is_sound) skg_eigen_rising((int)n, c.axes, c.lengths);
     *is_sound = *is_sound && c.lengths[0] > 1e-14 * c.lengths[n - 1];
     for (int64_t k = 0; k < n && *is_sound; k++) c.lengths[k] = sqrt(c.lengths[k]);
     return SKG_OK;

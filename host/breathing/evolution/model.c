@@ -1,7 +1,7 @@
 /* A quadratic model of values seen so far, and its minimum. */
 #include "evolution/methods.h"
 
-#include "evolution/eigen.h"
+#include "core/eigen.h"
 
 #include <math.h>
 #include <stdlib.h>
@@ -152,7 +152,7 @@ static skg_status minimize(const equations *e, int64_t n, double reach, double r
     for (int64_t i = 0; i < n; i++)
         for (int64_t j = 0; j <= i; j++, at++)
             q.h[n * i + j] = q.h[n * j + i] = (i == j ? 2 : 1) * *at / (reach * reach);
-    SKG_TRY(skg_symmetric_eigen(n, q.h, q.curvature));
+    skg_eigen_rising((int)n, q.h, q.curvature);
     for (int64_t k = 0; k < n; k++) {
         q.along[k] = 0;
         for (int64_t row = 0; row < n; row++) q.along[k] += q.h[n * row + k] * q.g[row];

@@ -1,7 +1,6 @@
 /* Minimizing a function of up to 64 numbers between 0 and 1 by a population. */
 #include "evolution/search.h"
 
-#include "evolution/eigen.h"
 #include "evolution/methods.h"
 
 #include <inttypes.h>
@@ -28,11 +27,6 @@ static skg_status allocate(skg_search *s) {
 skg_status skg_search_create(int method, int64_t dimensions, const double *start, int64_t seed,
                              skg_search *search) {
     *search = (skg_search){.method = method, .dimensions = dimensions, .seed = seed};
-    if (method == SKG_SEARCH_CMA && !skg_has_eigen())
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "the method cma needs LAPACKE, without which this library was built (Debian: liblapacke-dev); "
-            "the method de does not");
     if (dimensions < 1 || dimensions > SKG_SEARCH_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "a search of %" PRId64 " dimensions; 1 to %d are possible",
                         dimensions, SKG_SEARCH_MAX);

@@ -13,7 +13,7 @@
 
 #include "evolution/methods.h"
 
-/* Begins a search at a point. seed: at least 0. SKG_ERR_UNSUPPORTED: CMA, but the library was built without LAPACKE. */
+/* Begins a search at a point. seed: at least 0. */
 skg_status skg_search_create(int method, int64_t dimensions, const double *start, int64_t seed,
                              skg_search *search);
 void skg_search_free(skg_search *search);

@@ -1,7 +1,6 @@
 /* A fit as a handle. */
 #include "core/log.h"
 #include "core/text.h"
-#include "evolution/eigen.h"
 #include "fit/types.h"
 #include "scene/scene.h"
 
@@ -34,11 +33,6 @@ static skg_status check_options(const skg_fit_options *o) {
         return skg_fail(SKG_ERR_ARGUMENT,
                         "fit: the seed is %" PRId64 ", enough_mm %g; neither may be below 0", o->seed,
                         o->enough_mm);
-    if (o->method == SKG_FIT_METHOD_CMA && !skg_has_eigen())
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "the method cma needs LAPACKE, without which this library was built (Debian: liblapacke-dev); "
-            "the method de does not");
     return SKG_OK;
 }
 

@@ -27,7 +27,7 @@ typedef struct skg_fit skg_fit;
 
 /** How the parameters are searched. */
 enum skg_fit_method {
-    /** CMA-ES: a normal distribution that learns which parameters go together. Needs LAPACKE when the library is built. */
+    /** CMA-ES: a normal distribution that learns which parameters go together. */
     SKG_FIT_METHOD_CMA = 0,
     /** Differential evolution. */
     SKG_FIT_METHOD_DE = 1
@@ -58,8 +58,7 @@ SKG_INIT(skg_fit_options)
  *     setup     has to stay until the fit is released. Its meshes are read, and not changed
  *     options   NULL: the defaults
  *     fit       result; the caller releases it
- *     errors    SKG_ERR_ARGUMENT (an option), SKG_ERR_BREATHING if there is no diaphragm,
- *               SKG_ERR_UNSUPPORTED (CMA without LAPACKE) */
+ *     errors    SKG_ERR_ARGUMENT (an option), SKG_ERR_BREATHING if there is no diaphragm */
 SKG_API skg_status skg_fit_create(skg_context *context, const skg_setup *setup,
                                   const skg_fit_options *options, skg_fit **fit);
 
