@@ -6,6 +6,7 @@
 #include "core/files.h"
 
 #include <skiagraph/image.h>
+#include <skiagraph/volume.h>
 
 #include <string.h>
 
@@ -55,6 +56,19 @@ skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file
 skg_status skg_png_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
 skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
 skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
+
+/* A grid of three dimensions in a file. */
+typedef struct {
+    int64_t size[3];
+    double
+        affine[16]; /* from the indices of a cell to its centre, in the file's unit; see skg_volume_source */
+    int32_t type;   /* enum skg_volume_type */
+    int32_t reserved;
+    void *cells; /* the caller frees them */
+} skg_grid;
+
+/* Reads a MetaImage of three dimensions with its place. */
+skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid);
 
 /* The value of a number of `bytes` bytes of a file. kind: 'u' unsigned, 'i' signed, 'f' float; swapped: 1: of the other byte order. */
 double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped);

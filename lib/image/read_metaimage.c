@@ -10,7 +10,8 @@ enum { LINE = 4096, LINES = 200 };
 
 /* What the header says. */
 typedef struct {
-    double size[3];
+    double size[3], spacing[3], offset[3];
+    double axes[9]; /* a row for each axis */
     int dimensions, bytes, swapped, compressed, channels;
     char kind;
     char data[LINE]; /* ElementDataFile */
@@ -41,9 +42,29 @@ static void read_sizes(const char *value, metaimage *image) {
     }
 }
 
+/* Up to `count` numbers, the others stay. */
+static void read_numbers(const char *value, int count, double *numbers) {
+    for (int k = 0; k < count; k++) {
+        const char *end = value;
+        const double number = skg_read_number(value, &end);
+        if (end == value) return;
+        numbers[k] = number, value = end;
+    }
+}
+
+/* Where the grid lies; MetaIO knows several names. */
+static void read_place(const char *key, const char *value, metaimage *image) {
+    if (!strcmp(key, "ElementSpacing")) read_numbers(value, 3, image->spacing);
+    if (!strcmp(key, "Offset") || !strcmp(key, "Position") || !strcmp(key, "Origin"))
+        read_numbers(value, 3, image->offset);
+    if (!strcmp(key, "TransformMatrix") || !strcmp(key, "Rotation") || !strcmp(key, "Orientation"))
+        read_numbers(value, 9, image->axes);
+}
+
 /* One line "key = value" of the header. Keys that say nothing of the values are passed over. */
 static void read_line(const char *key, const char *value, metaimage *image) {
     if (!strcmp(key, "DimSize")) read_sizes(value, image);
+    read_place(key, value, image);
     if (!strcmp(key, "ElementNumberOfChannels")) image->channels = atoi(value);
     if (!strcmp(key, "CompressedData")) image->compressed = is_true(value);
     if (!strcmp(key, "BinaryDataByteOrderMSB") || !strcmp(key, "ElementByteOrderMSB"))
@@ -135,5 +156,66 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
     SKG_TRY_CLEANUP(read_values(path, stream, &image, page, values));
 cleanup:
     if (stream) fclose(stream);
+    return status;
+}
+
+/* The type in which the cells of a file are kept. */
+static int32_t cell_type(const metaimage *image) {
+    if (image->kind == 'f') return image->bytes == 4 ? SKG_VOLUME_FLOAT32 : SKG_VOLUME_FLOAT64;
+    if (image->bytes == 1) return SKG_VOLUME_INT16;
+    if (image->bytes == 2) return image->kind == 'u' ? SKG_VOLUME_UINT16 : SKG_VOLUME_INT16;
+    return SKG_VOLUME_FLOAT64;
+}
+
+/* Reads a slice after another, since a file may be large and its numbers of another type. */
+static skg_status read_cells(const char *path, FILE *stream, const metaimage *image, skg_grid *grid) {
+    static const size_t sizes[] = {sizeof(int16_t), sizeof(uint16_t), sizeof(float), sizeof(double)};
+    const int64_t plane = grid->size[0] * grid->size[1];
+    unsigned char *slice = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(plane * grid->size[2], sizes[grid->type], "cells of a volume", &grid->cells));
+    SKG_TRY(skg_alloc(plane, (size_t)image->bytes, "slice of a volume", &slice));
+    for (int64_t z = 0; z < grid->size[2] && status == SKG_OK; z++) {
+        if (fread(slice, (size_t)image->bytes, (size_t)plane, stream) != (size_t)plane)
+            status = skg_fail(SKG_ERR_FORMAT, "%s: ends in slice %lld of %lld; is it the whole file?", path,
+                              (long long)z, (long long)grid->size[2]);
+        for (int64_t k = 0; k < plane && status == SKG_OK; k++) {
+            const double value =
+                skg_number_of_bytes(slice + k * image->bytes, image->bytes, image->kind, image->swapped);
+            const int64_t at = z * plane + k;
+            if (grid->type == SKG_VOLUME_INT16) ((int16_t *)grid->cells)[at] = (int16_t)value;
+            if (grid->type == SKG_VOLUME_UINT16) ((uint16_t *)grid->cells)[at] = (uint16_t)value;
+            if (grid->type == SKG_VOLUME_FLOAT32) ((float *)grid->cells)[at] = (float)value;
+            if (grid->type == SKG_VOLUME_FLOAT64) ((double *)grid->cells)[at] = value;
+        }
+    }
+    skg_free(&slice);
+    return status;
+}
+
+skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
+    metaimage image = {
+        .quantity = -1, .channels = 1, .spacing = {1, 1, 1}, .axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    FILE *stream = NULL;
+    skg_status status = SKG_OK;
+    *grid = (skg_grid){0};
+    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
+    SKG_TRY_CLEANUP(read_header(path, stream, &image));
+    if (image.dimensions != 3) {
+        status = skg_fail(SKG_ERR_FORMAT, "%s: has %d dimensions; a volume has 3", path, image.dimensions);
+        goto cleanup;
+    }
+    for (int k = 0; k < 3; k++) {
+        grid->size[k] = (int64_t)image.size[k];
+        for (int r = 0; r < 3; r++) grid->affine[4 * r + k] = image.axes[3 * k + r] * image.spacing[k];
+        grid->affine[4 * k + 3] = image.offset[k];
+    }
+    grid->affine[15] = 1;
+    grid->type = cell_type(&image);
+    SKG_TRY_CLEANUP(open_data(path, &image, &stream));
+    SKG_TRY_CLEANUP(read_cells(path, stream, &image, grid));
+cleanup:
+    if (stream) fclose(stream);
+    if (status != SKG_OK) skg_free(&grid->cells);
     return status;
 }
