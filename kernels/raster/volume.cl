@@ -1,32 +1,50 @@
 /* Adds the cells of a volume to the sums of the raster: along each ray the integral of what the cells add to each plane.
  *
- * The ray is cut into slices along the axis that it runs along most. Within a slice it crosses at most one plane between cells along
+ * A ray is cut into slices along the axis that it runs along most. Within a slice it crosses at most one plane between cells along
  * each of the two other axes, so that it meets at most three cells, whose shares follow from the places of the two crossings. Places
- * are integers, which any device computes alike; a crossing is a quotient of floats, of which an error shifts a plane by 2^-24 of a
- * cell. Where other parts displace the volume (hits.cl) the integral over their interval is subtracted. */
+ * are integers, which any device computes alike; a crossing is a quotient of floats, of which an error shifts a plane by 2^-23 of a
+ * cell. Where other parts displace the volume (hits.cl) the integral over their interval is subtracted. A work-item takes SKG_WIDE
+ * rays, a lane each. */
 
-#define SKG_SHARE_ONE (1 << SKG_SHARE_BITS)
-#define SKG_PLACE_BITS 40 /* of a place within the walk */
-#define SKG_VOLUME_RUN (SKG_CPU ? SKG_VOLUME_CPU_RUN : 1)
+typedef SKG_CAT(float, SKG_WIDE) skg_lanes_float;
+typedef SKG_CAT(uint, SKG_WIDE) skg_lanes_uint;
+#define SKG_LANES_TO_FLOAT SKG_CAT(convert_float, SKG_WIDE)
+#define SKG_LANES_AS_UINT SKG_CAT(as_uint, SKG_WIDE)
+#define SKG_LANES_LOAD(type, array) (*(const type *)(array))
+#define SKG_LANES_ALIGNED __attribute__((aligned(4 * SKG_WIDE)))
 
+/* What a cell adds to the planes of a launch, and its sum over slices. */
 #if SKG_VOLUME_WIDE
 typedef int skg_cell;
-#define SKG_CELL_SUMS 1
 #else
 typedef ushort skg_cell;
-#define SKG_CELL_SUMS SKG_VOLUME_PLANES
+#endif
+#if SKG_VOLUME_PLANES == 1
+typedef float skg_cell_weight;
+typedef long skg_cell_sum;
+#define SKG_CELL_ROUND(x) ((long)convert_int_rte(x))
+#define SKG_CELL_SUM_OF(sum, p) (sum)
+#else
+typedef SKG_CAT(float, SKG_VOLUME_PLANES) skg_cell_weight;
+typedef SKG_CAT(long, SKG_VOLUME_PLANES) skg_cell_sum;
+#define SKG_CELL_ROUND(x) \
+    (SKG_CAT(convert_long, SKG_VOLUME_PLANES)(SKG_CAT(SKG_CAT(convert_int, SKG_VOLUME_PLANES), _rte)(x)))
+#define SKG_CELL_SUM_OF(sum, p) (((const long *)&(sum))[p])
+#endif
+#if SKG_VOLUME_WIDE
+#define SKG_CELL_WEIGHT(cell) ((float)(cell))
+#else
+#define SKG_CELL_WEIGHT(cell) (((__global const skg_cell_weight *)weights)[cell])
 #endif
 
-/* A ray in the axes of the volume: `first` is that of its slices. */
+/* Rays in the axes of the volume. */
 typedef struct {
-    int axis[3];
-    long base[3], way[3]; /* along these axes */
-    long slope[3];        /* [1], [2]: per slice, SKG_PLACE_BITS */
-    long exact[3];        /* the same with 46 bits */
-    float steepness[3];   /* 2^30 / |slope| */
-    int size[3];
-    long stride[3];
-} skg_cell_ray;
+    int axis[SKG_WIDE];                   /* of its slices */
+    long base[SKG_WIDE], way[SKG_WIDE];   /* along it */
+    long side[2][SKG_WIDE];               /* the base along the two others, that with the smaller stride first */
+    long slope[2][SKG_WIDE];              /* 2^46 per slice */
+    long from[SKG_WIDE], to[SKG_WIDE];    /* along the axis, where the ray is followed; from >= to: nowhere */
+} skg_cell_rays;
 
 /* x q / 2^bits, rounded down; the result fits. */
 static long skg_times(long x, long q, int bits) {
@@ -49,175 +67,274 @@ static long skg_quotient(long part, long whole) {
     return (part < 0) != (whole < 0) ? -(long)q : (long)q;
 }
 
-static void skg_cell_ray_of(const skg_volume_args *args, int column, int row, skg_cell_ray *ray) {
+/* From where to where along its axis a ray is followed. */
+static void skg_cell_ends(const skg_volume_args *args, int column, int row, int lane, skg_cell_rays *rays) {
+    const long size = (long)args->cells[rays->axis[lane]] << args->bits, base = rays->base[lane], way = rays->way[lane];
+    long start = base, end = base + way;
+#if SKG_PARALLEL
+    const float t = fma(args->start[1], (float)column, fma(args->start[2], (float)row, args->start[0]));
+    start = args->whole ? (way > 0 ? 0 : size) : base + convert_long_sat(t * (float)way);
+#endif
+    rays->from[lane] = clamp(min(start, end), 0l, size);
+    rays->to[lane] = clamp(max(start, end), 0l, size);
+}
+
+/* Sets up the ray of a lane. */
+static void skg_set_cell_ray(const skg_volume_args *args, int column, int row, int lane, skg_cell_rays *rays) {
     long base[3], way[3];
-    const long stride[3] = {1, args->cells[0], (long)args->cells[0] * (long)args->cells[1]};
     for (int k = 0; k < 3; k++) {
         base[k] = args->base[k] + column * args->base_column[k] + row * args->base_row[k];
         way[k] = args->way[k] + column * args->way_column[k] + row * args->way_row[k];
     }
     const ulong x = abs(way[0]), y = abs(way[1]), z = abs(way[2]);
-    ray->axis[0] = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
-    /* Of the two others that with the smaller stride comes first. */
-    ray->axis[1] = ray->axis[0] == 0 ? 1 : 0;
-    ray->axis[2] = ray->axis[0] == 2 ? 1 : 2;
-    for (int k = 0; k < 3; k++) {
-        ray->base[k] = base[ray->axis[k]];
-        ray->way[k] = way[ray->axis[k]];
-        ray->size[k] = args->cells[ray->axis[k]];
-        ray->stride[k] = stride[ray->axis[k]];
+    const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
+    rays->axis[lane] = axis;
+    rays->base[lane] = base[axis];
+    rays->way[lane] = way[axis];
+    for (int k = 0; k < 2; k++) {
+        const int other = k ? (axis == 2 ? 1 : 2) : (axis == 0 ? 1 : 0);
+        rays->side[k][lane] = base[other];
+        rays->slope[k][lane] = skg_quotient(way[other], way[axis]);
     }
-    for (int k = 1; k < 3; k++) {
-        ray->exact[k] = skg_quotient(ray->way[k], ray->way[0]);
-        ray->slope[k] = ray->exact[k] >> (46 - SKG_PLACE_BITS);
-        ray->steepness[k] = 0x1p30f / (float)max(abs(ray->slope[k]), 1ul);
-    }
+    skg_cell_ends(args, column, row, lane, rays);
 }
 
-/* The place along axis k at the beginning of slice `slice`, SKG_PLACE_BITS. What is far outside stays so. */
-static long skg_cell_place(const skg_cell_ray *ray, int bits, int k, int slice) {
-    const long at = ray->base[k] + skg_times(((long)slice << bits) - ray->base[0], ray->exact[k], 46);
+/* The place along side k at the beginning of a slice, 2^32 a cell. What is far outside stays so. */
+static long skg_cell_place(const skg_cell_rays *rays, int bits, int k, int lane, int slice) {
+    const long at = rays->side[k][lane] +
+                    skg_times(((long)slice << bits) - rays->base[lane], rays->slope[k][lane], 46);
     const long most = 1l << (bits + 20);
-    return clamp(at, -most, most) << (SKG_PLACE_BITS - bits);
+    const long within = clamp(at, -most, most);
+    return bits > 32 ? within >> (bits - 32) : within << (32 - bits);
 }
 
-/* Where the ray crosses the plane between two cells within a slice. from, to: its places at both ends */
-static int skg_plane_crossing(long from, long to, float steepness) {
-    const long first = from >> SKG_PLACE_BITS, last = to >> SKG_PLACE_BITS;
-    if (first == last) return SKG_SHARE_ONE;
-    const long way = last > first ? (last << SKG_PLACE_BITS) - from : from - (first << SKG_PLACE_BITS);
-    return min(convert_int_rte((float)way * steepness), SKG_SHARE_ONE);
+/* The state of the walk along one side: the cell and the place within it, in 2^-32 of a cell; what a slice adds; a slice over the
+ * way across a cell. */
+typedef struct {
+    skg_lanes_uint place, step;
+    skg_intv cell, cells;
+    skg_lanes_float slices;
+} skg_cell_side;
+
+static void skg_begin_side(const skg_cell_rays *rays, int bits, int k, int axis, int lane, int end, int slice, skg_cell_side *side) {
+    uint place[SKG_WIDE] SKG_LANES_ALIGNED, step[SKG_WIDE] SKG_LANES_ALIGNED;
+    int cell[SKG_WIDE] SKG_LANES_ALIGNED, cells[SKG_WIDE] SKG_LANES_ALIGNED;
+    float slices[SKG_WIDE] SKG_LANES_ALIGNED;
+    for (int l = 0; l < SKG_WIDE; l++) {
+        place[l] = step[l] = 0;
+        cell[l] = -1; /* outside */
+        cells[l] = 0;
+        slices[l] = 0;
+    }
+    for (int l = lane; l < end; l++) {
+        if (rays->axis[l] != axis) continue;
+        const long at = skg_cell_place(rays, bits, k, l, slice), slope = rays->slope[k][l] >> 14;
+        place[l] = (uint)at;
+        cell[l] = (int)(at >> 32);
+        step[l] = (uint)slope;
+        cells[l] = (int)(slope >> 32);
+        slices[l] = 1.0f / (float)max(abs(slope), 1ul);
+    }
+    side->place = SKG_LANES_LOAD(skg_lanes_uint, place);
+    side->step = SKG_LANES_LOAD(skg_lanes_uint, step);
+    side->cell = SKG_LANES_LOAD(skg_intv, cell);
+    side->cells = SKG_LANES_LOAD(skg_intv, cells);
+    side->slices = SKG_LANES_LOAD(skg_lanes_float, slices);
 }
 
-/* Adds share times the weights of a cell. */
-static void skg_add_cell(__global const skg_cell *cells, __global const int *weights, long at, int inside, int share, long *sums) {
-    const skg_cell cell = cells[inside ? at : 0];
-    const long part = inside ? share : 0;
-#if SKG_VOLUME_WIDE
-    sums[0] += (long)cell * part;
-#else
-    __global const int *weight = weights + (int)cell * SKG_VOLUME_PLANES;
-    SKG_UNROLL for (int p = 0; p < SKG_VOLUME_PLANES; p++) sums[p] += (long)weight[p] * part;
-#endif
+/* Goes to the end of a slice. Returns where the ray crosses the plane between two cells, as a share of the slice; 1: nowhere. next:
+ * the cell behind it */
+static skg_lanes_float skg_cross_slice(skg_cell_side *side, skg_intv *next) {
+    const skg_lanes_uint place = side->place + side->step;
+    *next = side->cell + side->cells - (place < side->step);
+    const skg_lanes_float up = SKG_LANES_TO_FLOAT(~side->place) + 1.0f, down = SKG_LANES_TO_FLOAT(side->place);
+    const skg_lanes_float share = (*next > side->cell ? up : down) * side->slices, one = (skg_lanes_float)(1.0f);
+    const skg_lanes_float crossed = share < one ? share : one;
+    side->place = place;
+    return *next == side->cell ? one : crossed;
 }
 
-/* Adds the integral from one place along the first axis to another, with `bits` bits. */
-SKG_APART void skg_walk_cells(const skg_cell_ray *ray, int bits, long from, long to, __global const skg_cell *cells,
-                              __global const int *weights, long *sums) {
-    const int first = (int)(from >> bits), last = (int)((to - 1) >> bits);
-    long y = skg_cell_place(ray, bits, 1, first), z = skg_cell_place(ray, bits, 2, first);
-    const long slope_y = ray->slope[1], slope_z = ray->slope[2];
-    const float steep_y = ray->steepness[1], steep_z = ray->steepness[2];
-    const uint rows = (uint)ray->size[1], planes = (uint)ray->size[2];
-    const long stride_y = ray->stride[1], stride_z = ray->stride[2];
-    for (int slice = first; slice <= last; slice++) {
-        const long next_y = y + slope_y, next_z = z + slope_z, begin = (long)slice << bits;
-        const int low = slice == first ? (int)((from - begin) >> (bits - SKG_SHARE_BITS)) : 0;
-        const int high = slice == last ? (int)((to - begin) >> (bits - SKG_SHARE_BITS)) : SKG_SHARE_ONE;
-        const int cross_y = skg_plane_crossing(y, next_y, steep_y), cross_z = skg_plane_crossing(z, next_z, steep_z);
-        const int y_first = cross_y <= cross_z;
-        const int one = clamp(min(cross_y, cross_z), low, high), two = clamp(max(cross_y, cross_z), low, high);
-        const uint y0 = (uint)(y >> SKG_PLACE_BITS), y1 = (uint)(next_y >> SKG_PLACE_BITS);
-        const uint z0 = (uint)(z >> SKG_PLACE_BITS), z1 = (uint)(next_z >> SKG_PLACE_BITS);
-        const uint ym = y_first ? y1 : y0, zm = y_first ? z0 : z1;
-        const long at = slice * ray->stride[0];
-        long own[SKG_CELL_SUMS];
-        SKG_UNROLL for (int p = 0; p < SKG_CELL_SUMS; p++) own[p] = 0;
-        skg_add_cell(cells, weights, at + y0 * stride_y + z0 * stride_z, y0 < rows && z0 < planes, one - low, own);
-        if (two > one)
-            skg_add_cell(cells, weights, at + ym * stride_y + zm * stride_z, ym < rows && zm < planes, two - one, own);
-        if (high > two)
-            skg_add_cell(cells, weights, at + y1 * stride_y + z1 * stride_z, y1 < rows && z1 < planes, high - two, own);
-        SKG_UNROLL for (int p = 0; p < SKG_CELL_SUMS; p++) sums[p] += own[p] >> SKG_DROPPED_BITS;
-        y = next_y;
-        z = next_z;
+/* The ends of the walks of all lanes. */
+typedef struct {
+    skg_intv first, last;        /* slices */
+    skg_lanes_float from, to;    /* within them */
+    int start, end;              /* of all lanes */
+    int whole, partial;          /* slices from `whole` to before `partial` are whole in all lanes */
+} skg_cell_span;
+
+static void skg_cell_span_of(const skg_cell_rays *rays, int bits, int axis, int lane, int end, const long *from, const long *to,
+                        skg_cell_span *span) {
+    int first[SKG_WIDE] SKG_LANES_ALIGNED, last[SKG_WIDE] SKG_LANES_ALIGNED;
+    float low[SKG_WIDE] SKG_LANES_ALIGNED, high[SKG_WIDE] SKG_LANES_ALIGNED;
+    const float slice = 1.0f / (float)(1l << bits);
+    span->start = INT_MAX;
+    span->end = 0;
+    span->whole = 0;
+    span->partial = INT_MAX;
+    for (int l = 0; l < SKG_WIDE; l++) {
+        first[l] = INT_MAX;
+        last[l] = -1;
+        low[l] = high[l] = 0;
+    }
+    for (int l = lane; l < end; l++) {
+        if (rays->axis[l] != axis || from[l] >= to[l]) continue;
+        first[l] = (int)(from[l] >> bits);
+        last[l] = (int)((to[l] - 1) >> bits);
+        low[l] = (float)(from[l] - ((long)first[l] << bits)) * slice;
+        high[l] = (float)(to[l] - ((long)last[l] << bits)) * slice;
+        span->start = min(span->start, first[l]);
+        span->end = max(span->end, last[l] + 1);
+        span->whole = max(span->whole, first[l] + (low[l] > 0));
+        span->partial = min(span->partial, last[l] + (high[l] == 1));
+    }
+    span->first = SKG_LANES_LOAD(skg_intv, first);
+    span->last = SKG_LANES_LOAD(skg_intv, last);
+    span->from = SKG_LANES_LOAD(skg_lanes_float, low);
+    span->to = SKG_LANES_LOAD(skg_lanes_float, high);
+}
+
+/* The shares of a slice that a walk has: from *low to *high. */
+static void skg_cut_slice(const skg_cell_span *span, int slice, skg_lanes_float *low, skg_lanes_float *high) {
+    const skg_intv at = (skg_intv)(slice);
+    const skg_lanes_float zero = (skg_lanes_float)(0.0f), one = (skg_lanes_float)(1.0f);
+    *low = at == span->first ? span->from : at < span->first ? one : zero;
+    *high = at == span->last ? span->to : at > span->last ? zero : one;
+    *high = *high > *low ? *high : *low;
+}
+
+static skg_lanes_float skg_within(skg_lanes_float x, skg_lanes_float low, skg_lanes_float high) {
+    const skg_lanes_float above = x > low ? x : low;
+    return above < high ? above : high;
+}
+
+/* Adds the integrals of the lanes from `lane` to before `end` whose slices lie along an axis. */
+SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *rays, int axis, int lane, int end,
+                              const long *from, const long *to, __global const skg_cell *cells,
+                              __global const float *weights, skg_cell_sum *sums) {
+    const uint strides[3] = {1, (uint)args->cells[0], (uint)args->cells[0] * (uint)args->cells[1]};
+    const int first_side = axis == 0 ? 1 : 0, second_side = axis == 2 ? 1 : 2;
+    const uint stride_y = strides[first_side], stride_z = strides[second_side];
+    const skg_lanes_uint size_y = (skg_lanes_uint)((uint)args->cells[first_side]),
+                         size_z = (skg_lanes_uint)((uint)args->cells[second_side]);
+    skg_cell_span span;
+    skg_cell_side y, z;
+    uint place[3][SKG_WIDE] SKG_LANES_ALIGNED;
+    float share[3][SKG_WIDE] SKG_LANES_ALIGNED;
+    skg_cell_span_of(rays, args->bits, axis, lane, end, from, to, &span);
+    if (span.start >= span.end) return;
+    skg_begin_side(rays, args->bits, 0, axis, lane, end, span.start, &y);
+    skg_begin_side(rays, args->bits, 1, axis, lane, end, span.start, &z);
+    for (int slice = span.start; slice < span.end; slice++) {
+        skg_lanes_float low = (skg_lanes_float)(0.0f), high = (skg_lanes_float)(1.0f);
+        skg_intv next_y, next_z;
+        const skg_intv cell_y = y.cell, cell_z = z.cell;
+        const skg_lanes_float cross_y = skg_cross_slice(&y, &next_y), cross_z = skg_cross_slice(&z, &next_z);
+        const skg_intv y_first = cross_y <= cross_z;
+        skg_lanes_float one = y_first ? cross_y : cross_z, two = y_first ? cross_z : cross_y;
+        y.cell = next_y;
+        z.cell = next_z;
+        if (slice < span.whole || slice >= span.partial) {
+            skg_cut_slice(&span, slice, &low, &high);
+            one = skg_within(one, low, high);
+            two = skg_within(two, low, high);
+        }
+        const skg_intv middle_y = y_first ? next_y : cell_y, middle_z = y_first ? cell_z : next_z;
+        const skg_intv in[3] = {
+            (SKG_LANES_AS_UINT(cell_y) < size_y) & (SKG_LANES_AS_UINT(cell_z) < size_z) & (one > low),
+            (SKG_LANES_AS_UINT(middle_y) < size_y) & (SKG_LANES_AS_UINT(middle_z) < size_z) & (two > one),
+            (SKG_LANES_AS_UINT(next_y) < size_y) & (SKG_LANES_AS_UINT(next_z) < size_z) & (high > two)};
+        if (!skg_any(in[0] | in[1] | in[2])) continue;
+        const skg_lanes_float none = (skg_lanes_float)(0.0f);
+        const skg_lanes_uint zero = (skg_lanes_uint)(0u);
+        *(skg_lanes_uint *)place[0] = in[0] ? SKG_LANES_AS_UINT(cell_y) * stride_y + SKG_LANES_AS_UINT(cell_z) * stride_z : zero;
+        *(skg_lanes_uint *)place[1] =
+            in[1] ? SKG_LANES_AS_UINT(middle_y) * stride_y + SKG_LANES_AS_UINT(middle_z) * stride_z : zero;
+        *(skg_lanes_uint *)place[2] = in[2] ? SKG_LANES_AS_UINT(next_y) * stride_y + SKG_LANES_AS_UINT(next_z) * stride_z : zero;
+        *(skg_lanes_float *)share[0] = in[0] ? one - low : none;
+        *(skg_lanes_float *)share[1] = in[1] ? two - one : none;
+        *(skg_lanes_float *)share[2] = in[2] ? high - two : none;
+        __global const skg_cell *at = cells + (size_t)slice * strides[axis];
+        for (int l = lane; l < end; l++) {
+            skg_cell_weight sum = SKG_CELL_WEIGHT(at[place[0][l]]) * share[0][l];
+            sum = fma(SKG_CELL_WEIGHT(at[place[1][l]]), (skg_cell_weight)(share[1][l]), sum);
+            sum = fma(SKG_CELL_WEIGHT(at[place[2][l]]), (skg_cell_weight)(share[2][l]), sum);
+            sums[l] += SKG_CELL_ROUND(sum);
+        }
     }
 }
 
-/* The place along the first axis where the path parameter is common + depth. */
-static long skg_cell_depth(const skg_cell_ray *ray, long common, skg_real depth) {
-    return ray->base[0] + skg_times(ray->way[0], common, 40) + convert_long_rte(depth * (skg_real)ray->way[0]);
+/* The place along the axis of a ray where the path parameter is common + depth. */
+static long skg_cell_depth(const skg_cell_rays *rays, int lane, long common, skg_real depth) {
+    const long way = rays->way[lane];
+    return rays->base[lane] + skg_times(way, common, 40) + convert_long_rte(depth * (skg_real)way);
 }
 
-/* Subtracts the intervals in which parts inside the volume, or those that win over it, stand. displacing: the set of slots that do
- * so by being inside. ends: of the whole integral */
-SKG_APART void skg_displace_cells(const skg_volume_args *args, const skg_cell_ray *ray, const long *ends,
+/* Adds to `off` the intervals of a ray in which parts inside the volume, or those that win over it, stand. displacing: the set of
+ * slots that do so by being inside */
+SKG_APART void skg_displace_cells(const skg_volume_args *args, const skg_cell_rays *rays, int lane,
                                   __global const skg_listed *hits, int count, __global const int *table,
                                   __global const int *displacing, __global const skg_cell *cells,
-                                  __global const int *weights, long *sums) {
+                                  __global const float *weights, skg_cell_sum *off) {
     int winding[SKG_SLOTS];
     uint active[SKG_WORDS];
-    long off[SKG_CELL_SUMS];
-    for (int p = 0; p < SKG_CELL_SUMS; p++) off[p] = 0;
+    long from[SKG_WIDE], to[SKG_WIDE];
     for (int k = 0; k < count; k++) winding[hits[k].code / 2] = 0;
     for (int w = 0; w < SKG_WORDS; w++) active[w] = 0;
     for (int k = 0; k + 1 < count; k++) {
         uint dropped[SKG_WORDS];
-        int displaced = 0;
         skg_pass_hit(hits[k].code, winding, active);
         if (!(hits[k + 1].depth > hits[k].depth)) continue;
         skg_drop(table, active, dropped);
-        displaced = skg_is_in(dropped, args->slot);
+        int displaced = skg_is_in(dropped, args->slot);
         for (int w = 0; w < SKG_WORDS; w++) displaced |= (active[w] & (uint)displacing[w]) != 0;
         if (!displaced) continue;
-        const long a = skg_cell_depth(ray, args->common, hits[k].depth), b = skg_cell_depth(ray, args->common, hits[k + 1].depth);
-        const long from = clamp(min(a, b), ends[0], ends[1]), to = clamp(max(a, b), ends[0], ends[1]);
-        if (from < to) skg_walk_cells(ray, args->bits, from, to, cells, weights, off);
+        const long a = skg_cell_depth(rays, lane, args->common, hits[k].depth);
+        const long b = skg_cell_depth(rays, lane, args->common, hits[k + 1].depth);
+        from[lane] = clamp(min(a, b), rays->from[lane], rays->to[lane]);
+        to[lane] = clamp(max(a, b), rays->from[lane], rays->to[lane]);
+        skg_walk_cells(args, rays, rays->axis[lane], lane, lane + 1, from, to, cells, weights, off);
     }
-    for (int p = 0; p < SKG_CELL_SUMS; p++) sums[p] -= off[p];
 }
 
-/* From where to where along the first axis the ray is followed. Returns 0 if it misses the volume. */
-static int skg_cell_ends(const skg_volume_args *args, const skg_cell_ray *ray, int column, int row, long *ends) {
-    const long size = (long)ray->size[0] << args->bits;
-    long start = ray->base[0], end = ray->base[0] + ray->way[0];
-#if SKG_PARALLEL
-    const float t = fma(args->start[1], (float)column, fma(args->start[2], (float)row, args->start[0]));
-    start = args->whole ? (ray->way[0] > 0 ? 0 : size) : start + convert_long_sat(t * (float)ray->way[0]);
-#endif
-    ends[0] = clamp(min(start, end), 0l, size);
-    ends[1] = clamp(max(start, end), 0l, size);
-    return ends[0] < ends[1];
-}
-
-/* Adds the volume to one pixel. */
-SKG_APART void skg_volume_pixel(const skg_volume_args *args, int column, int row, __global const skg_cell *cells,
-                                __global const int *weights, __global const int *counts, __global const uint *starts,
-                                __global const skg_listed *hits, __global const int *table, __global const int *displacing,
-                                __global skg_sum *sums) {
-    skg_cell_ray ray;
-    long own[SKG_CELL_SUMS], ends[2];
-    skg_cell_ray_of(args, column, row, &ray);
-    if (!skg_cell_ends(args, &ray, column, row, ends)) return;
-    for (int p = 0; p < SKG_CELL_SUMS; p++) own[p] = 0;
-    skg_walk_cells(&ray, args->bits, ends[0], ends[1], cells, weights, own);
-    if (args->slot >= 0 && column >= args->lists[0] && column < args->lists[2] && row >= args->lists[1] &&
-        row < args->lists[3]) {
-        const int pixel = row * args->layout.columns + column, count = counts[pixel];
-        if (count > 0)
-            skg_displace_cells(args, &ray, ends, hits + starts[pixel], count, table, displacing, cells, weights, own);
-    }
-    const skg_real per_slice = (skg_real)args->unit / (skg_real)abs(ray.way[0]);
-    __global skg_sum *sum = sums + (size_t)row * (size_t)args->layout.stride + (size_t)column;
+/* Adds the sum of a lane to its pixel. */
+static void skg_put_cells(const skg_volume_args *args, long way, const skg_cell_sum *own, const skg_cell_sum *off,
+                          __global const float *weights, __global skg_sum *sum) {
+    const skg_cell_sum left = *own - *off;
+    const skg_real per_slice = (skg_real)args->unit / (skg_real)abs(way);
     for (int p = 0; p < args->plane_count; p++) {
 #if SKG_VOLUME_WIDE
-        const skg_real value = (skg_real)own[0] * (skg_real)weights[p];
+        const skg_real value = (skg_real)left * (skg_real)weights[p];
 #else
-        const skg_real value = (skg_real)own[p];
+        const skg_real value = (skg_real)SKG_CELL_SUM_OF(left, p);
 #endif
         sum[(size_t)args->planes[p] * (size_t)args->layout.plane] += (skg_sum)skg_round(value * per_slice);
     }
 }
 
-/* A work-item takes SKG_VOLUME_RUN pixels of a row of the window. weights: of 16-bit cells [codes][SKG_VOLUME_PLANES], of wide ones
+/* A work-item takes SKG_WIDE pixels of a row of the window. weights: of 16-bit cells [codes][SKG_VOLUME_PLANES], of wide ones
  * [planes]: what a slice within one cell adds. displacing: the set of slots of the parts inside the volume. */
-__kernel void skg_volume_add(skg_volume_args args, __global const skg_cell *cells, __global const int *weights,
+__kernel void skg_volume_add(skg_volume_args args, __global const skg_cell *cells, __global const float *weights,
                              __global const int *counts, __global const uint *starts, __global const skg_listed *hits,
                              __global const int *table, __global const int *displacing, __global skg_sum *sums) {
-    const int first = args.window[0] + SKG_VOLUME_RUN * (int)get_global_id(0);
-    const int row = args.window[1] + (int)get_global_id(1), end = min(first + SKG_VOLUME_RUN, args.window[2]);
-    if (row >= args.window[3]) return;
+    const int column = args.window[0] + SKG_WIDE * (int)get_global_id(0);
+    const int row = args.window[1] + (int)get_global_id(1), lanes = min(args.window[2] - column, SKG_WIDE);
+    skg_cell_rays rays;
+    skg_cell_sum own[SKG_WIDE], off[SKG_WIDE];
+    if (row >= args.window[3] || lanes <= 0) return;
     weights += args.first_weight;
-    for (int column = first; column < end; column++)
-        skg_volume_pixel(&args, column, row, cells, weights, counts, starts, hits, table, displacing, sums);
+    for (int l = 0; l < SKG_WIDE; l++) {
+        own[l] = off[l] = (skg_cell_sum)(0);
+        skg_set_cell_ray(&args, column + min(l, lanes - 1), row, l, &rays);
+    }
+    for (int axis = 0; axis < 3; axis++)
+        skg_walk_cells(&args, &rays, axis, 0, lanes, rays.from, rays.to, cells, weights, own);
+    __global skg_sum *sum = sums + (size_t)row * (size_t)args.layout.stride + (size_t)column;
+    for (int l = 0; l < lanes; l++) {
+        const int at = column + l, pixel = row * args.layout.columns + at;
+        const int listed = args.slot >= 0 && at >= args.lists[0] && at < args.lists[2] && row >= args.lists[1] &&
+                           row < args.lists[3] && counts[pixel] > 0;
+        if (listed)
+            skg_displace_cells(&args, &rays, l, hits + starts[pixel], counts[pixel], table, displacing, cells, weights, off);
+        skg_put_cells(&args, rays.way[l], &own[l], &off[l], weights, sum + l);
+    }
 }

@@ -129,13 +129,8 @@ typedef struct {
     SKG_INT task, winners;
 } skg_hits_args;
 
-/* Pixels of a row that a work-item of a CPU adds a volume to; on a GPU it takes one. */
-#define SKG_VOLUME_CPU_RUN 16
-
-/* Of a share of a slice of a volume, and the bits that are dropped of products of a weight and a share, which have less than 61: up to
- * 2^15 slices are added up. */
-#define SKG_SHARE_BITS 30
-#define SKG_DROPPED_BITS 20
+/* Weights of the cells of a volume are below two to the power of this, so that their rounded sum in a slice is an int. */
+#define SKG_VOLUME_WEIGHT_BITS 30
 
 /* Planes that a launch of skg_volume_add adds to, at most. */
 #define SKG_VOLUME_PLANES_MAX 8

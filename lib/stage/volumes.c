@@ -93,7 +93,8 @@ static skg_status list_planes(const contributors *c, skg_placed_volume *placed) 
             placed->planes[placed->plane_count++] = (int32_t)plane;
     }
     placed->lanes = 1;
-    while (placed->lanes < placed->plane_count && placed->lanes < SKG_VOLUME_PLANES_MAX) placed->lanes *= 2;
+    while (placed->lanes < placed->plane_count && placed->lanes < SKG_VOLUME_PLANES_MAX)
+        placed->lanes *= placed->lanes == 1 ? 4 : 2;
     return SKG_OK;
 }
 
@@ -118,23 +119,24 @@ static skg_status upload_weights(skg_context *context, const contributors *c, sk
     const int64_t codes = placed->volume->wide ? 1 : placed->volume->codes, lanes = placed->lanes;
     const int64_t groups = (placed->plane_count + lanes - 1) / lanes, count = groups * lanes * codes;
     double *weights = NULL;
-    int32_t *rounded = NULL, exponent = 0;
+    float *scaled = NULL;
+    int exponent = 0;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(placed->plane_count * codes, sizeof *weights, "weights of a volume", &weights));
-    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *rounded, "weights of a volume", &rounded));
+    SKG_TRY_CLEANUP(skg_alloc(count, sizeof *scaled, "weights of a volume", &scaled));
     fill_weights(c, placed, codes, weights);
     frexp(placed->most, &exponent); /* most < 2^exponent */
-    placed->exponent = SKG_SHARE_BITS - exponent;
+    placed->exponent = SKG_VOLUME_WEIGHT_BITS - exponent;
     for (int64_t p = 0; p < placed->plane_count; p++)
         for (int64_t k = 0; k < codes; k++)
-            rounded[(p / lanes * codes + k) * lanes + p % lanes] =
-                (int32_t)rint(ldexp(weights[p * codes + k], placed->exponent));
+            scaled[(p / lanes * codes + k) * lanes + p % lanes] =
+                (float)ldexp(weights[p * codes + k], placed->exponent);
     if (placed->volume->wide) placed->most *= 0x1p30;
-    status = skg_buffer_write(context, &placed->weights, count * (int64_t)sizeof *rounded, rounded,
+    status = skg_buffer_write(context, &placed->weights, count * (int64_t)sizeof *scaled, scaled,
                               "weights of a volume");
 cleanup:
     skg_free(&weights);
-    skg_free(&rounded);
+    skg_free(&scaled);
     return status;
 }
 
@@ -239,7 +241,7 @@ static skg_status fill_lists(skg_placed_volume *placed, const skg_pass *pass, co
 static skg_status get_program(const skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
                               cl_program *program) {
     static const char *const files[] = {"pixel.clh", "intervals.clh", "volume.cl"};
-    const skg_define defines[] = {{"SKG_VOLUME_PLANES", placed->lanes},
+    const skg_define defines[] = {{"SKG_VOLUME_PLANES", placed->volume->wide ? 1 : placed->lanes},
                                   {"SKG_VOLUME_WIDE", placed->volume->wide},
                                   {"SKG_SLOTS", skg_priority_slots(&pass->priority)}};
     return skg_kernels_get(context, &pass->kernels, 3, files, SKG_DEFINES(defines), program);
@@ -250,9 +252,8 @@ static skg_status launch(const skg_placed_volume *placed, const skg_pass *pass, 
     const skg_volume_args args = *filled;
     const int on_gpu = staging->context->device->info.gpu;
     const int64_t columns = args.window[2] - args.window[0], rows = args.window[3] - args.window[1];
-    const skg_work_size work = {2,
-                                {on_gpu ? columns : skg_divide_up(columns, SKG_VOLUME_CPU_RUN), rows},
-                                {on_gpu ? 8 : 1, on_gpu ? 8 : 1}};
+    const int64_t lanes = skg_kernel_lanes(staging->context, pass->kernels.precision);
+    const skg_work_size work = {2, {skg_divide_up(columns, lanes), rows}, {on_gpu ? 8 : 1, on_gpu ? 8 : 1}};
     const skg_buffer *none = &placed->weights; /* not read if nothing displaces the volume */
     const int listed = args.slot >= 0;
     const skg_argument arguments[] = {
@@ -291,8 +292,7 @@ static skg_status add(skg_placed_volume *placed, const skg_pass *pass, const skg
     SKG_TRY(fill_lists(placed, pass, hits, staging, &args));
     fill_window(pass, placed->part, args.window);
     if (args.slot >= 0) args.common = fixed(skg_hits_common(pass), 40);
-    args.unit =
-        (float)ldexp(pass->scale.scale, SKG_DROPPED_BITS - SKG_SHARE_BITS - placed->exponent + args.bits);
+    args.unit = (float)ldexp(pass->scale.scale, args.bits - placed->exponent);
     for (int64_t first = 0; first < placed->plane_count; first += placed->lanes) {
         const int64_t left = placed->plane_count - first, count = left < placed->lanes ? left : placed->lanes;
         args.plane_count = (SKG_INT)count;

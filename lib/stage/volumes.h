@@ -11,7 +11,7 @@ typedef struct {
     skg_buffer cells, weights, displacing;
     int64_t plane_count;
     int32_t *planes;  /* [plane_count] that its cells add to */
-    int32_t lanes;    /* planes of a launch: 1, 2, 4 or 8 */
+    int32_t lanes;    /* planes of a launch: 1, 4 or 8 */
     int32_t exponent; /* weights are multiplied by two to the power of this, and rounded */
     double most;      /* the largest weight of a cell */
 } skg_placed_volume;
