@@ -102,10 +102,15 @@ class State:
     def add(self, part: Any, mesh: Mesh, material: Material) -> int:
         """Adds a skg_part of this mesh and material. Its number."""
         part.mesh, part.material = mesh._handle, material._handle
-        number = integer("skg_scene_part_add", self.handle, part)
-        self.names.append(max(self.names, default=-1) + 1)
+        number = self.add_part(part)
         self.materials[number] = material
         self.meshes[_address(mesh._handle)] = mesh
+        return number
+
+    def add_part(self, part: Any) -> int:
+        """Adds a skg_part. Its number."""
+        number = integer("skg_scene_part_add", self.handle, part)
+        self.names.append(max(self.names, default=-1) + 1)
         self.plans.clear()
         self.forget_motion()
         return number
