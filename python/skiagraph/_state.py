@@ -50,6 +50,8 @@ class State:
     changed: set[str] = field(default_factory=set)
     materials: dict[int, Material] = field(default_factory=dict)
     removed: list[str] = field(default_factory=list)
+    #: Of volumes that were added, by the number in `names`, what their hashes are made of.
+    volumes: dict[int, list[Any]] = field(default_factory=dict)
     #: For each part a number that it keeps when parts before it are removed.
     names: list[int] = field(default_factory=list)
     #: One object for each mesh of the library, by its address, so that it knows whether it was changed.

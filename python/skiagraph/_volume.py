@@ -1,7 +1,9 @@
 """Volumes of cells from arrays. Private."""
 from __future__ import annotations
 
+import hashlib
 import os
+import pathlib
 from collections.abc import Sequence
 from typing import Any
 
@@ -39,8 +41,8 @@ def _cells(array: Any) -> NDArray[Any]:
 
 
 def make_volume(label: str, array: Any, affine: Any, values: str, material: Material | str | None,
-                classes: Sequence[tuple[float, Material | str]] | None) -> Any:
-    """A volume, which the caller releases."""
+                classes: Sequence[tuple[float, Material | str]] | None) -> tuple[Any, list[Any]]:
+    """A volume, which the caller releases, and what its hash is made of."""
     source, name = struct("skg_volume_source"), ffi.new("char[]", encode(label, "label"))
     if not isinstance(values, str) or values.lower() not in _VALUES:
         raise ArgumentError(f"values is {values!r}; give 'HU', 'density' or 'mu'")
@@ -56,7 +58,8 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     if isinstance(array, (str, os.PathLike)):
         if affine is not None:
             raise ArgumentError("affine is given beside a file, which says where its cells are; leave it out, or give pose")
-        return make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 1.0, source)
+        return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 1.0, source),
+                [values, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])
     if hasattr(array, "GetDirection") and affine is None:
         array, affine = _of_image(array)
     if affine is None:
@@ -65,7 +68,8 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     source.type, source.cells = _TYPES[cells.dtype.name], ffi.cast("void *", ffi.from_buffer(cells))
     source.slices, source.rows, source.columns = cells.shape
     source.affine = _arrays.matrix(affine, "affine").ravel().tolist()
-    return make("skg_volume_create", "skg_volume", source)
+    return (make("skg_volume_create", "skg_volume", source),
+            [values, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells).hexdigest(), np.asarray(affine, np.float64)])
 
 
 def describe(volume: Any) -> dict[str, Any]:

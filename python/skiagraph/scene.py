@@ -122,9 +122,11 @@ class Scene(_gradient.Differentiable):
                 part.inside = state.number(parent)
             if pose is not None:
                 part.pose = _arrays.matrix(pose, "pose").ravel().tolist()
-            part.volume = _volume.make_volume(label, array, affine, values, material, classes)
+            part.volume, content = _volume.make_volume(label, array, affine, values, material, classes)
             try:
-                return Part(state, state.add_part(part))
+                made = Part(state, state.add_part(part))
+                state.volumes[made._name] = content
+                return made
             finally:
                 release("skg_volume", part.volume)
 

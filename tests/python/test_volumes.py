@@ -117,6 +117,15 @@ def test_a_scene_file_with_a_volume_is_saved_as_it_was(tmp_path):
     np.testing.assert_array_equal(sk.Scene(tmp_path / "moved.json").image("attenuation"), image)
 
 
+def test_other_cells_make_another_scan(tmp_path):
+    hashes = []
+    for value in (1, 1, 2):
+        scene = block(np.full((10, 15, 20), value, np.int16), values="density", material="Water")
+        scene.trajectory = sk.Scan(scene.view, 1)
+        hashes.append(scene.scan(tmp_path / f"{len(hashes)}.mha")["hash"])
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
 def test_simpleitk_images():
     itk = pytest.importorskip("SimpleITK")
     image = itk.GetImageFromArray(np.ones((10, 15, 20), np.int16))
