@@ -22,13 +22,12 @@ typedef ushort skg_cell;
 #if SKG_VOLUME_PLANES == 1
 typedef float skg_cell_weight;
 typedef long skg_cell_sum;
-#define SKG_CELL_ROUND(x) ((long)convert_int_rte(x))
 #define SKG_CELL_SUM_OF(sum, p) (sum)
 #else
 typedef SKG_CAT(float, SKG_VOLUME_PLANES) skg_cell_weight;
 typedef SKG_CAT(long, SKG_VOLUME_PLANES) skg_cell_sum;
-#define SKG_CELL_ROUND(x) \
-    (SKG_CAT(convert_long, SKG_VOLUME_PLANES)(SKG_CAT(SKG_CAT(convert_int, SKG_VOLUME_PLANES), _rte)(x)))
+/* What is behind the point of a number of 2^30 is cut off: rounding takes longer than all else on some processors. */
+#define SKG_CELL_WHOLE(x) (SKG_CAT(convert_long, SKG_VOLUME_PLANES)(SKG_CAT(convert_int, SKG_VOLUME_PLANES)(x)))
 #define SKG_CELL_SUM_OF(sum, p) (((const long *)&(sum))[p])
 #endif
 #if SKG_VOLUME_WIDE
@@ -207,6 +206,20 @@ static skg_lanes_float skg_within(skg_lanes_float x, skg_lanes_float low, skg_la
     return above < high ? above : high;
 }
 
+#if SKG_VOLUME_PLANES == 1
+/* Sums of 64 bits in lanes of 32. */
+typedef struct {
+    skg_lanes_uint low;
+    skg_intv high;
+} skg_cell_sums;
+
+static void skg_add_whole(skg_lanes_float x, skg_cell_sums *sums) {
+    const skg_intv whole = SKG_TO_INT_V(x);
+    sums->low += SKG_LANES_AS_UINT(whole);
+    sums->high += (whole >> 31) - (sums->low < SKG_LANES_AS_UINT(whole));
+}
+#endif
+
 /* Adds the integrals of the lanes from `lane` to before `end` whose slices lie along an axis. */
 SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *rays, int axis, int lane, int end,
                               const long *from, const long *to, __global const skg_cell *cells,
@@ -222,6 +235,11 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
     float share[3][SKG_WIDE] SKG_LANES_ALIGNED;
     skg_cell_span_of(rays, args->bits, axis, lane, end, from, to, &span);
     if (span.start >= span.end) return;
+#if SKG_VOLUME_PLANES == 1
+    float own[SKG_WIDE] SKG_LANES_ALIGNED;
+    skg_cell_sums all = {(skg_lanes_uint)(0u), (skg_intv)(0)};
+    for (int l = 0; l < SKG_WIDE; l++) own[l] = 0;
+#endif
     skg_begin_side(rays, args->bits, 0, axis, lane, end, span.start, &y);
     skg_begin_side(rays, args->bits, 1, axis, lane, end, span.start, &z);
     for (int slice = span.start; slice < span.end; slice++) {
@@ -258,9 +276,21 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
             skg_cell_weight sum = SKG_CELL_WEIGHT(at[place[0][l]]) * share[0][l];
             sum = fma(SKG_CELL_WEIGHT(at[place[1][l]]), (skg_cell_weight)(share[1][l]), sum);
             sum = fma(SKG_CELL_WEIGHT(at[place[2][l]]), (skg_cell_weight)(share[2][l]), sum);
-            sums[l] += SKG_CELL_ROUND(sum);
+#if SKG_VOLUME_PLANES == 1
+            own[l] = sum;
+        }
+        skg_add_whole(SKG_LANES_LOAD(skg_lanes_float, own), &all);
+    }
+    uint below[SKG_WIDE] SKG_LANES_ALIGNED;
+    int above[SKG_WIDE] SKG_LANES_ALIGNED;
+    *(skg_lanes_uint *)below = all.low;
+    *(skg_intv *)above = all.high;
+    for (int l = lane; l < end; l++) sums[l] += (long)above[l] << 32 | (long)below[l];
+#else
+            sums[l] += SKG_CELL_WHOLE(sum);
         }
     }
+#endif
 }
 
 /* The place along the axis of a ray where the path parameter is common + depth. */

@@ -213,7 +213,6 @@ static void compare(const truth *t, const char *what, double bar) {
             const double expected = (double)attenuation_of(t, k / SIDE, k % SIDE);
             worst = fmax(worst, fabs(image[k] - expected)), most = fmax(most, expected);
         }
-        printf("%s, %s: worst %.2g of %.3g\n", what, precision ? "double" : "single", worst / most, most);
         ck_assert_double_gt(most, 1);
         ck_assert_msg(worst <= bar * most, "%s, precision %d: worst %g of %g", what, precision, worst, most);
         skg_plan_release(&plan);
