@@ -388,6 +388,62 @@ START_TEST(what_is_not_computed_is_refused) {
 }
 END_TEST
 
+/* Whether the last frame of a plan had the stage of volumes, and the bytes of the plan. */
+static int has_stage(skg_scene *scene, int64_t *bytes) {
+    static double image[PIXELS];
+    int64_t count = 0;
+    int found = 0;
+    skg_plan *plan = NULL;
+    skg_output output;
+    skg_plan_report report;
+    skg_plan_options options;
+    skg_plan_options_init(&options);
+    skg_plan_report_init(&report);
+    skg_output_init(&output);
+    options.profile = 1;
+    output.type = SKG_TYPE_FLOAT64, output.data = image;
+    ck_skg(skg_plan_create(context, scene, &view, beam, &options, &plan));
+    ck_skg(skg_plan_image(plan, &output));
+    ck_skg(skg_plan_stage_count(plan, &count));
+    for (int64_t k = 0; k < count; k++) {
+        skg_stage stage;
+        skg_stage_init(&stage);
+        ck_skg(skg_plan_stage_get(plan, k, &stage));
+        found |= strcmp(stage.name, "volume") == 0;
+    }
+    ck_skg(skg_plan_report_get(plan, &report));
+    *bytes = report.device_bytes;
+    skg_plan_release(&plan);
+    return found;
+}
+
+/* Without a volume there is no stage; with one, its cells are on the device once. */
+START_TEST(what_is_absent_costs_nothing) {
+    enum { N = 64 };
+    static uint16_t cells[N * N * N];
+    static const double middle[3] = {0, 0, 0};
+    int64_t bytes[2];
+    skg_scene *scenes[2] = {make_scene(), make_scene()};
+    skg_mesh *mesh = NULL;
+    skg_material *water = NULL;
+    skg_volume_source source;
+    ck_skg(skg_mesh_create_cuboid(20, 20, 20, &mesh));
+    ck_skg(skg_material_create_named("Water", &water));
+    skg_volume_source_init(&source);
+    source.columns = source.rows = source.slices = N, source.cells = cells, source.type = SKG_VOLUME_UINT16;
+    source.values = SKG_VOLUME_DENSITY, source.material = water;
+    for (int k = 0; k < N * N * N; k++) cells[k] = 1;
+    add_volume(scenes[1], &source, -1);
+    add_mesh(scenes[0], "water", mesh, water, middle, -1);
+    ck_assert_int_eq(has_stage(scenes[0], &bytes[0]), 0);
+    ck_assert_int_eq(has_stage(scenes[1], &bytes[1]), 1);
+    /* Further planes are 40 x 36 accumulators of 8 bytes, at most, and tables of some kB. */
+    ck_assert_int_ge(bytes[1] - bytes[0], (int64_t)sizeof cells);
+    ck_assert_int_lt(bytes[1] - bytes[0], (int64_t)sizeof cells + 65536);
+    for (int k = 0; k < 2; k++) skg_scene_release(&scenes[k]);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
     tcase_add_test(tests, hounsfield_numbers_are_schneiders_tissues);
@@ -396,6 +452,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, bits_depend_on_nothing);
     tcase_add_test(tests, bad_volumes_are_refused);
     tcase_add_test(tests, files_say_where_cells_are);
+    tcase_add_test(tests, what_is_absent_costs_nothing);
     tcase_add_test(tests, what_is_not_computed_is_refused);
 }
 
