@@ -67,8 +67,18 @@ typedef struct {
     void *cells; /* the caller frees them */
 } skg_grid;
 
-/* Reads a MetaImage of three dimensions with its place. */
+/* How the cells of a grid lie in a file. kind: as of skg_number_of_bytes */
+typedef struct {
+    int bytes, swapped, compressed; /* compressed: 1: by zlib or gzip */
+    char kind;
+} skg_grid_file;
+
+/* Reads the cells of a grid of known size, of which *stream is at the first. */
+skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_file *file, skg_grid *grid);
+
+/* Each reads a volume with its place. */
 skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid);
+skg_status skg_nrrd_read_grid(const char *path, skg_grid *grid);
 
 /* The value of a number of `bytes` bytes of a file. kind: 'u' unsigned, 'i' signed, 'f' float; swapped: 1: of the other byte order. */
 double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped);

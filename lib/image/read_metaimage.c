@@ -96,10 +96,8 @@ static skg_status read_header(const char *path, FILE *stream, metaimage *image) 
         return skg_fail(SKG_ERR_FORMAT,
                         "%s: is no MetaImage: its header has no DimSize or no ElementDataFile", path);
     if (!image->bytes) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its ElementType is none of a number", path);
-    if (image->compressed || image->channels > 1)
-        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is %s; write it %s", path,
-                        image->compressed ? "compressed" : "of several channels",
-                        image->compressed ? "without compression" : "with one");
+    if (image->channels > 1)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is of several channels; write it with one", path);
     if (image->dimensions < 3) image->size[2] = 1;
     return skg_picture_size_check(path, image->size[0], image->size[1], image->size[2]);
 }
@@ -147,6 +145,10 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
     skg_status status = SKG_OK;
     SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
     SKG_TRY_CLEANUP(read_header(path, stream, &image));
+    if (image.compressed) {
+        status = skg_fail(SKG_ERR_UNSUPPORTED, "%s: is compressed; write it without compression", path);
+        goto cleanup;
+    }
     contents->columns = (int64_t)image.size[0], contents->rows = (int64_t)image.size[1];
     contents->pages = (int64_t)image.size[2];
     contents->quantity = image.quantity;
@@ -156,40 +158,6 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
     SKG_TRY_CLEANUP(read_values(path, stream, &image, page, values));
 cleanup:
     if (stream) fclose(stream);
-    return status;
-}
-
-/* The type in which the cells of a file are kept. */
-static int32_t cell_type(const metaimage *image) {
-    if (image->kind == 'f') return image->bytes == 4 ? SKG_VOLUME_FLOAT32 : SKG_VOLUME_FLOAT64;
-    if (image->bytes == 1) return SKG_VOLUME_INT16;
-    if (image->bytes == 2) return image->kind == 'u' ? SKG_VOLUME_UINT16 : SKG_VOLUME_INT16;
-    return SKG_VOLUME_FLOAT64;
-}
-
-/* Reads a slice after another, since a file may be large and its numbers of another type. */
-static skg_status read_cells(const char *path, FILE *stream, const metaimage *image, skg_grid *grid) {
-    static const size_t sizes[] = {sizeof(int16_t), sizeof(uint16_t), sizeof(float), sizeof(double)};
-    const int64_t plane = grid->size[0] * grid->size[1];
-    unsigned char *slice = NULL;
-    skg_status status = SKG_OK;
-    SKG_TRY(skg_alloc(plane * grid->size[2], sizes[grid->type], "cells of a volume", &grid->cells));
-    SKG_TRY(skg_alloc(plane, (size_t)image->bytes, "slice of a volume", &slice));
-    for (int64_t z = 0; z < grid->size[2] && status == SKG_OK; z++) {
-        if (fread(slice, (size_t)image->bytes, (size_t)plane, stream) != (size_t)plane)
-            status = skg_fail(SKG_ERR_FORMAT, "%s: ends in slice %lld of %lld; is it the whole file?", path,
-                              (long long)z, (long long)grid->size[2]);
-        for (int64_t k = 0; k < plane && status == SKG_OK; k++) {
-            const double value =
-                skg_number_of_bytes(slice + k * image->bytes, image->bytes, image->kind, image->swapped);
-            const int64_t at = z * plane + k;
-            if (grid->type == SKG_VOLUME_INT16) ((int16_t *)grid->cells)[at] = (int16_t)value;
-            if (grid->type == SKG_VOLUME_UINT16) ((uint16_t *)grid->cells)[at] = (uint16_t)value;
-            if (grid->type == SKG_VOLUME_FLOAT32) ((float *)grid->cells)[at] = (float)value;
-            if (grid->type == SKG_VOLUME_FLOAT64) ((double *)grid->cells)[at] = value;
-        }
-    }
-    skg_free(&slice);
     return status;
 }
 
@@ -211,11 +179,10 @@ skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
         grid->affine[4 * k + 3] = image.offset[k];
     }
     grid->affine[15] = 1;
-    grid->type = cell_type(&image);
     SKG_TRY_CLEANUP(open_data(path, &image, &stream));
-    SKG_TRY_CLEANUP(read_cells(path, stream, &image, grid));
+    const skg_grid_file file = {image.bytes, image.swapped, image.compressed, image.kind};
+    status = skg_grid_read_cells(path, stream, &file, grid);
 cleanup:
     if (stream) fclose(stream);
-    if (status != SKG_OK) skg_free(&grid->cells);
     return status;
 }

@@ -11,7 +11,10 @@ typedef skg_status (*reader)(const char *path, skg_grid *grid);
 static const struct {
     const char *extension;
     reader read;
-} readers[] = {{".mha", skg_metaimage_read_grid}, {".mhd", skg_metaimage_read_grid}};
+} readers[] = {{".mha", skg_metaimage_read_grid},
+               {".mhd", skg_metaimage_read_grid},
+               {".nrrd", skg_nrrd_read_grid},
+               {".nhdr", skg_nrrd_read_grid}};
 
 static skg_status find_reader(const char *path, reader *found) {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');

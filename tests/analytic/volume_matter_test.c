@@ -351,6 +351,48 @@ START_TEST(files_say_where_cells_are) {
 }
 END_TEST
 
+/* The same cells and place in NRRD, raw and, as another program has written it, by gzip. */
+START_TEST(nrrd_files_are_read) {
+    static const unsigned char zipped[] = {
+        31,  139, 8,   0,   0,   0,   0,   0,   2,   3,   1,  48, 0,   207, 255, 24,  252, 44,
+        252, 68,  253, 136, 255, 196, 255, 246, 255, 20,  0,  60, 0,   110, 0,   250, 0,   74,
+        1,   224, 1,   48,  2,   178, 2,   82,  3,   222, 3,  76, 4,   186, 4,   40,  5,   150,
+        5,   4,   6,   40,  0,   0,   0,   212, 254, 187, 65, 26, 140, 48,  0,   0,   0};
+    static const double expected[16] = {2, 0, 0, 5, 0, 0, 4, 6, 0, -3, 0, 7, 0, 0, 0, 1};
+    char path[128];
+    skg_volume *volume = NULL;
+    skg_volume_contents contents;
+    snprintf(path, sizeof path, "volume-%d.nrrd", (int)getpid());
+    for (int gzip = 0; gzip < 2; gzip++) {
+        FILE *file = fopen(path, "wb");
+        ck_assert_ptr_nonnull(file);
+        fprintf(
+            file,
+            "NRRD0004\n# a comment\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 3 2 4\n"
+            "space directions: (2,0,0) (0,0,-3) (0,4,0)\nkinds: domain domain domain\nendian: %s\nencoding: %s\n"
+            "space origin: (5,6,7)\nkey:=value\n\n",
+            gzip ? "little" : "big", gzip ? "gzip" : "raw");
+        for (int k = 0; k < CELLS && !gzip; k++)
+            fputc(numbers[k] >> 8 & 255, file), fputc(numbers[k] & 255, file);
+        if (gzip) fwrite(zipped, 1, sizeof zipped, file);
+        fclose(file);
+        ck_skg(skg_volume_load(path, 1, NULL, &volume));
+        skg_volume_contents_init(&contents);
+        ck_skg(skg_volume_contents_get(volume, &contents));
+        ck_assert_double_eq(contents.low, -1000);
+        ck_assert_double_eq(contents.high, 1540);
+        ck_assert_mem_eq(contents.affine, expected, sizeof expected);
+        skg_volume_release(&volume);
+    }
+    FILE *file = fopen(path, "wb");
+    fprintf(file, "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 4\nencoding: gzip\n\n");
+    fwrite(zipped, 1, sizeof zipped / 2, file);
+    fclose(file);
+    ck_skg_fails(skg_volume_load(path, 1, NULL, &volume), SKG_ERR_FORMAT, "is it the whole file");
+    remove(path);
+}
+END_TEST
+
 START_TEST(what_is_not_computed_is_refused) {
     static double image[PIXELS];
     static const double middle[3] = {0, 0, 0};
@@ -451,6 +493,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, cells_stand_for_meshes, 0, 2);
     tcase_add_test(tests, bits_depend_on_nothing);
     tcase_add_test(tests, bad_volumes_are_refused);
+    tcase_add_test(tests, nrrd_files_are_read);
     tcase_add_test(tests, files_say_where_cells_are);
     tcase_add_test(tests, what_is_absent_costs_nothing);
     tcase_add_test(tests, what_is_not_computed_is_refused);
