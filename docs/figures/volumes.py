@@ -58,7 +58,7 @@ def draw(folder):
     scene["Samples"] = [{"Label": "patient", "Volume": "ct.mha", "Values": "HU"}, needle, *screws]
     (folder / "volume.json").write_text(json.dumps(scene))
     for name in ("meshes", "volume"):
-        run(folder, "image", f"{name}.json", "-o", f"{name}.png", "--quantity", "attenuation", "--range", "0.2:5.2")
+        run(folder, "image", f"{name}.json", "-o", f"{name}.png", "--quantity", "attenuation", "--range", "0.3:8")
 
 
 with tempfile.TemporaryDirectory() as name:
