@@ -91,6 +91,7 @@ static skg_status refuse_gradient(const char *call, const skg_recipe *recipe, in
 const skg_effect_row skg_effect_volumes = {
     .name = "volumes",
     .key = "Volume",
+    .self_test = SKG_SELF_TEST_VOLUME,
     .refuses_half = has_volume,
     .refuses_gradient = refuse_gradient,
     .find = find_volumes,
