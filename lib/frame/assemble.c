@@ -77,10 +77,10 @@ static skg_status make_lengths(const skg_recipe *recipe, skg_machine *machine) {
 skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
                                 const skg_plan_options *options, skg_machine *machine) {
     machine->context = machine->rasters.context = context;
+    SKG_TRY(skg_volumes_create(context, recipe->scene, &machine->volumes));
     SKG_TRY(make_geometry(recipe, machine));
     SKG_TRY(make_detector(recipe, options, machine));
     SKG_TRY(make_lengths(recipe, machine));
-    SKG_TRY(skg_volumes_create(context, recipe->scene, &machine->volumes));
     SKG_TRY(skg_attenuator_create(context, &machine->attenuator));
     SKG_TRY(
         skg_buffer_reserve(context, &machine->negative, 4 * sizeof(cl_int), CL_MEM_READ_WRITE, "counters"));
