@@ -2,6 +2,7 @@
 #include "stage/volumes.h"
 
 #include "core/maths.h"
+#include "mesh/mesh.h"
 #include "scene/volume.h"
 #include "stage/raster_private.h"
 
@@ -287,6 +288,10 @@ static void fill_window(const skg_pass *pass, int64_t part, SKG_INT window[4]) {
 static skg_status add(skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
                       skg_staging *staging) {
     skg_volume_args args = {.layout = pass->main.raster->layout};
+    if (placed->volume->hull->version != 1)
+        return skg_fail(SKG_ERR_SCENE,
+                        "%s: the vertices of its box were moved, which moves no cell; move the part by its pose",
+                        pass->scene->parts[placed->part].label);
     if (!pass->extents[placed->part].on_detector || placed->plane_count == 0) return SKG_OK;
     SKG_TRY(fill_rays(placed, pass, &args));
     SKG_TRY(fill_lists(placed, pass, hits, staging, &args));

@@ -219,10 +219,14 @@ static void compare(const truth *t, const char *what, double bar) {
     }
 }
 
+/* The last two: the source in the volume, and the detector through it. */
 static void set_projection(int which) {
-    static const int32_t projections[3] = {SKG_PROJECTION_POINT, SKG_PROJECTION_PARALLEL,
-                                           SKG_PROJECTION_PARALLEL_FROM_INFINITY};
+    static const int32_t projections[5] = {SKG_PROJECTION_POINT, SKG_PROJECTION_PARALLEL,
+                                           SKG_PROJECTION_PARALLEL_FROM_INFINITY, SKG_PROJECTION_POINT,
+                                           SKG_PROJECTION_PARALLEL};
     view.projection = projections[which];
+    if (which == 3) view.source[0] = 1, view.source[1] = 2, view.source[2] = 3;
+    if (which == 4) view.centre[2] = 12;
     if (which == 2) view.source[0] = 0.2, view.source[1] = -0.1, view.source[2] = 3;
 }
 
@@ -271,8 +275,8 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
-    tcase_add_loop_test(tests, cells_are_boxes, 0, 3);
-    tcase_add_loop_test(tests, a_part_inside_displaces_cells, 0, 3);
+    tcase_add_loop_test(tests, cells_are_boxes, 0, 5);
+    tcase_add_loop_test(tests, a_part_inside_displaces_cells, 0, 5);
     tcase_add_loop_test(tests, the_higher_priority_displaces_cells_or_is_displaced, 0, 2);
     tcase_add_loop_test(tests, a_volume_displaces_what_it_lies_inside, 1, 2);
 }
