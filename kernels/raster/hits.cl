@@ -2,18 +2,6 @@
  * and written. Then they are sorted and swept, and what the losers had added is subtracted from the sums as integers.
  * Coverage and depths are those of the rasterisers (triangle.clh), so that exactly what was added is subtracted. */
 
-#define SKG_WORDS (SKG_SLOTS / 32)
-
-/* Ints of the entry of a slot: the number of its part, plus SKG_HITS_UNITED if it is united; the slot of the parent that it is clipped to, or -1; then two sets of
- * slots, one bit each: those that win over it, and those whose loss it shares. */
-#define SKG_ENTRY (2 + 2 * SKG_WORDS)
-
-/* depth: r, measured from the common reference of all competitors; code: 2 slot + 1 if the ray enters, 2 slot if it leaves. */
-typedef struct {
-    skg_real depth;
-    int code;
-} skg_listed;
-
 typedef struct {
     __global const int *slots;       /* [parts] -1: the part does not compete; see SKG_HITS_BACKGROUND */
     __global const skg_real *shifts; /* [slots] the part's reference minus the common one */
@@ -168,18 +156,6 @@ static void skg_sort_hits(__global skg_listed *hits, int count) {
     }
 }
 
-static int skg_is_in(const uint *set, int slot) {
-    return (int)(set[slot / 32] >> (slot % 32) & 1);
-}
-
-/* Whether an active slot loses the interval. dropped: the slots found to lose it so far; all parents of this one are judged. */
-static int skg_loses(__global const int *entry, const uint *active, const uint *dropped) {
-    int loses = entry[1] >= 0 && !skg_is_in(active, entry[1]);
-    for (int w = 0; w < SKG_WORDS; w++)
-        loses |= ((uint)entry[2 + w] & active[w]) != 0 || ((uint)entry[2 + SKG_WORDS + w] & dropped[w]) != 0;
-    return loses;
-}
-
 /* The first copy that counts for a plane: of one to which parts have added there is one. */
 static int skg_copy_of(const skg_raster_layout *layout, __global const int *used, int plane) {
     int copy = 0;
@@ -199,25 +175,6 @@ static void skg_take_off(const skg_raster_layout *layout, __global const skg_par
         const size_t first = (size_t)skg_copy_of(layout, used, plane) * (size_t)layout->planes + (size_t)plane;
         sums[first * (size_t)layout->plane + place] -= (skg_sum)skg_round(length * contributions[w].weight);
     }
-}
-
-/* The slots that lose an interval, of those that are active. */
-static void skg_drop(__global const int *table, const uint *active, uint *dropped) {
-    for (int w = 0; w < SKG_WORDS; w++) dropped[w] = 0;
-    for (int w = 0; w < SKG_WORDS; w++)
-        for (uint rest = active[w]; rest; rest &= rest - 1) {
-            const uint lowest = rest & (~rest + 1);
-            const int slot = 32 * w + 31 - (int)clz(lowest);
-            if (skg_loses(table + slot * SKG_ENTRY, active, dropped)) dropped[w] |= lowest;
-        }
-}
-
-/* Passes a hit: counts how many layers of its part the ray is in. */
-static void skg_pass_hit(int code, int *winding, uint *active) {
-    const int slot = code / 2;
-    winding[slot] += code & 1 ? 1 : -1;
-    const uint bit = 1u << (slot % 32);
-    active[slot / 32] = winding[slot] > 0 ? active[slot / 32] | bit : active[slot / 32] & ~bit;
 }
 
 /* Notes after a hit whether a united slot has other layers than 0 or 1. */

@@ -91,6 +91,10 @@
     X(HITS_SLOPES, args) X(HITS_SLOPES, touch) X(HITS_SLOPES, parts) X(HITS_SLOPES, contributions) X(HITS_SLOPES, counts) \
     X(HITS_SLOPES, starts) X(HITS_SLOPES, hits) X(HITS_SLOPES, table) X(HITS_SLOPES, weights) X(HITS_SLOPES, slopes)
 
+#define SKG_ARGUMENTS_VOLUME_ADD(X) \
+    X(VOLUME_ADD, args) X(VOLUME_ADD, cells) X(VOLUME_ADD, weights) X(VOLUME_ADD, counts) X(VOLUME_ADD, starts) \
+    X(VOLUME_ADD, hits) X(VOLUME_ADD, table) X(VOLUME_ADD, displacing) X(VOLUME_ADD, sums)
+
 #define SKG_ARGUMENTS_GRADIENT_FACES(X) \
     X(GRADIENT_FACES, args) X(GRADIENT_FACES, corners) X(GRADIENT_FACES, projected) X(GRADIENT_FACES, parts) \
     X(GRADIENT_FACES, blocks) X(GRADIENT_FACES, contributions) X(GRADIENT_FACES, weights) X(GRADIENT_FACES, scales) \
@@ -185,7 +189,7 @@
     X(TILES_FILL, skg_tiles_fill) X(RASTER_SQUARES, skg_raster_squares) X(BANDS_SORT, skg_bands_sort) \
     X(RASTER_BANDS, skg_raster_bands) X(RASTER_HALF, skg_raster_half) X(SOURCE_PLANE, skg_source_plane) \
     X(HITS_CLEAR, skg_hits_clear) X(HITS_LIST, skg_hits_list) X(HITS_SOURCE_PLANE, skg_hits_source_plane) X(HITS_PLACE, skg_hits_place) \
-    X(HITS_SETTLE, skg_hits_settle) X(HITS_SLOPES, skg_hits_slopes) \
+    X(HITS_SETTLE, skg_hits_settle) X(HITS_SLOPES, skg_hits_slopes) X(VOLUME_ADD, skg_volume_add) \
     X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_BATCHES, skg_gradient_batches) \
     X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \

@@ -129,6 +129,33 @@ typedef struct {
     SKG_INT task, winners;
 } skg_hits_args;
 
+/* Weights of the cells of a volume are below two to the power of this, so that their rounded sum in a slice is an int. */
+#define SKG_VOLUME_WEIGHT_BITS 30
+
+/* Planes that a launch of skg_volume_add adds to, at most. */
+#define SKG_VOLUME_PLANES_MAX 8
+
+/* Of skg_volume_add. Places are in cells along the axes of the volume, in fixed point with `bits` bits behind the point: with t the path
+ * parameter, 0 where it is `base` and 1 at the pixel, pixel (i, j) sees base + i base_column + j base_row + t (way + i way_column +
+ * j way_row). */
+typedef struct {
+    SKG_LONG base[3], base_column[3], base_row[3];
+    SKG_LONG way[3], way_column[3], way_row[3];
+    SKG_LONG common; /* 2^40 times the path parameter where depths of hits are 0 */
+    skg_raster_layout layout;
+    SKG_INT window[4]; /* columns from, rows from, columns to, rows to */
+    SKG_INT cells[3];  /* along each axis */
+    SKG_INT bits;
+    SKG_INT planes[SKG_VOLUME_PLANES_MAX];
+    SKG_INT plane_count;
+    SKG_INT lists[4];     /* the window in which hits are listed */
+    SKG_INT whole;        /* 1: paths have no start */
+    SKG_INT slot;         /* of the volume among the competitors; -1: nothing displaces it */
+    float unit;           /* of sums, a power of two */
+    float start[3];       /* parallel: paths start at t = start[0] + start[1] i + start[2] j */
+    SKG_INT first_weight; /* of the launch's planes */
+} skg_volume_args;
+
 /* Of the kernels of leaky.cl. parts: of the batch; part and count: of skg_leaky_put, one of these and how many of its pixels
  * get new sums. */
 typedef struct {
@@ -292,7 +319,8 @@ typedef struct {
 #define SKG_CELL_PLACE(word) ((word)&0x3fffffffu)
 #define SKG_CELL_MEDIUM_OF(word) ((word)&0xffffffu)
 #define SKG_CELL_LEAP_MAX 63
-#define SKG_LIST_HEAD 5       /* of a list of faces: a medium, how many faces, a place with this medium; then their numbers */
+#define SKG_LIST_HEAD                                                                                        \
+    5 /* of a list of faces: a medium, how many faces, a place with this medium; then their numbers */
 #define SKG_CELL_NUDGE 2e-5f  /* coarse cells: a line is looked up so far behind a boundary */
 #define SKG_CELL_MARGIN 4e-5f /* a face that is so near a boundary and along it is on it */
 
@@ -317,7 +345,7 @@ typedef struct {
     float anode[3], heel_low,
         heel_per; /* heel_rows > 0: across its face; cosine of the first row of the table, rows for a cosine of 1 */
     float around_low[3], around_high[3]; /* world_around: of the box in which the world scatters */
-    float world_start; /* world_around: of a parallel beam where the world begins, mm along it */
+    float world_start;        /* world_around: of a parallel beam where the world begins, mm along it */
     float central[3], fan[3]; /* fan_rows > 0: to the detector's middle; where the angles of the fan grow */
     SKG_INT cells[3], energies, momenta, angle_last, bins, spots, columns, rows;
     SKG_INT heel_rows, fan_rows; /* of the table of the heel effect and of the filter's; 0: none */
@@ -392,6 +420,7 @@ _Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72 &&
                    sizeof(skg_blur_variance_args) == 96,
                "layout of images");
 _Static_assert(sizeof(skg_hits_args) == 104 && sizeof(skg_leaky_args) == 88, "layout of arguments");
+_Static_assert(sizeof(skg_volume_args) == 19 * 8 + 72 + 28 * 4, "layout of the arguments of skg_volume_add");
 _Static_assert(sizeof(skg_gradient_args) == 104, "layout of the arguments of gradients");
 _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");

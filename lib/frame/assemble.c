@@ -77,6 +77,7 @@ static skg_status make_lengths(const skg_recipe *recipe, skg_machine *machine) {
 skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
                                 const skg_plan_options *options, skg_machine *machine) {
     machine->context = machine->rasters.context = context;
+    SKG_TRY(skg_volumes_create(context, recipe->scene, &machine->volumes));
     SKG_TRY(make_geometry(recipe, machine));
     SKG_TRY(make_detector(recipe, options, machine));
     SKG_TRY(make_lengths(recipe, machine));
@@ -88,15 +89,18 @@ skg_status skg_machine_assemble(skg_context *context, const skg_recipe *recipe,
                                    skg_recipe_max_fine(recipe) * recipe->view.rows, &machine->pass));
     machine->pass.placement = &machine->placement;
     machine->pass.geometry = &machine->geometry;
+    machine->pass.volumes = &machine->volumes;
     return SKG_OK;
 }
 
 skg_status skg_machine_complete(const skg_recipe *recipe, skg_machine *machine) {
+    SKG_TRY(skg_volumes_weigh(machine->context, recipe->scene, &recipe->model, &machine->volumes));
     return make_attenuation(recipe, machine->context, &machine->images);
 }
 
 skg_status skg_machine_renew(const skg_recipe *recipe, skg_machine *machine) {
     skg_attenuation images = {0};
+    SKG_TRY(skg_volumes_weigh(machine->context, recipe->scene, &recipe->model, &machine->volumes));
     const skg_status status = make_attenuation(recipe, machine->context, &images);
     if (status != SKG_OK) {
         skg_attenuation_release(&images);

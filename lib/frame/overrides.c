@@ -98,6 +98,11 @@ skg_status skg_overrides_apply(const skg_recipe *recipe, const skg_frame *given,
     const int64_t parts = recipe->scene->count, planes = recipe->model.planes;
     overrides o = {.recipe = recipe};
     skg_status status = SKG_OK;
+    if (skg_scene_volumes(recipe->scene) > 0)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "densities and fill fractions of single frames are not computed beside a volume; give each frame "
+            "a scene of its own, or leave out the volume");
     if (given->override_count < 0 || !given->override_parts)
         return skg_fail(SKG_ERR_ARGUMENT, "a frame has %" PRId64 " overrides, but no ids of parts",
                         given->override_count);

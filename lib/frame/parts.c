@@ -2,6 +2,7 @@
 #include "frame/frames.h"
 #include "frame/given.h"
 #include "geometry/optics.h"
+#include "stage/volumes.h"
 
 #include <math.h>
 #include <string.h>
@@ -96,6 +97,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                                 .contribution = pass->contributions + pass->first[p]};
         if (count == 0) continue;
         extent->scale.weight = largest_weight(pass, p);
+        if (work->shows != SKG_OUTPUT_LENGTHS) extent->scale.weight += skg_volumes_most(memory->volumes, p);
         memory->scales[contributing++] = extent->scale;
         pass->kernels.source_plane |= extent->near_source && extent->on_detector;
     }

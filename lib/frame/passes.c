@@ -23,8 +23,9 @@ static int32_t passes_together(const skg_recipe *recipe, const skg_machine *mach
                                         .triangles = skg_scene_triangles(recipe->scene),
                                         .image_bytes = pass->camera.columns * pass->camera.rows *
                                                        pass->planes * pass->kernels.bits / 8};
-    const int alone = number < 0 || recipe->leaky_count > 0 || recipe->priority_possible ||
-                      (pass->kernels.source_plane && !pass->kernels.parallel) || pass->kernels.half;
+    const int alone = number < 0 || recipe->leaky_count > 0 || machine->volumes.count > 0 ||
+                      recipe->priority_possible || (pass->kernels.source_plane && !pass->kernels.parallel) ||
+                      pass->kernels.half;
     *side = 1;
     return alone ? 1 : skg_passes_choose(&request, side);
 }
@@ -36,7 +37,7 @@ static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine 
         .kernels = pass->kernels,
         .strategy = recipe->strategy,
         .tile = tile_of(recipe, pass),
-        .more_sums = recipe->leaky_count > 0,
+        .more_sums = recipe->leaky_count > 0 || machine->volumes.count > 0,
         .columns = pass->camera.columns,
         .rows = pass->camera.rows,
         .planes = pass->planes,
@@ -132,6 +133,8 @@ static skg_status draw_sums(skg_job *job, const skg_frame_work *work, const skg_
     SKG_TRY(skg_raster_run(pass->main.raster, &machine->geometry, extents, log));
     if (pass->priority.count)
         SKG_TRY(skg_hits_settle(pass, &machine->geometry, &machine->hits, &job->staging));
+    if (is_image && machine->volumes.count)
+        SKG_TRY(skg_volumes_add(&machine->volumes, pass, &machine->hits, &job->staging));
     if (leaky.count == 0) {
         if (is_image) skg_raster_keep(pass->main.raster, &machine->geometry);
         return SKG_OK;

@@ -70,6 +70,9 @@ static skg_status set_positions(skg_plan *plan, int64_t part, cl_mem buffer, int
     SKG_TRY(check_part(plan, part));
     SKG_TRY(check_bounds(lowest, highest, &source));
     const skg_mesh *mesh = plan->recipe->scene->parts[part].mesh;
+    if (plan->recipe->scene->parts[part].volume)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: %s is a volume of cells; move it by its pose", CALL,
+                        plan->recipe->scene->parts[part].label);
     SKG_TRY(check_memory(plan, mesh, offset, &source));
     SKG_TRY(skg_caller_events_wait(plan->context, events));
     SKG_TRY(skg_placement_place(&plan->machine.placement, plan->context, &plan->machine.geometry, mesh,

@@ -8,6 +8,12 @@ static int may_win(const skg_scene_part_data *part, const skg_scene_part_data *o
            over->mesh->closed;
 }
 
+/* The volume whose cells a part displaces because it lies inside, or -1. Cells differ, so no difference of materials does it. */
+static int64_t displaced_by(const skg_scene *scene, int64_t part) {
+    const int64_t parent = scene->parts[part].inside;
+    return parent >= 0 && scene->parts[parent].volume && scene->parts[part].mesh->closed ? parent : -1;
+}
+
 /* The parent that a part is clipped to, or -1. */
 static int64_t clipped_to(const skg_scene *scene, int32_t rules, int64_t part) {
     const int64_t parent = scene->parts[part].inside;
@@ -24,7 +30,7 @@ static int is_united(const skg_scene *scene, int32_t rules, int64_t part) {
 int skg_priority_possible(const skg_scene *scene, int32_t rules) {
     for (int64_t p = 0; p < scene->count; p++) {
         if (is_united(scene, rules, p)) return 1;
-        if (clipped_to(scene, rules, p) >= 0) return 1;
+        if (clipped_to(scene, rules, p) >= 0 || displaced_by(scene, p) >= 0) return 1;
         if (scene->parts[p].priority == 0) continue; /* if priorities differ, one is not 0 */
         for (int64_t q = 0; q < scene->count; q++)
             if (may_win(&scene->parts[p], &scene->parts[q]) || may_win(&scene->parts[q], &scene->parts[p]))
@@ -49,7 +55,7 @@ static int meet(const skg_extent *a, const skg_extent *b) {
 /* Whether a part is a background part, which wins over none. With clipping any part may make another fall, by its absence; united
  * parts are settled wherever they are. */
 static int is_background(const skg_scene *scene, int32_t rules, int64_t part) {
-    if (rules) return 0;
+    if (rules || displaced_by(scene, part) >= 0) return 0;
     for (int64_t q = 0; q < scene->count; q++)
         if (may_win(&scene->parts[part], &scene->parts[q])) return 0;
     return 1;
@@ -79,7 +85,12 @@ static void mark_rivals(const skg_scene *scene, int32_t rules, const skg_camera 
     const int32_t size[2] = {(int32_t)camera->rows, (int32_t)camera->columns};
     for (int k = 0; k < 2; k++) window[2 * k] = size[k], window[2 * k + 1] = 0;
     for (int64_t p = 0; p < scene->count; p++) {
-        const int64_t parent = clipped_to(scene, rules, p);
+        const int64_t parent = clipped_to(scene, rules, p), volume = displaced_by(scene, p);
+        if (volume >= 0 && meet(&extents[p], &extents[volume])) {
+            marks[p] |= LISTED;
+            marks[volume] |= LISTED;
+            add_to_window(camera, &extents[p], &extents[volume], window);
+        }
         if (is_united(scene, rules, p) && extents[p].on_detector) {
             marks[p] |= LISTED;
             add_to_window(camera, &extents[p], &extents[p], window);
@@ -202,4 +213,15 @@ void skg_priority_runs(const skg_scene *scene, int32_t rules, const skg_priority
             triangles[background] += scene->parts[part].mesh->triangles;
         }
     }
+}
+
+int64_t skg_priority_displacing(const skg_scene *scene, const skg_priority *priority, int64_t volume,
+                                int32_t *set) {
+    int64_t slot = -1;
+    for (int64_t w = 0; w < skg_priority_slots(priority) / 32; w++) set[w] = 0;
+    for (int64_t s = 0; s < priority->count; s++) {
+        if (priority->parts[s] == volume) slot = s;
+        if (displaced_by(scene, priority->parts[s]) == volume) add_to_set(set, s);
+    }
+    return slot;
 }

@@ -3,7 +3,8 @@
  *
  * Of the closed parts of one parent (or of the world) that contain a point, those of the highest priority count
  * there; parts of the same priority add. With clipping, a part counts only inside its closed parent. A part that
- * does not count ("falls") takes along every part inside it, at any depth. Leaky parts neither displace nor are
+ * does not count ("falls") takes along every part inside it, at any depth. Closed parts inside a volume of cells are listed with it, since
+ * its cells do not count where they are. Leaky parts neither displace nor are
  * displaced. The parts that may compete follow from the bounds of each frame, so that parts may move. */
 #ifndef SKG_PRIORITY_H
 #define SKG_PRIORITY_H
@@ -54,6 +55,10 @@ void skg_priority_tables(const skg_scene *scene, int32_t rules, const skg_priori
  * parts: number of the first triangle, part, slot. triangles: of both. */
 void skg_priority_runs(const skg_scene *scene, int32_t rules, const skg_priority *priority, int32_t *runs,
                        int64_t triangles[2]);
+
+/* The slot of a volume among the competitors, or -1, and the set of the slots of parts inside it: [slots / 32]. */
+int64_t skg_priority_displacing(const skg_scene *scene, const skg_priority *priority, int64_t volume,
+                                int32_t *set);
 
 /* Whether priority or clipping decides what is seen of an overlapping pair, so that no warning is due. */
 int skg_priority_settles(const skg_scene *scene, int32_t rules, const skg_overlap_pair *pair);

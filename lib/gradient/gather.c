@@ -41,7 +41,7 @@ static int needs_faces(const skg_gather_run *run) {
 }
 
 skg_status skg_gather_begin(skg_gather_run *run) {
-    static const char *const files[] = {"pixel.clh", "hits.cl", "slopes.cl", "gradient.cl"};
+    static const char *const files[] = {"pixel.clh", "intervals.clh", "hits.cl", "slopes.cl", "gradient.cl"};
     const skg_priority *priority = &run->pass->priority;
     const skg_weight_layout layout = layout_of(run->pass);
     const skg_define defines[] = {{"SKG_SLOTS", priority->count ? skg_priority_slots(priority) : 32},
@@ -56,7 +56,7 @@ skg_status skg_gather_begin(skg_gather_run *run) {
         .plane = (SKG_INT)layout.plane,
         .planes = (SKG_INT)layout.planes};
     if (!needs_faces(run)) return SKG_OK;
-    return skg_kernels_get(run->context, &run->pass->kernels, 4, files, SKG_DEFINES(defines), &run->program);
+    return skg_kernels_get(run->context, &run->pass->kernels, 5, files, SKG_DEFINES(defines), &run->program);
 }
 
 /* Reads reals of the device as doubles, and waits. Floats are read into the end of the doubles' memory. */

@@ -6,6 +6,7 @@
 #include "core/files.h"
 
 #include <skiagraph/image.h>
+#include <skiagraph/volume.h>
 
 #include <string.h>
 
@@ -55,6 +56,29 @@ skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file
 skg_status skg_png_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
 skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
 skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
+
+/* A grid of three dimensions in a file. */
+typedef struct {
+    int64_t size[3];
+    double
+        affine[16]; /* from the indices of a cell to its centre, in the file's unit; see skg_volume_source */
+    int32_t type;   /* enum skg_volume_type */
+    int32_t reserved;
+    void *cells; /* the caller frees them */
+} skg_grid;
+
+/* How the cells of a grid lie in a file. kind: as of skg_number_of_bytes */
+typedef struct {
+    int bytes, swapped, compressed; /* compressed: 1: by zlib or gzip */
+    char kind;
+} skg_grid_file;
+
+/* Reads the cells of a grid of known size, of which *stream is at the first. */
+skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_file *file, skg_grid *grid);
+
+/* Each reads a volume with its place. */
+skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid);
+skg_status skg_nrrd_read_grid(const char *path, skg_grid *grid);
 
 /* The value of a number of `bytes` bytes of a file. kind: 'u' unsigned, 'i' signed, 'f' float; swapped: 1: of the other byte order. */
 double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped);

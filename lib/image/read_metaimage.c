@@ -10,7 +10,8 @@ enum { LINE = 4096, LINES = 200 };
 
 /* What the header says. */
 typedef struct {
-    double size[3];
+    double size[3], spacing[3], offset[3];
+    double axes[9]; /* a row for each axis */
     int dimensions, bytes, swapped, compressed, channels;
     char kind;
     char data[LINE]; /* ElementDataFile */
@@ -41,9 +42,29 @@ static void read_sizes(const char *value, metaimage *image) {
     }
 }
 
+/* Up to `count` numbers, the others stay. */
+static void read_numbers(const char *value, int count, double *numbers) {
+    for (int k = 0; k < count; k++) {
+        const char *end = value;
+        const double number = skg_read_number(value, &end);
+        if (end == value) return;
+        numbers[k] = number, value = end;
+    }
+}
+
+/* Where the grid lies; MetaIO knows several names. */
+static void read_place(const char *key, const char *value, metaimage *image) {
+    if (!strcmp(key, "ElementSpacing")) read_numbers(value, 3, image->spacing);
+    if (!strcmp(key, "Offset") || !strcmp(key, "Position") || !strcmp(key, "Origin"))
+        read_numbers(value, 3, image->offset);
+    if (!strcmp(key, "TransformMatrix") || !strcmp(key, "Rotation") || !strcmp(key, "Orientation"))
+        read_numbers(value, 9, image->axes);
+}
+
 /* One line "key = value" of the header. Keys that say nothing of the values are passed over. */
 static void read_line(const char *key, const char *value, metaimage *image) {
     if (!strcmp(key, "DimSize")) read_sizes(value, image);
+    read_place(key, value, image);
     if (!strcmp(key, "ElementNumberOfChannels")) image->channels = atoi(value);
     if (!strcmp(key, "CompressedData")) image->compressed = is_true(value);
     if (!strcmp(key, "BinaryDataByteOrderMSB") || !strcmp(key, "ElementByteOrderMSB"))
@@ -75,10 +96,8 @@ static skg_status read_header(const char *path, FILE *stream, metaimage *image) 
         return skg_fail(SKG_ERR_FORMAT,
                         "%s: is no MetaImage: its header has no DimSize or no ElementDataFile", path);
     if (!image->bytes) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its ElementType is none of a number", path);
-    if (image->compressed || image->channels > 1)
-        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is %s; write it %s", path,
-                        image->compressed ? "compressed" : "of several channels",
-                        image->compressed ? "without compression" : "with one");
+    if (image->channels > 1)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is of several channels; write it with one", path);
     if (image->dimensions < 3) image->size[2] = 1;
     return skg_picture_size_check(path, image->size[0], image->size[1], image->size[2]);
 }
@@ -126,6 +145,10 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
     skg_status status = SKG_OK;
     SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
     SKG_TRY_CLEANUP(read_header(path, stream, &image));
+    if (image.compressed) {
+        status = skg_fail(SKG_ERR_UNSUPPORTED, "%s: is compressed; write it without compression", path);
+        goto cleanup;
+    }
     contents->columns = (int64_t)image.size[0], contents->rows = (int64_t)image.size[1];
     contents->pages = (int64_t)image.size[2];
     contents->quantity = image.quantity;
@@ -133,6 +156,32 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
     if (!values) goto cleanup;
     SKG_TRY_CLEANUP(open_data(path, &image, &stream));
     SKG_TRY_CLEANUP(read_values(path, stream, &image, page, values));
+cleanup:
+    if (stream) fclose(stream);
+    return status;
+}
+
+skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
+    metaimage image = {
+        .quantity = -1, .channels = 1, .spacing = {1, 1, 1}, .axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    FILE *stream = NULL;
+    skg_status status = SKG_OK;
+    *grid = (skg_grid){0};
+    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
+    SKG_TRY_CLEANUP(read_header(path, stream, &image));
+    if (image.dimensions != 3) {
+        status = skg_fail(SKG_ERR_FORMAT, "%s: has %d dimensions; a volume has 3", path, image.dimensions);
+        goto cleanup;
+    }
+    for (int k = 0; k < 3; k++) {
+        grid->size[k] = (int64_t)image.size[k];
+        for (int r = 0; r < 3; r++) grid->affine[4 * r + k] = image.axes[3 * k + r] * image.spacing[k];
+        grid->affine[4 * k + 3] = image.offset[k];
+    }
+    grid->affine[15] = 1;
+    SKG_TRY_CLEANUP(open_data(path, &image, &stream));
+    const skg_grid_file file = {image.bytes, image.swapped, image.compressed, image.kind};
+    status = skg_grid_read_cells(path, stream, &file, grid);
 cleanup:
     if (stream) fclose(stream);
     return status;

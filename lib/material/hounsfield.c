@@ -11,7 +11,7 @@
 /* HU. Noise takes air below -1000; bone of rising density goes on to 3000, where 12-bit scanners end. */
 static const double LOWEST = -1050, HIGHEST = 3000;
 
-static double density_of(double hu) {
+double skg_hounsfield_density(double hu) {
     const double air = 1.21e-3, fat = 0.93; /* g/cm3, at -1000 and -98 */
     if (hu <= -1000) return air;
     if (hu < -98) return air + (hu + 1000) * (fat - air) / 902;
@@ -19,6 +19,18 @@ static double density_of(double hu) {
     if (hu < 23) return 1.03;                   /* soft tissue */
     if (hu < 100) return 1.003 + 1.169e-3 * hu; /* Eq. 23 */
     return 1.017 + 0.592e-3 * hu;               /* Eq. 19 */
+}
+
+int32_t skg_hounsfield_row_of(double hu) {
+    int32_t row = 0;
+    while (row + 1 < skg_hounsfield_count && hu >= skg_hounsfield_rows[row + 1].lowest) row++;
+    return row;
+}
+
+skg_status skg_hounsfield_row_create(int64_t row, skg_material **material) {
+    const skg_hounsfield_row *tissue = &skg_hounsfield_rows[row];
+    return skg_material_compose(tissue->name, "composition by Schneider 2000", tissue->count,
+                                skg_mass_fractions + tissue->first, 1, material);
 }
 
 skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
@@ -29,9 +41,7 @@ skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
     if (!(hu >= LOWEST && hu <= HIGHEST))
         return skg_fail(SKG_ERR_MATERIAL, "HU %g lies outside %g to %g, where tissue is tabled", hu, LOWEST,
                         HIGHEST);
-    int32_t row = 0;
-    while (row + 1 < skg_hounsfield_count && hu >= skg_hounsfield_rows[row + 1].lowest) row++;
-    const skg_hounsfield_row *tissue = &skg_hounsfield_rows[row];
+    const skg_hounsfield_row *tissue = &skg_hounsfield_rows[skg_hounsfield_row_of(hu)];
     snprintf(name, sizeof name, "HU %g", hu);
     snprintf(
         note, sizeof note, "%s; composition and density by Schneider 2000%s", tissue->name,
@@ -39,6 +49,6 @@ skg_status skg_material_create_hounsfield(double hu, skg_material **material) {
             ? ", whose table ends at HU 1600: beyond it bone of rising density goes on. If it is a metal, name it, "
               "such as Ti"
             : "");
-    return skg_material_compose(name, note, tissue->count, skg_mass_fractions + tissue->first, density_of(hu),
-                                material);
+    return skg_material_compose(name, note, tissue->count, skg_mass_fractions + tissue->first,
+                                skg_hounsfield_density(hu), material);
 }

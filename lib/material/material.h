@@ -41,6 +41,13 @@ skg_status skg_material_make(const char *name, const char *note, int32_t kind, s
 /* The Hounsfield number at which Schneider's table ends. */
 #define SKG_HOUNSFIELD_TABLED 1600
 
+/* g/cm3 at a Hounsfield number: below -1000 that of air, above 3000 on the line of bone. */
+double skg_hounsfield_density(double hu);
+
+/* The row of the table for a Hounsfield number, and a material of its composition and 1 g/cm3. */
+int32_t skg_hounsfield_row_of(double hu);
+skg_status skg_hounsfield_row_create(int64_t row, skg_material **material);
+
 /* Makes a material of a composition that has been checked. */
 skg_status skg_material_compose(const char *name, const char *note, int64_t count,
                                 const skg_mass_fraction *parts, double density, skg_material **material);

@@ -39,6 +39,7 @@ struct skg_recipe {
     int32_t absolute;            /* 1: the caller's spectrum is absolute */
     const char *strategy_reason; /* static storage */
     const char *fine_reason;     /* of samples.fine; static storage */
+    int64_t volume_count;        /* parts that are volumes of cells */
     int64_t leaky_count;
     int64_t *leaky; /* [leaky_count] numbers of the parts whose meshes are not closed */
 };

@@ -86,6 +86,7 @@ static skg_status choose_mix(skg_recipe *recipe) {
     const skg_fine_request request = fine_request(recipe, 0);
     recipe->mixed = 0;
     if (recipe->options.precision == SKG_PRECISION_HALF) return SKG_OK; /* a plane per material */
+    if (recipe->volume_count > 0) return SKG_OK;                        /* cells add to planes */
     return skg_mix_choose(recipe->scene->count, model->planes, model->contributions,
                           model->first_contribution, skg_max_mixed(&request, model->planes), &recipe->mixed);
 }
@@ -164,6 +165,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     SKG_TRY(skg_plan_options_check(options, device));
     SKG_TRY(skg_effects_check(options));
     if (options->falloff == SKG_FALLOFF_AUTO) recipe->options.falloff = recipe->exposure > 0;
+    recipe->volume_count = skg_scene_volumes(recipe->scene);
     SKG_TRY(skg_plan_meshes_create(recipe->scene, &recipe->meshes));
     SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
     SKG_TRY(skg_samples_make(parallel ? NULL : spot, options->supersampling, &recipe->samples));
@@ -176,6 +178,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     recipe->priority_possible =
         skg_priority_possible(recipe->scene, skg_priority_rules(options->clip, options->unite));
     SKG_TRY(check_half(recipe));
+    SKG_TRY(skg_volumes_check(recipe));
     SKG_TRY(skg_scatter_check(recipe));
     return choose_layout(recipe, device);
 }

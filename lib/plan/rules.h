@@ -94,7 +94,7 @@ typedef struct {
 #define SKG_EFFECT_ROWS(X) \
     X(energies) X(source) X(supersampling) X(world) X(response) X(falloff) X(compression) \
     X(nesting) X(leaky) X(repair) X(source_plane) X(overlaps) \
-    X(noise) X(blur) X(electronic) X(quantisation) X(priority) \
+    X(noise) X(blur) X(electronic) X(quantisation) X(priority) X(volumes) \
     X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(grid) X(oblique) X(escape) X(deposition) X(depths) X(dqe)
 /* clang-format on */
 
@@ -108,6 +108,9 @@ enum { SKG_EFFECTS = SKG_EFFECT_ROWS(SKG_EFFECT_ONE) };
 
 /* Fails if the scatter that the options ask for cannot be computed of the scene. */
 skg_status skg_scatter_check(const skg_recipe *recipe);
+
+/* Fails if volumes of cells stand beside what is not computed with them. */
+skg_status skg_volumes_check(const skg_recipe *recipe);
 
 /* Fails with SKG_ERR_UNSUPPORTED: "CALL: WHAT has no gradient; MEND". */
 skg_status skg_effect_no_gradient(const char *call, const char *what, const char *mend);

@@ -50,6 +50,7 @@ skg_status skg_scene_retain(skg_scene *scene) {
 static void release_part(skg_scene_part_data *part) {
     skg_mesh_release(&part->mesh);
     skg_material_release(&part->material);
+    skg_volume_release(&part->volume);
     skg_free(&part->label);
 }
 
@@ -132,12 +133,25 @@ static skg_status check_part(const skg_scene *scene, const skg_part *part, const
     return skg_scene_check_pose(label, part->pose);
 }
 
+/* The box of a volume stands for it as a mesh. */
+static skg_status take_volume(skg_part *part) {
+    if (!part->volume) return SKG_OK;
+    if ((part->mesh && part->mesh != part->volume->hull) ||
+        (part->material && part->material != part->volume->nothing))
+        return skg_fail(SKG_ERR_ARGUMENT, "part %s has a volume, so give it no mesh and no material",
+                        part->label ? part->label : part->volume->name);
+    part->mesh = part->volume->hull;
+    part->material = part->volume->nothing;
+    return SKG_OK;
+}
+
 skg_status skg_scene_part_add(skg_scene *scene, const skg_part *part, int64_t *id) {
     SKG_PLAIN;
     SKG_NEEDS(scene);
     skg_part ours;
     skg_part_init(&ours);
     SKG_TRY(skg_struct_read(part, "skg_part", &ours, sizeof ours));
+    SKG_TRY(take_volume(&ours));
     if (!ours.mesh)
         return skg_fail(SKG_ERR_ARGUMENT, "part %s has no mesh; give it one",
                         ours.label ? ours.label : "without label");
@@ -158,6 +172,8 @@ skg_status skg_scene_part_add(skg_scene *scene, const skg_part *part, int64_t *i
     made.mesh = ours.mesh;
     skg_material_retain(ours.material);
     made.material = ours.material;
+    made.volume = ours.volume;
+    if (made.volume) skg_ref(&made.volume->refs);
     note_place(scene, &made);
     skg_part_index_add(&scene->labels, label_hash(label), scene->count);
     scene->parts[scene->count] = made;
@@ -172,6 +188,12 @@ static skg_status check_id(const skg_scene *scene, int64_t id, const char *call)
         return skg_fail(SKG_ERR_SCENE, "%s: part %" PRId64 " of %" PRId64 " is not there", call, id,
                         scene->count);
     return SKG_OK;
+}
+
+int64_t skg_scene_volumes(const skg_scene *scene) {
+    int64_t count = 0;
+    for (int64_t p = 0; p < scene->count; p++) count += scene->parts[p].volume != NULL;
+    return count;
 }
 
 skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {
@@ -208,7 +230,8 @@ skg_status skg_scene_part_get(const skg_scene *scene, int64_t id, skg_part *part
                      .inside = data->inside,
                      .mesh = data->mesh,
                      .material = data->material,
-                     .label = data->label};
+                     .label = data->label,
+                     .volume = data->volume};
     memcpy(ours.pose, data->pose, sizeof ours.pose);
     return skg_struct_write(&ours, sizeof ours, "skg_part", part);
 }
@@ -278,6 +301,11 @@ skg_status skg_scene_part_material_set(skg_scene *scene, int64_t id, skg_materia
     SKG_TRY(check_id(scene, id, __func__));
     if (!material)
         return skg_fail(SKG_ERR_ARGUMENT, "part %s has no material; give it one", scene->parts[id].label);
+    if (scene->parts[id].volume)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "part %s is a volume, whose cells say what it is made of; add a part with another volume",
+            scene->parts[id].label);
     skg_material_retain(material);
     skg_material_release(&scene->parts[id].material);
     scene->parts[id].material = material;

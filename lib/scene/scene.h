@@ -4,12 +4,14 @@
 
 #include "core/core.h"
 #include "scene/part_index.h"
+#include "scene/volume.h"
 
 #include <skiagraph/scene.h>
 
 typedef struct {
     skg_mesh *mesh;         /* retained */
     skg_material *material; /* retained */
+    skg_volume *volume;     /* retained; NULL: none. Mesh and material are those of its box */
     char *label;
     /* The parent; -1: the world. In a scene file a parent may follow its child; there are no circles. */
     int64_t inside;
@@ -29,6 +31,9 @@ struct skg_scene {
      * put inside another) is stale. */
     int64_t structure, materials, poses;
 };
+
+/* The number of parts that are volumes. */
+int64_t skg_scene_volumes(const skg_scene *scene);
 
 /* Puts part `id` inside another one or into the world (-1). SKG_ERR_SCENE if that would make a circle. */
 skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside);

@@ -30,13 +30,19 @@ static int has_priority(const skg_self_test_scene *scene) {
     return scene->number == SKG_SELF_TEST_PRIORITY || scene->number == SKG_SELF_TEST_GRADIENT;
 }
 
+/* Whether part 1 is a volume of cells, which part 0 displaces. */
+static int has_volume(const skg_self_test_scene *scene) {
+    return scene->number == SKG_SELF_TEST_VOLUME;
+}
+
 /* Whether part 1 is inside part 0. */
 static int is_nested(const skg_self_test_scene *scene) {
     return scene->number == SKG_SELF_TEST_DENSITIES;
 }
 
 static int has_two_parts(const skg_self_test_scene *scene) {
-    return scene->number == SKG_SELF_TEST_ENERGIES || has_priority(scene) || is_nested(scene);
+    return scene->number == SKG_SELF_TEST_ENERGIES || has_priority(scene) || is_nested(scene) ||
+           has_volume(scene);
 }
 
 static int has_energies(const skg_self_test_scene *scene) {
@@ -78,6 +84,13 @@ static void misplace(const skg_self_test_scene *scene, skg_box *boxes) {
     }
 }
 
+static skg_status add_volume(skg_self_test_scene *scene, skg_part *given) {
+    skg_status status = skg_self_test_volume(&scene->boxes[SKG_SELF_TEST_BOXES], &given->volume);
+    if (status == SKG_OK) status = skg_scene_part_add(scene->scene, given, NULL);
+    skg_volume_release(&given->volume);
+    return status;
+}
+
 static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int part) {
     const skg_box *first = part == 0 ? scene->boxes : scene->boxes + SKG_SELF_TEST_BOXES;
     skg_box elsewhere[SKG_SELF_TEST_BOXES];
@@ -88,8 +101,9 @@ static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int
         first = elsewhere;
     }
     given.label = part == 0 ? "boxes" : "box";
-    given.priority = has_priority(scene) ? part : 0;
+    given.priority = has_priority(scene) ? part : has_volume(scene) ? 1 - part : 0;
     if (part == 1 && is_nested(scene)) given.inside = 0;
+    if (part == 1 && has_volume(scene)) return add_volume(scene, &given);
     skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_SELF_TEST_BOXES : 1,
                                        part == 0 && scene->number == SKG_SELF_TEST_LEAKY, &given.mesh);
     if (status == SKG_OK)
@@ -203,6 +217,8 @@ void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double 
             net[0] -= fmax(0, fmin(leaves, to) - fmax(enters, from)) * distance;
     }
     if (is_nested(scene)) net[0] -= net[1]; /* part 1 is in place of part 0 */
+    if (has_volume(scene))
+        net[1] = skg_self_test_cells(scene, view->source, pixel) * distance / attenuation[1][0];
 }
 
 double skg_self_test_intensity(const skg_self_test_scene *scene, const double *shares, const double *net,

@@ -81,6 +81,12 @@ skg_status skg_self_test_scene_create(skg_context *context, skg_self_test number
                                       skg_self_test_scene *scene);
 void skg_self_test_scene_release(skg_self_test_scene *scene);
 
+/* A volume of cells of different attenuation in a box (volume.c). The caller releases it. */
+skg_status skg_self_test_volume(const skg_box *box, skg_volume **volume);
+
+/* What its cells attenuate along a way of unit length, 1/cm, without what the boxes displace. */
+double skg_self_test_cells(const skg_self_test_scene *scene, const double *source, const double *pixel);
+
 /* The path lengths in mm of the ray to a place on the detector, in pixels: of part 0 within its surface, and what each part
  * adds to the image. */
 void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double column, double *surface,

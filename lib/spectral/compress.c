@@ -195,9 +195,22 @@ cleanup:
 
 /* --- the model with fewer --- */
 
+/* Marks the planes that the curves of a volume add to. */
+static void mark_planes(const compressing *c, const skg_model *model, int64_t part, double *weights,
+                        char *seen) {
+    const skg_volume *volume = part < c->scene->count ? c->scene->parts[part].volume : NULL;
+    const int64_t first = c->scene->count + (volume ? skg_scene_curves(c->scene, part) : 0);
+    memset(seen, 0, (size_t)c->basis.planes);
+    for (int64_t k = 0; volume && k < volume->curve_count; k++) {
+        mix_contributions(model, &c->basis, first + k, weights);
+        for (int32_t p = 0; p < c->basis.planes; p++) seen[p] |= weights[p] != 0;
+    }
+}
+
 static skg_status rewrite_contributions(compressing *c, skg_model *model) {
     const int32_t planes = c->basis.planes;
-    const int64_t parts = c->scene->count;
+    const int64_t parts = c->scene->count + model->curves;
+    char *seen = NULL;
     int64_t *first = NULL, count = 0;
     skg_contribution *contributions = NULL;
     double *weights = NULL;
@@ -205,11 +218,13 @@ static skg_status rewrite_contributions(compressing *c, skg_model *model) {
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first, "planes of the parts", &first));
     SKG_TRY_CLEANUP(skg_alloc(parts * planes, sizeof *contributions, "planes of the parts", &contributions));
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *weights, "planes of the parts", &weights));
+    SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *seen, "planes of the parts", &seen));
     for (int64_t p = 0; p < parts; p++) {
         first[p] = count;
+        mark_planes(c, model, p, weights, seen);
         mix_contributions(model, &c->basis, p, weights);
         for (int32_t k = 0; k < planes; k++)
-            if (weights[k] != 0)
+            if (weights[k] != 0 || seen[k])
                 contributions[count++] = (skg_contribution){.plane = k, .weight = weights[k]};
     }
     first[parts] = count;
@@ -227,6 +242,7 @@ cleanup:
     skg_free(&first);
     skg_free(&contributions);
     skg_free(&weights);
+    skg_free(&seen);
     return status;
 }
 

@@ -18,7 +18,7 @@ typedef struct {
     const skg_scene *scene;
     const skg_spectrum *spectrum;
     const skg_plan_options *options;
-    int64_t bodies; /* the parts, then the world */
+    int64_t bodies; /* the parts, the world, then the curves of volumes */
     int64_t *bins;  /* [nodes] bins of the spectrum that have photons */
     double *mu;     /* [bodies][nodes] 1/mm */
     double *bases;  /* [planes][nodes] 1/mm, the attenuation of a mm of a plane */
@@ -40,8 +40,26 @@ static skg_status choose_nodes(making *m, skg_model *model) {
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
+int64_t skg_scene_curves(const skg_scene *scene, int64_t part) {
+    int64_t curves = 0;
+    for (int64_t p = 0; p < part; p++)
+        if (scene->parts[p].volume) curves += scene->parts[p].volume->curve_count;
+    return curves;
+}
+
+/* The material of a curve, numbered over all volumes. */
+static const skg_material *curve_of(const skg_scene *scene, int64_t curve) {
+    int64_t p = 0;
+    for (; !scene->parts[p].volume || curve >= scene->parts[p].volume->curve_count; p++)
+        if (scene->parts[p].volume) curve -= scene->parts[p].volume->curve_count;
+    return scene->parts[p].volume->curves[curve];
+}
+
 static const skg_material *material_of(const making *m, int64_t body) {
-    return body < m->scene->count ? m->scene->parts[body].material : m->options->world;
+    const int64_t parts = m->scene->count;
+    return body < parts    ? m->scene->parts[body].material
+           : body == parts ? m->options->world
+                           : curve_of(m->scene, body - parts - 1);
 }
 
 /* Scenes have many parts of few materials: a part takes what one of the last RECENT materials got. */
@@ -133,12 +151,21 @@ static void add_contribution(skg_model *model, int64_t first, int64_t *count, in
     model->contributions[(*count)++] = (skg_contribution){.plane = plane, .weight = weight};
 }
 
+/* The planes of the curves of a volume, with weight 0. */
+static void add_curves(const making *m, skg_model *model, int64_t part, int64_t first, int64_t *count) {
+    const skg_volume *volume = m->scene->parts[part].volume;
+    const int64_t body = m->scene->count + 1 + skg_scene_curves(m->scene, part);
+    for (int64_t c = 0; volume && c < volume->curve_count; c++)
+        if (m->plane[body + c] >= 0) add_contribution(model, first, count, m->plane[body + c], 0);
+}
+
 static skg_status list_contributions(const making *m, skg_model *model) {
     const int64_t parts = m->scene->count;
     int64_t count = 0;
-    SKG_TRY(skg_alloc(parts + 1, sizeof *model->first_contribution, "planes of the parts",
+    SKG_TRY(skg_alloc(parts + model->curves + 1, sizeof *model->first_contribution, "planes of the parts",
                       &model->first_contribution));
-    SKG_TRY(skg_alloc(2 * parts, sizeof *model->contributions, "planes of the parts", &model->contributions));
+    SKG_TRY(skg_alloc(2 * (parts + model->curves), sizeof *model->contributions, "planes of the parts",
+                      &model->contributions));
     for (int64_t p = 0; p < parts; p++) {
         const int64_t inside = m->scene->parts[p].inside, parent = inside >= 0 ? inside : parts;
         const int64_t first = count;
@@ -148,8 +175,14 @@ static skg_status list_contributions(const making *m, skg_model *model) {
             add_contribution(model, first, &count, m->plane[parent], -m->factor[parent]);
         if (count > first && model->contributions[first].weight == 0)
             count = first; /* the material of its parent: it is not seen */
+        add_curves(m, model, p, first, &count);
     }
-    model->first_contribution[parts] = count;
+    for (int64_t c = 0; c < model->curves; c++) {
+        const int64_t body = parts + 1 + c;
+        model->first_contribution[parts + c] = count;
+        if (m->plane[body] >= 0) add_contribution(model, count, &count, m->plane[body], m->factor[body]);
+    }
+    model->first_contribution[parts + model->curves] = count;
     return SKG_OK;
 }
 
@@ -273,9 +306,10 @@ static skg_status list_coefficients(const making *m, skg_model *model) {
 
 skg_status skg_model_begin(const skg_scene *scene, const skg_view *view, const skg_spectrum *spectrum,
                            const skg_plan_options *options, skg_model *model) {
-    making m = {.scene = scene, .spectrum = spectrum, .options = options, .bodies = scene->count + 1};
+    making m = {.scene = scene, .spectrum = spectrum, .options = options};
     skg_status status = SKG_OK;
-    *model = (skg_model){.noise_scale = 1};
+    *model = (skg_model){.noise_scale = 1, .curves = skg_scene_curves(scene, scene->count)};
+    m.bodies = scene->count + 1 + model->curves;
     SKG_TRY_CLEANUP(choose_nodes(&m, model));
     SKG_TRY_CLEANUP(look_up(&m, model));
     SKG_TRY_CLEANUP(choose_planes(&m, model));

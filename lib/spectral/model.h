@@ -29,7 +29,10 @@ typedef struct {
     int32_t planes, nodes;
     int32_t channels;            /* of the image */
     int32_t layers;              /* images that add up to that of a channel, each blurred by itself; 1: one */
-    int64_t *first_contribution; /* [parts + 1] into contributions */
+    int64_t *first_contribution; /* [parts + curves + 1] into contributions */
+    /* Curves of volumes (scene/volume.h), numbered over all volumes in the order of their parts; they stand behind the parts. A volume's own
+     * part contributes with weight 0 to each plane of its curves, beside what it displaces. */
+    int64_t curves;
     /* What a mm of a part's path adds. A part without any is not seen. */
     skg_contribution *contributions;
     /* [nodes][planes + shades.count] 1/mm per mm of a plane, then the loss for a unit of a shade */
@@ -54,6 +57,9 @@ typedef struct {
     double log_error, least;
     int64_t verified; /* points of the range of lengths on which the bound was verified */
 } skg_model;
+
+/* How many curves the volumes before a part have. */
+int64_t skg_scene_curves(const skg_scene *scene, int64_t part);
 
 /* Planes and shades: what exponents are made of. */
 static inline int32_t skg_model_width(const skg_model *model) {

@@ -149,6 +149,69 @@ static void add_part(void *user, const looking *look, int64_t part, const traced
     if (traced->seen) a->hits[part] = traced->hits;
 }
 
+/* Adds what the cells of a volume add along the rays. Where parts displace it the range is too wide, which does no harm. */
+typedef struct {
+    const looking *look;
+    const skg_volume *volume;
+    const double *to_cells;
+    double *amounts; /* [rays][curves] mm times amount */
+} tracing_cells;
+
+/* A beam from infinity is followed from so many steps of its direction, which are a millimetre or so, before the detector. */
+static const double FROM_INFINITY = 1e7;
+
+/* Where the ray to (i, j) starts, and its pixel. */
+static void find_ends(const skg_camera *camera, double i, double j, double ends[2][3]) {
+    const double start = camera->start[0] + camera->start[1] * i + camera->start[2] * j;
+    const double back = fmin(1 - start, FROM_INFINITY);
+    for (int k = 0; k < 3; k++) {
+        const double across = i * camera->column[k] + j * camera->row[k];
+        ends[1][k] = camera->origin[k] + across + (camera->parallel ? 0 : camera->first[k]);
+        ends[0][k] = camera->parallel ? ends[1][k] - back * camera->first[k] : camera->origin[k];
+    }
+}
+
+static skg_status trace_row(void *user, int64_t row) {
+    const tracing_cells *t = user;
+    const skg_camera *camera = &t->look->camera;
+    const int64_t side = t->look->side;
+    for (int64_t column = 0; column < side; column++) {
+        const double i = ((double)column + 0.5) / (double)side * (double)camera->columns - 0.5,
+                     j = ((double)row + 0.5) / (double)side * (double)camera->rows - 0.5;
+        double ends[2][3], cells[2][3],
+            *amounts = t->amounts + (row * side + column) * t->volume->curve_count;
+        find_ends(camera, i, j, ends);
+        for (int e = 0; e < 2; e++) skg_pose_point(t->to_cells, ends[e], cells[e]);
+        skg_volume_trace(t->volume, cells[0], cells[1], amounts);
+        const double mm = skg_length(
+            (const double[3]){ends[1][0] - ends[0][0], ends[1][1] - ends[0][1], ends[1][2] - ends[0][2]});
+        for (int64_t c = 0; c < t->volume->curve_count; c++) amounts[c] *= mm;
+    }
+    return SKG_OK;
+}
+
+static skg_status add_volume(const looking *look, int64_t part, adding *a) {
+    const skg_model *model = look->model;
+    const skg_volume *volume = look->scene->parts[part].volume;
+    const int64_t rays = look->side * look->side, curves = volume->curve_count;
+    const int64_t first = look->scene->count + skg_scene_curves(look->scene, part);
+    double to_cells[16];
+    tracing_cells t = {.look = look, .volume = volume, .to_cells = to_cells};
+    skg_volume_to_cells(volume, look->scene->parts[part].pose, to_cells);
+    SKG_TRY(skg_alloc(rays * curves, sizeof *t.amounts, "ranges of lengths", &t.amounts));
+    const skg_status status = skg_parallel(look->side, trace_row, &t);
+    for (int64_t c = 0; c < curves && status == SKG_OK; c++)
+        for (int64_t w = model->first_contribution[first + c]; w < model->first_contribution[first + c + 1];
+             w++)
+            for (int64_t r = 0; r < rays; r++) {
+                const double length = model->contributions[w].weight * t.amounts[r * curves + c];
+                a->lengths[r * a->ranges->planes + model->contributions[w].plane] += length;
+                widen(a->ranges, model->contributions[w].plane, length);
+            }
+    skg_free(&t.amounts);
+    return status;
+}
+
 static void add_world(const looking *look, skg_ranges *ranges, double *lengths) {
     const skg_model *model = look->model;
     if (model->world_plane < 0) return;
@@ -183,6 +246,8 @@ skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t
         SKG_TRY_CLEANUP(skg_camera_make(v ? &views[v - 1] : view, NULL, 0, 0, &look.camera));
         add_world(&look, ranges, a.lengths);
         SKG_TRY_CLEANUP(trace_parts(&look, add_part, &a));
+        for (int64_t p = 0; p < scene->count; p++)
+            if (scene->parts[p].volume) SKG_TRY_CLEANUP(add_volume(&look, p, &a));
         ranges->rays += look.side * look.side;
     }
     for (int64_t r = 0; r < ranges->rays * ranges->planes; r++)

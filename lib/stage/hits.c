@@ -59,9 +59,9 @@ typedef struct {
 } hits_run;
 
 static skg_status compile(const hits_run *run, cl_program *program) {
-    static const char *const files[] = {"pixel.clh", "hits.cl", "source_plane.cl"};
+    static const char *const files[] = {"pixel.clh", "intervals.clh", "hits.cl", "source_plane.cl"};
     const skg_define slots[] = {{"SKG_SLOTS", skg_priority_slots(&run->pass->priority)}};
-    return skg_kernels_get(run->context, &run->raster->options.kernels, 3, files, SKG_DEFINES(slots),
+    return skg_kernels_get(run->context, &run->raster->options.kernels, 4, files, SKG_DEFINES(slots),
                            program);
 }
 
@@ -74,23 +74,30 @@ static skg_status upload(const hits_run *run, skg_buffer *buffer, int64_t bytes,
     return skg_stage_write(run->context, "priority", buffer->memory, 0, bytes, staged, &run->staging->log);
 }
 
+static double reference_of(const skg_pass *pass, int64_t slot) {
+    skg_part_double seen;
+    const skg_camera_place place = skg_geometry_place(&pass->parts[pass->priority.parts[slot]], 0);
+    skg_camera_part(&pass->camera, &place, &seen);
+    return seen.reference;
+}
+
 /* Depths are listed relative to the first competitor's reference, so that they keep their digits. */
+double skg_hits_common(const skg_pass *pass) {
+    return reference_of(pass, 0);
+}
+
 static skg_status upload_shifts(const hits_run *run) {
     const skg_priority *priority = &run->pass->priority;
     const int64_t size = run->is_double ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
-    double common = 0;
+    const double common = skg_hits_common(run->pass);
     void *shifts = NULL;
     SKG_TRY(skg_staging_take(run->staging, priority->count, (size_t)size, "priorities", &shifts));
     for (int64_t s = 0; s < priority->count; s++) {
-        const skg_geometry_part *part = &run->pass->parts[priority->parts[s]];
-        skg_part_double seen;
-        const skg_camera_place place = skg_geometry_place(part, 0);
-        skg_camera_part(&run->pass->camera, &place, &seen);
-        if (s == 0) common = seen.reference;
+        const double shift = reference_of(run->pass, s) - common;
         if (run->is_double)
-            ((double *)shifts)[s] = seen.reference - common;
+            ((double *)shifts)[s] = shift;
         else
-            ((float *)shifts)[s] = (float)(seen.reference - common);
+            ((float *)shifts)[s] = (float)shift;
     }
     return upload(run, &run->memory->shifts, priority->count * size, shifts);
 }

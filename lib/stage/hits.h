@@ -29,6 +29,9 @@ skg_status skg_hits_bytes(const skg_hit_count *count, int32_t is_double, int64_t
 /* Prefetches the program of the stage (skg_prefetch_begin). */
 skg_status skg_hits_prefetch(skg_context *context, const skg_pass *pass);
 
+/* The path parameter where depths of hits are 0. The pass has competitors. */
+double skg_hits_common(const skg_pass *pass);
+
 /* Enqueues the count of hits behind the projection, before the raster of the closed parts is enqueued: the device draws while the
  * host waits for the count, and enqueues what takes hits off. */
 skg_status skg_hits_count(const skg_pass *pass, const skg_geometry *geometry, skg_hits_memory *memory,

@@ -14,6 +14,7 @@ void skg_machine_release(skg_machine *machine) {
     skg_mix_lists_release(&machine->mix_lists);
     skg_leaky_memory_release(&machine->leaky);
     skg_hits_memory_release(&machine->hits);
+    skg_volumes_release(&machine->volumes);
     if (machine->attached.memory) machine->attached.release(machine->attached.memory);
     skg_buffer_release(&machine->image);
     skg_buffer_release(&machine->mean);
@@ -27,7 +28,7 @@ int64_t skg_machine_bytes(const skg_machine *machine) {
                     machine->flat_field.image.bytes + skg_hits_memory_bytes(&machine->hits) +
                     skg_placement_bytes(&machine->placement) + skg_attenuation_bytes(&machine->images) +
                     skg_attenuation_bytes(&machine->lengths) + skg_raster_cache_bytes(&machine->rasters) +
-                    skg_layers_bytes(&machine->layers);
+                    skg_layers_bytes(&machine->layers) + skg_volumes_bytes(&machine->volumes);
     if (machine->attached.memory) bytes += machine->attached.bytes(machine->attached.memory);
     if (machine->detector) bytes += skg_detector_bytes(machine->detector);
     return bytes;

@@ -10,6 +10,7 @@
 #include "stage/place.h"
 #include "stage/readout.h"
 #include "stage/tables.h"
+#include "stage/volumes.h"
 
 /* What a room above keeps with a plan's device from call to call. All zero: nothing. */
 typedef struct {
@@ -31,6 +32,7 @@ typedef struct {
     skg_mix_lists mix_lists;
     skg_leaky_memory leaky;
     skg_hits_memory hits;
+    skg_volumes volumes;
     skg_buffer image; /* on its way to the host */
     skg_buffer mean;  /* of the transmission, for the variance of its logarithm */
     skg_buffer

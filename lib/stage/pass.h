@@ -23,7 +23,8 @@ typedef struct {
     int64_t *versions;            /* [parts] sixteenths of those of their meshes, from 1; 0: not known */
     skg_scale_grid grid;          /* workspace of the scale */
     const skg_geometry *geometry; /* borrowed: of the machine */
-    const skg_placement *placement; /* borrowed: of the machine */
+    const skg_placement *placement;    /* borrowed: of the machine */
+    const struct skg_volumes *volumes; /* borrowed: of the machine */
 } skg_pass_memory;
 
 skg_status skg_pass_memory_create(int64_t parts, int64_t columns, int64_t rows, skg_pass_memory *memory);

@@ -49,7 +49,9 @@ def _changes(state: State) -> dict[str, Any]:
             found[f"pose {number}"] = part.pose
         if added:
             found[f"part {number}"] = [part.inside or "", part.priority, mesh.faces]
-        if added or number in state.materials:
+        if added and part.volume:
+            found[f"volume {number}"] = state.volumes[part._name]
+        elif added or number in state.materials:
             found[f"material {number}"] = part.material
         if added or mesh._changed:
             found[f"vertices {number}"] = mesh

@@ -172,9 +172,15 @@ def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> 
     made: list[dict[str, Any]] = []
     for part, name in zip(parts, state.names):
         sample = dict(samples[name]) if name < len(samples) and len(made) < state.file_parts else {}
+        if part.volume and not sample:
+            raise SceneError(f"{part.label}: a volume that was added as an array is not written into a scene; write it as .mha, for "
+                             "example by SimpleITK, and name the file")
         _say_all(sample, part)
         if not sample.get(_named(sample, "Transform")) or together or part.label in changed["poses"] + changed["meshes"]:
             _place(sample, part, part.label in changed["meshes"])
+        if part.volume:
+            made.append(sample)
+            continue
         if not sample.get(_named(sample, "Material")) or part.number in state.materials:
             _drop(sample, "Density")
             sample[_named(sample, "Material")], density = material_text(_material(state, part), _writer(target, part))

@@ -50,6 +50,8 @@ class State:
     changed: set[str] = field(default_factory=set)
     materials: dict[int, Material] = field(default_factory=dict)
     removed: list[str] = field(default_factory=list)
+    #: Of volumes that were added, by the number in `names`, what their hashes are made of.
+    volumes: dict[int, list[Any]] = field(default_factory=dict)
     #: For each part a number that it keeps when parts before it are removed.
     names: list[int] = field(default_factory=list)
     #: One object for each mesh of the library, by its address, so that it knows whether it was changed.
@@ -102,10 +104,15 @@ class State:
     def add(self, part: Any, mesh: Mesh, material: Material) -> int:
         """Adds a skg_part of this mesh and material. Its number."""
         part.mesh, part.material = mesh._handle, material._handle
-        number = integer("skg_scene_part_add", self.handle, part)
-        self.names.append(max(self.names, default=-1) + 1)
+        number = self.add_part(part)
         self.materials[number] = material
         self.meshes[_address(mesh._handle)] = mesh
+        return number
+
+    def add_part(self, part: Any) -> int:
+        """Adds a skg_part. Its number."""
+        number = integer("skg_scene_part_add", self.handle, part)
+        self.names.append(max(self.names, default=-1) + 1)
         self.plans.clear()
         self.forget_motion()
         return number

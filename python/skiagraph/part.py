@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays
+from . import _arrays, _volume
 from ._interface import SceneError
 from ._library import call, ffi, struct, text
 from .material import Material, as_material
@@ -42,6 +42,14 @@ class Part:
         part = struct("skg_part")
         call("skg_scene_part_get", self._state.handle, self.number, part)
         return part
+
+    @property
+    def volume(self) -> dict[str, Any] | None:
+        """What a volume of cells is (Scene.add_volume): size, spacing, range, shares of compositions; None: the part is a mesh. The
+        mesh of a volume is the box of all cells."""
+        with self._state.calls():
+            volume = self._get().volume
+            return None if volume == ffi.NULL else _volume.describe(volume)
 
     @property
     def label(self) -> str:

@@ -10,11 +10,11 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _edit, _gradient, _images, _look, _pickle, _projections, _register, _save, _scatter, _show, _source
+from . import _arrays, _command, _edit, _gradient, _images, _look, _pickle, _projections, _register, _save, _scatter, _show, _source, _volume
 from ._device import Device
 from ._frames import Batch
 from ._interface import ArgumentError, SceneError
-from ._library import call, encode, ffi, filled, listed, struct
+from ._library import call, encode, ffi, filled, listed, release, struct
 from ._live import widget as _widget
 from ._picture import write_picture
 from ._progress import Progress
@@ -94,6 +94,41 @@ class Scene(_gradient.Differentiable):
             if pose is not None:
                 part.pose = _arrays.matrix(pose, "pose").ravel().tolist()
             return Part(state, state.add(part, made, matter))
+
+    def add_volume(self, label: str, array: Any, affine: Any = None, values: str = "HU", *, material: Material | str | None = None,
+                   classes: Sequence[tuple[float, Material | str]] | None = None, inside: str | Part | None = None,
+                   pose: Any = None, priority: int = 0) -> Part:
+        """Adds a volume of cells, such as a CT image.
+
+        array: cells [z, y, x], copied, an image of SimpleITK, or the path of a file (.mha). affine: 4 x 4 from the indices (x, y, z) of a cell to its centre, mm;
+        None: that of the image. values: "HU", "density" (g/cm3) or "mu" (1/cm). material: the composition of all cells;
+        classes: [(-1000, "Air"), (-400, "Lung")], from which value on a cell is of which; neither: Schneider's table (HU).
+        inside, pose and priority are as in add(). Parts inside it displace its cells.
+
+        >>> import numpy as np
+        >>> from skiagraph import Mesh, Scene
+        >>> scene = Scene()
+        >>> scene.add_volume("patient", np.zeros((20, 30, 40), np.int16), np.diag([2, 2, 2, 1]))
+        <Part 'patient': cells of a volume>
+        >>> scene.add("needle", Mesh.cube(3), material="Ti", inside="patient")
+        <Part 'needle': Ti, inside 'patient'>
+        """
+        parent = inside.label if isinstance(inside, Part) else inside
+        state = self._state
+        with state.calls():
+            part, name = struct("skg_part"), ffi.new("char[]", encode(label, "label"))
+            part.label, part.priority = name, int(priority)
+            if parent is not None:
+                part.inside = state.number(parent)
+            if pose is not None:
+                part.pose = _arrays.matrix(pose, "pose").ravel().tolist()
+            part.volume, content = _volume.make_volume(label, array, affine, values, material, classes)
+            try:
+                made = Part(state, state.add_part(part))
+                state.volumes[made._name] = content
+                return made
+            finally:
+                release("skg_volume", part.volume)
 
     def remove(self, label: str) -> None:
         """Removes a part. What lies inside it lies inside what it lay in from then on. A scene from which parts were

@@ -223,6 +223,87 @@ START_TEST(overlaps_within_a_mesh) {
 }
 END_TEST
 
+/* 2 x 2 x 2 cells of 10 mm in the middle: seven of HU 40, one of air. */
+static void write_volume(void) {
+    static const char header[] =
+        "ObjectType = Image\nNDims = 3\nBinaryDataByteOrderMSB = False\nOffset = -5 -5 -5\n"
+        "ElementSpacing = 10 10 10\nDimSize = 2 2 2\nElementType = MET_SHORT\n"
+        "ElementDataFile = LOCAL\n";
+    char bytes[sizeof header - 1 + 16];
+    memcpy(bytes, header, sizeof header - 1);
+    for (size_t k = 0; k < 8; k++) {
+        bytes[sizeof header - 1 + 2 * k] = k == 3 ? 0x18 : 40; /* -1000 is 0xfc18 */
+        bytes[sizeof header - 1 + 2 * k + 1] = k == 3 ? (char)0xfc : 0;
+    }
+    write_bytes("ct.mha", bytes, sizeof bytes);
+}
+
+static void write_volume_scene(const char *name, const char *keys) {
+    char text[2048];
+    snprintf(
+        text, sizeof text,
+        "{\"Source\": {\"Position\": [0, 0, -500, \"mm\"], \"Shape\": \"PointSource\","
+        " \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]},"
+        " \"Detector\": {\"Position\": [0, 0, 100, \"mm\"], \"UpVector\": [0, 1, 0], \"NumberOfPixels\": [16, 16],"
+        " \"Size\": [32, 32, \"mm\"]}, \"Samples\": [{\"Label\": \"patient\", \"Volume\": \"ct.mha\"%s},"
+        " {\"Label\": \"pin\", \"Cube\": [4, \"mm\"], \"Material\": \"Ti\", \"Parent\": \"patient\"}]}",
+        keys);
+    write_text(name, text);
+}
+
+START_TEST(volumes_are_parts) {
+    write_volume();
+    write_volume_scene("s.json", "");
+    ck_run(0, "mesh ct.mha --json");
+    json_t *object = said_json(), *file = json_array_get(member(object, "files"), 0),
+           *classes = member(file, "classes");
+    ck_assert_int_eq(json_integer_value(json_array_get(member(file, "cells"), 2)), 2);
+    ck_assert_double_eq(json_number_value(member(file, "low")), -1000);
+    ck_assert_uint_eq(json_array_size(classes), 2);
+    ck_assert_double_eq(json_number_value(member(json_array_get(classes, 0), "share")), 0.125);
+    json_decref(object);
+    ck_run(0, "mesh ct.mha");
+    ck_assert_ptr_nonnull(strstr(said, "columns along +x"));
+    ck_run(0, "plan s.json");
+    ck_assert_ptr_nonnull(strstr(said, "patient: 2 x 2 x 2 cells of 16 bits"));
+    ck_assert_ptr_nonnull(strstr(said, "hits of 2 parts are listed"));
+    ck_run(0, "image s.json --quantity attenuation -o a.mha");
+    ck_run(0, "image s.json --without pin --quantity attenuation -o a.mha");
+    ck_run(0, "parts s.json");
+    ck_assert_ptr_nonnull(strstr(said, "cells of a volume"));
+    write_volume_scene(
+        "s.json",
+        ", \"Classes\": [[-1000, \"Air\"], [0, \"Water\"]], \"Transform\": [[\"Rotation\", 30, 0, 0, 1]]");
+    ck_run(0, "image s.json -o a.mha");
+}
+END_TEST
+
+static const struct {
+    const char *keys, *says;
+} bad_volumes[] = {
+    {", \"Density\": 1", "whose values say the density"},
+    {", \"Cube\": [4, \"mm\"]", "stands beside Volume"},
+    {", \"Interpolation\": \"linear\"", "not computed yet"},
+    {", \"Values\": \"grey\"", "grey"},
+    {", \"Values\": \"density\"", "give it a material or classes"},
+    {", \"Values\": \"mu\", \"Material\": \"Water\"", "need no material"},
+    {", \"Values\": \"mu\"", "at least 0"},
+    {", \"Classes\": [[0, \"Air\"], [0, \"Water\"]]", "not above"},
+    {", \"Classes\": [[0, \"Air\"]], \"Material\": \"Water\"", "has a material and classes"},
+    {", \"Material\": [\"mu\", 0.2]", "no density can change it"},
+    {", \"Transform\": [[\"Scaling\", 1, 0, 1]]", "flattens"},
+};
+
+START_TEST(bad_volumes_are_refused) {
+    write_volume();
+    write_volume_scene("s.json", bad_volumes[_i].keys);
+    ck_run(3, "image s.json -o a.mha");
+    ck_assert_msg(strstr(complained, bad_volumes[_i].says) != NULL, "%s: %s", bad_volumes[_i].says,
+                  complained);
+    ck_assert(!has_file("a.mha"));
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_box, tear_down);
     tcase_add_test(tests, a_mesh_needs_no_scene);
@@ -230,6 +311,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, several_meshes);
     tcase_add_test(tests, inverted_components_are_turned);
     tcase_add_test(tests, overlaps_within_a_mesh);
+    tcase_add_test(tests, volumes_are_parts);
+    tcase_add_loop_test(tests, bad_volumes_are_refused, 0, sizeof bad_volumes / sizeof *bad_volumes);
     tcase_add_test(tests, files_bring_their_units_and_groups);
     tcase_add_loop_test(tests, bad_meshes_are_refused, 0, sizeof bad / sizeof *bad);
 }

@@ -37,6 +37,8 @@ typedef struct {
     int32_t cpu;      /* with the kernels of processors; the simulator calls itself a GPU */
     int32_t placed;   /* the positions of the ball are taken from device memory */
     int32_t variance; /* of the noise, instead of the image */
+    int32_t volume;   /* cells instead of the box, which the octahedron displaces */
+    int32_t reserved;
 } group;
 
 enum { BLUR_LINES = 1, BLUR_POINT = 2 };
@@ -67,6 +69,8 @@ static const group groups[] = {
     {.name = "half", .precision = SKG_PRECISION_HALF},
     {.name = "hits", .priority = 2},
     {.name = "double_hits", .precision = SKG_PRECISION_DOUBLE, .priority = 2},
+    {.name = "volume", .volume = 1},
+    {.name = "double_volume", .precision = SKG_PRECISION_DOUBLE, .volume = 1, .parallel = 1, .colours = 1},
     {.name = "hits_source_plane", .priority = 2, .inside = 1},
     {.name = "leaky", .leaky = 1, .repair = SKG_REPAIR_NEIGHBOURS},
     {.name = "leaky_exact", .leaky = 1, .repair = SKG_REPAIR_EXACT},
@@ -130,6 +134,21 @@ static void add(skg_context *context, skg_scene *scene, const char *label, solid
     solid_free(&s);
 }
 
+/* A volume, with the ball inside. */
+static void add_volume(skg_scene *scene, const group *g) {
+    static const int16_t cells[12] = {0, 40, -1000, 60, 300, 20, 10, 1200, -500, 0, 80, 2000};
+    skg_part part;
+    skg_volume_source source;
+    skg_part_init(&part);
+    skg_volume_source_init(&source);
+    source.columns = 3, source.rows = source.slices = 2, source.cells = cells;
+    for (int k = 0; k < 3; k++) source.affine[5 * k] = 20, source.affine[4 * k + 3] = -10;
+    TRY(skg_volume_create(&source, &part.volume));
+    part.label = "volume", part.priority = g->priority;
+    TRY(skg_scene_part_add(scene, &part, NULL));
+    skg_volume_release(&part.volume);
+}
+
 static skg_scene *make_scene(skg_context *context, const group *g) {
     skg_scene *scene = NULL;
     solid box = g->inside ? solid_box(60, 40, 500) : solid_box(60, 40, 20);
@@ -138,6 +157,13 @@ static skg_scene *make_scene(skg_context *context, const group *g) {
     if (g->leaky) box.triangles--;
     solid_shift(&ball, 22, 5, !g->priority ? 60 : g->inside ? -352 : 4); /* with a priority: cuts the box */
     TRY(skg_scene_create(context, &scene));
+    if (g->volume) {
+        solid_free(&box);
+        solid_shift(&ball, 0, 0, -50);
+        add_volume(scene, g);
+        add(context, scene, "ball", ball, "Al", 1);
+        return scene;
+    }
     add(context, scene, "box", box, "Water", 0);
     add(context, scene, "ball", ball, "Al", g->priority);
     return scene;

@@ -41,6 +41,7 @@ BASES = [
           Samples=[{"Label": "box", "Path": "box.obj", "Unit": "mm", "Material": "Water"}]),
     scene(Source=dict(SOURCE, Beam={"Bins": [[60, 100]]})),
     {"Source": {"From": "LAO 30", "SOD": [700, "mm"], "SDD": [1000, "mm"], "Beam": SOURCE["Beam"]}, "Samples": [CUBE]},
+    scene(Samples=[{"Label": "ct", "Volume": "ct.mha", "Values": "HU", "Classes": [[-1000, "Air"], [-400, "Water"]]}]),
     scene(Breathing={"Organs": {"cube": {"Kind": "Deformable", "Links": [{"To": "rib", "Distance": [15, "mm"]}]}},
                      "Events": [{"Hold": [1, 2]}], "Fit": {"Parameters": ["tendon"]}}),
 ]
@@ -49,6 +50,8 @@ BASES = [
 @pytest.fixture(autouse=True)
 def _files(tmp_path, monkeypatch):
     (tmp_path / "bad.raw").write_bytes(bytes(48))
+    (tmp_path / "ct.mha").write_bytes(b"ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementSpacing = 9 9 9\nElementType = MET_SHORT\n"
+                                      b"ElementByteOrderMSB = False\nElementDataFile = LOCAL\n" + bytes(16))
     (tmp_path / "beam.txt").write_text("60 100\n")
     (tmp_path / "box.obj").write_text("v -9 -9 -9\nv 9 -9 -9\nv -9 9 -9\nv -9 -9 9\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n")
     monkeypatch.chdir(tmp_path)

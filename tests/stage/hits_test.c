@@ -35,7 +35,7 @@ END_TEST
 
 /* Runs skg_hits_place on made-up counts of 4 pixels. */
 static void place(const cl_int counts[4], cl_uint starts[4], skg_hit_count *total) {
-    static const char *const files[] = {"pixel.clh", "hits.cl"};
+    static const char *const files[] = {"pixel.clh", "intervals.clh", "hits.cl"};
     const skg_kernel_options options = {.bits = 32};
     const skg_hits_args args = {.layout.columns = 2, .window = {0, 0, 2, 2}};
     const skg_work_size work = {2, {2, 2}, {2, 1}};
@@ -51,7 +51,7 @@ static void place(const cl_int counts[4], cl_uint starts[4], skg_hit_count *tota
         SKG_ARGUMENT(HITS_PLACE, starts, buffers[1].memory),
         SKG_ARGUMENT(HITS_PLACE, total, buffers[2].memory),
     };
-    ck_skg(skg_kernels_get(context, &options, 2, files, NULL, &program));
+    ck_skg(skg_kernels_get(context, &options, 3, files, NULL, &program));
     clEnqueueWriteBuffer(queue, buffers[0].memory, CL_TRUE, 0, 16, counts, 0, NULL, NULL);
     clEnqueueWriteBuffer(queue, buffers[1].memory, CL_TRUE, 0, 16, (const cl_uint[4]){0}, 0, NULL, NULL);
     clEnqueueWriteBuffer(queue, buffers[2].memory, CL_TRUE, 0, sizeof none, &none, 0, NULL, NULL);

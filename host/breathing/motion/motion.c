@@ -70,6 +70,11 @@ static skg_status check_parts(const skg_motion *motion) {
     const skg_scene *scene = motion->setup->scene;
     for (int64_t p = 0; p < scene->count; p++) {
         if (organ_of(motion, p)->role == ROLE_STATIC) continue;
+        if (scene->parts[p].volume)
+            return skg_fail(
+                SKG_ERR_BREATHING,
+                "%s: is a volume of cells, which does not breathe; give it a label that is none of an organ's",
+                scene->parts[p].label);
         for (int k = 0; k < 16; k++)
             if (scene->parts[p].pose[k] != identity[k])
                 return skg_fail(

@@ -1,5 +1,6 @@
 /* The verb `mesh`: the health of a mesh, and its repair. */
 #include "verbs/mesh_groups.h"
+#include "verbs/mesh_volume.h"
 #include "verbs/verbs.h"
 
 #include "common/encode.h"
@@ -192,6 +193,11 @@ int cli_mesh(const cli_arguments *arguments) {
     for (int i = 0; i < arguments->operand_count; i++) {
         const char *path = arguments->operands[i];
         findings found;
+        if (cli_is_volume(path)) {
+            const skg_status read = cli_mesh_volume(path, reading.unit_mm, list);
+            if (read != SKG_OK && failure == CLI_DONE) failure = cli_fail(read);
+            continue;
+        }
         skg_status status =
             examine(path, &reading, fixed, cli_given(arguments, &cli_flag_mesh_groups), &found);
         const skg_mesh_health *health = &found.health;

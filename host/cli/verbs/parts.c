@@ -29,6 +29,17 @@ typedef struct {
     row *rows;
 } table;
 
+/* The mean density of the cells of a volume. Its share of the attenuation is not known, and so no other part's is. */
+static skg_status read_volume(const skg_part *part, row *r) {
+    skg_volume_contents contents;
+    skg_volume_contents_init(&contents);
+    const skg_status status = skg_volume_contents_get(part->volume, &contents);
+    const double ml = r->surface_mm3 * 1e-3;
+    if (status == SKG_OK && contents.mass > 0)
+        r->density = contents.mass * fabs(skg_pose_determinant(part->pose)) / ml;
+    return status;
+}
+
 /* What the scene says of a part, and its mesh. */
 static skg_status read_part(const table *t, int64_t number, row *r) {
     skg_part part;
@@ -46,8 +57,8 @@ static skg_status read_part(const table *t, int64_t number, row *r) {
     r->inside = part.inside;
     if (!(r->density > 0)) r->density = (double)NAN;
     r->surface_mm3 = health.closed ? health.volume * fabs(skg_pose_determinant(part.pose)) : (double)NAN;
-    r->exponent = per_cm;
-    return SKG_OK;
+    r->exponent = part.volume ? (double)NAN : per_cm;
+    return part.volume ? read_volume(&part, r) : SKG_OK;
 }
 
 /* The lengths of a part for all rays. */

@@ -1,5 +1,6 @@
 /* The section Samples. */
 #include "core/maths.h"
+#include "scene/volume.h"
 #include "setup/keys.h"
 #include "setup/sections.h"
 
@@ -108,6 +109,17 @@ static skg_status read_priority(const skg_json_object *sample, int32_t *priority
     return SKG_OK;
 }
 
+/* What the part is made of: a mesh and its material, or a volume, whose box stands for its mesh. */
+static skg_status read_matter(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
+                              skg_mesh_cache *cache, skg_part *part, double *own) {
+    if (!skg_json_member(sample, "Volume").value)
+        return skg_setup_read_shape(reader, sample, flip, cache, &part->mesh, own);
+    skg_pose_identity(own);
+    SKG_TRY(skg_setup_read_volume(reader, sample, &part->volume));
+    part->mesh = part->volume->hull;
+    return skg_mesh_retain(part->mesh);
+}
+
 /* The sample's part, with everything but its parent. */
 static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sample, skg_mesh_cache *cache,
                             int64_t *id) {
@@ -119,9 +131,9 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
     SKG_TRY(read_priority(sample, &part.priority));
     SKG_TRY(read_flag(sample, "FlipNormals", &flip));
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_setup_read_shape(reader, sample, flip, cache, &part.mesh, own));
+    SKG_TRY_CLEANUP(read_matter(reader, sample, flip, cache, &part, own));
     SKG_TRY_CLEANUP(choose_label(reader, sample, &part, numbered, sizeof numbered));
-    SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
+    if (!part.volume) SKG_TRY_CLEANUP(read_material(reader, sample, part.label, &part.material));
     SKG_TRY_CLEANUP(read_pose(sample, part.mesh, own, part.pose));
     status = skg_scene_part_add(reader->setup->scene, &part, id);
     SKG_TRY_CLEANUP(skg_json_at(sample->node, status));
@@ -130,6 +142,7 @@ static skg_status read_part(skg_setup_reader *reader, const skg_json_object *sam
 cleanup:
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
+    skg_volume_release(&part.volume);
     return status;
 }
 

@@ -48,6 +48,9 @@ static const struct {
     {"filter",
      "{'type': 'array', 'prefixItems': [{'type': ['string', 'integer']}, {'type': 'number'}, {'$ref': '#/$defs/unit'}], "
      "'minItems': 2, 'maxItems': 3, 'examples': [['Al', 2.5, 'mm']]}"},
+    {"class",
+     "{'type': 'array', 'prefixItems': [{'type': 'number'}, {'$ref': '#/$defs/material'}], 'minItems': 2, 'maxItems': 2, "
+     "'examples': [[-1000, 'Air']]}"},
     {"rectangle",
      "{'type': 'array', 'prefixItems': [{'type': 'array', 'items': {'type': 'number'}, 'minItems': 2, 'maxItems': 2}, {'type': 'array', 'items': {'type': 'number'}, 'minItems': 2, 'maxItems': 2}, {'$ref': "
      "'#/$defs/unit'}], 'minItems': 3, 'maxItems': 3, 'examples': [[[-50, 50], [-40, 60], 'mm']]}"},

@@ -148,6 +148,10 @@ int skg_mesh_cache_same(const char *a, const char *b);
 skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
                                 skg_mesh_cache *cache, skg_mesh **mesh, double *own);
 
+/* The volume of a sample: its file, and what its values are. The caller releases it. */
+skg_status skg_setup_read_volume(skg_setup_reader *reader, const skg_json_object *sample,
+                                 skg_volume **volume);
+
 /* pose <- pose T for each entry T of a Transform: the last entry acts on the vertices first. */
 skg_status skg_setup_read_transform(const skg_json_node *node, double *pose);
 

@@ -42,5 +42,6 @@
 #include <skiagraph/thorax.h>
 #include <skiagraph/types.h>
 #include <skiagraph/version.h>
+#include <skiagraph/volume.h>
 
 #endif

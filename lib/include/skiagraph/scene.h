@@ -13,6 +13,7 @@
 #include <skiagraph/material.h>
 #include <skiagraph/mesh.h>
 #include <skiagraph/types.h>
+#include <skiagraph/volume.h>
 
 #ifdef __cplusplus
 extern "C" {
@@ -44,6 +45,9 @@ typedef struct {
     const char *label;
     /** From the mesh to the world. */
     double pose[16];
+    /** A volume of cells, instead of mesh and material, which are NULL. skg_scene_part_get gives its box as the mesh; do not move
+     * the vertices of that. Retained by the scene. NULL, the default: none. */
+    skg_volume *volume;
 } skg_part;
 
 SKG_INIT(skg_part)

@@ -1,0 +1,101 @@
+/* The cells of a grid in a file: raw or compressed by zlib, of any type of number. */
+#include "image/image.h"
+
+#include <string.h>
+#include <zlib.h>
+
+/* What the file holds, read from front to back. */
+typedef struct {
+    const char *path;
+    FILE *stream;
+    int compressed, ended;
+    z_stream inflating;
+    unsigned char buffer[1 << 16];
+} source;
+
+static skg_status fail_short(const source *s, int64_t slice, int64_t slices) {
+    return skg_fail(SKG_ERR_FORMAT, "%s: ends in slice %lld of %lld; is it the whole file?", s->path,
+                    (long long)slice, (long long)slices);
+}
+
+static skg_status open_source(source *s, const skg_grid_file *file) {
+    s->compressed = file->compressed;
+    if (!s->compressed) return SKG_OK;
+    /* 15 bits of window, and 32: the header of gzip or of zlib */
+    if (inflateInit2(&s->inflating, 15 + 32) != Z_OK)
+        return skg_fail(SKG_ERR_MEMORY, "%s: no memory to expand it", s->path);
+    return SKG_OK;
+}
+
+static void close_source(source *s) {
+    if (s->compressed) inflateEnd(&s->inflating);
+}
+
+/* Reads so many bytes. Returns how many there were. */
+static size_t read_bytes(source *s, void *to, size_t count) {
+    if (!s->compressed) return fread(to, 1, count, s->stream);
+    z_stream *z = &s->inflating;
+    size_t done = 0;
+    while (done < count && !s->ended) {
+        const size_t left = count - done;
+        if (z->avail_in == 0) {
+            z->next_in = s->buffer;
+            z->avail_in = (uInt)fread(s->buffer, 1, sizeof s->buffer, s->stream);
+            if (z->avail_in == 0) break;
+        }
+        z->next_out = (unsigned char *)to + done;
+        z->avail_out = left < 1u << 30 ? (uInt)left : 1u << 30;
+        const uInt room = z->avail_out;
+        const int code = inflate(z, Z_NO_FLUSH);
+        done += room - z->avail_out;
+        s->ended = code != Z_OK;
+    }
+    return done;
+}
+
+/* The type in which the cells of a file are kept. */
+static int32_t cell_type(const skg_grid_file *file) {
+    if (file->kind == 'f') return file->bytes == 4 ? SKG_VOLUME_FLOAT32 : SKG_VOLUME_FLOAT64;
+    if (file->bytes == 1) return SKG_VOLUME_INT16;
+    if (file->bytes == 2) return file->kind == 'u' ? SKG_VOLUME_UINT16 : SKG_VOLUME_INT16;
+    return SKG_VOLUME_FLOAT64;
+}
+
+static void take_slice(const unsigned char *slice, const skg_grid_file *file, int64_t first, int64_t count,
+                       skg_grid *grid) {
+    for (int64_t k = 0; k < count; k++) {
+        const double value =
+            skg_number_of_bytes(slice + k * file->bytes, file->bytes, file->kind, file->swapped);
+        const int64_t at = first + k;
+        if (grid->type == SKG_VOLUME_INT16) ((int16_t *)grid->cells)[at] = (int16_t)value;
+        if (grid->type == SKG_VOLUME_UINT16) ((uint16_t *)grid->cells)[at] = (uint16_t)value;
+        if (grid->type == SKG_VOLUME_FLOAT32) ((float *)grid->cells)[at] = (float)value;
+        if (grid->type == SKG_VOLUME_FLOAT64) ((double *)grid->cells)[at] = value;
+    }
+}
+
+skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_file *file, skg_grid *grid) {
+    static const size_t sizes[] = {sizeof(int16_t), sizeof(uint16_t), sizeof(float), sizeof(double)};
+    const int64_t plane = grid->size[0] * grid->size[1];
+    unsigned char *slice = NULL;
+    source *s = NULL;
+    skg_status status = SKG_OK;
+    grid->type = cell_type(file);
+    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *s, "volume", &s));
+    s->path = path, s->stream = stream;
+    SKG_TRY_CLEANUP(open_source(s, file));
+    SKG_TRY_CLEANUP(skg_alloc(plane * grid->size[2], sizes[grid->type], "cells of a volume", &grid->cells));
+    SKG_TRY_CLEANUP(skg_alloc(plane, (size_t)file->bytes, "slice of a volume", &slice));
+    for (int64_t z = 0; z < grid->size[2] && status == SKG_OK; z++) {
+        if (read_bytes(s, slice, (size_t)(plane * file->bytes)) != (size_t)(plane * file->bytes))
+            status = fail_short(s, z, grid->size[2]);
+        else
+            take_slice(slice, file, z * plane, plane, grid);
+    }
+cleanup:
+    if (s) close_source(s);
+    skg_free(&s);
+    skg_free(&slice);
+    if (status != SKG_OK) skg_free(&grid->cells);
+    return status;
+}

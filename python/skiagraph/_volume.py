@@ -1,0 +1,84 @@
+"""Volumes of cells from arrays. Private."""
+from __future__ import annotations
+
+import hashlib
+import os
+import pathlib
+from collections.abc import Sequence
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from . import _arrays
+from ._interface import ENUMS, ArgumentError
+from ._library import call, encode, ffi, filled, make, struct, text
+from .material import Material, as_material
+
+_VALUES, _TYPES = ENUMS["volume_values"], ENUMS["volume_type"]
+
+
+def _of_image(image: Any) -> tuple[NDArray[Any], NDArray[np.float64]]:
+    """The array and the affine of an image of SimpleITK, whose coordinates are taken as they are."""
+    import SimpleITK
+
+    affine = np.eye(4)
+    affine[:3, :3] = np.array(image.GetDirection()).reshape(3, 3) @ np.diag(image.GetSpacing())
+    affine[:3, 3] = image.GetOrigin()
+    return SimpleITK.GetArrayFromImage(image), affine
+
+
+def _cells(array: Any) -> NDArray[Any]:
+    """An array [z, y, x] of a type that the library reads, dense."""
+    cells = _arrays.numbers(array, "array")
+    if cells.ndim != 3 or cells.size == 0:
+        raise ArgumentError(f"array has {_arrays.describe(cells)}; give cells [z, y, x]")
+    if cells.dtype.name not in _TYPES:
+        whole = cells.dtype.kind in "iub"
+        fits = [name for name in ("int16", "uint16") if whole and np.iinfo(name).min <= cells.min() and cells.max() <= np.iinfo(name).max]
+        cells = cells.astype(fits[0] if fits else "float64" if whole or cells.itemsize > 4 else "float32")
+    return np.ascontiguousarray(cells)
+
+
+def make_volume(label: str, array: Any, affine: Any, values: str, material: Material | str | None,
+                classes: Sequence[tuple[float, Material | str]] | None) -> tuple[Any, list[Any]]:
+    """A volume, which the caller releases, and what its hash is made of."""
+    source, name = struct("skg_volume_source"), ffi.new("char[]", encode(label, "label"))
+    if not isinstance(values, str) or values.lower() not in _VALUES:
+        raise ArgumentError(f"values is {values!r}; give 'HU', 'density' or 'mu'")
+    source.values, source.name = _VALUES[values.lower()], name
+    of_all = None if material is None else as_material(material)
+    if of_all is not None:
+        source.material = of_all._handle
+    rows = [(float(start), as_material(matter)) for start, matter in classes or ()]
+    limits, matters = ffi.new("double[]", [row[0] for row in rows]), ffi.new("skg_material *[]", [row[1]._handle for row in rows])
+    source.class_count = len(rows)
+    if rows:
+        source.class_from, source.class_materials = limits, matters
+    if isinstance(array, (str, os.PathLike)):
+        if affine is not None:
+            raise ArgumentError("affine is given beside a file, which says where its cells are; leave it out, or give pose")
+        return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 1.0, source),
+                [values, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])
+    if hasattr(array, "GetDirection") and affine is None:
+        array, affine = _of_image(array)
+    if affine is None:
+        raise ArgumentError("affine is missing; give the 4 x 4 matrix from (x, y, z) indices to mm, or an image of SimpleITK")
+    cells = _cells(array)
+    source.type, source.cells = _TYPES[cells.dtype.name], ffi.cast("void *", ffi.from_buffer(cells))
+    source.slices, source.rows, source.columns = cells.shape
+    source.affine = _arrays.matrix(affine, "affine").ravel().tolist()
+    return (make("skg_volume_create", "skg_volume", source),
+            [values, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells).hexdigest(), np.asarray(affine, np.float64)])
+
+
+def describe(volume: Any) -> dict[str, Any]:
+    """What a volume is, and the shares of its cells by composition."""
+    found = filled("skg_volume_contents", "skg_volume_contents_get", volume)
+    found["values"] = next(name for name, value in _VALUES.items() if value == found["values"])
+    name, share, classes = ffi.new("char **"), ffi.new("double *"), {}
+    for index in range(found["classes"]):
+        call("skg_volume_class_get", volume, index, name, share)
+        classes[text(name[0])] = float(share[0])
+    found["classes"] = classes
+    return found

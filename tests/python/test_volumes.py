@@ -1,0 +1,137 @@
+"""Volumes of cells as parts."""
+import json
+import pickle
+
+import numpy as np
+import pytest
+
+import skiagraph as sk
+
+AFFINE = np.array([[2.0, 0, 0, -19], [0, 2, 0, -14], [0, 0, 2, -9], [0, 0, 0, 1]])
+
+
+def make_scene():
+    scene = sk.Scene()
+    scene.view = sk.View(source=(0, 0, -400), detector=(0, 0, 100), column_step=(2, 0, 0), row_step=(0, 2, 0), pixels=(40, 30))
+    scene.beam = sk.Beam.mono(60, 1000)
+    return scene
+
+
+def block(volume, **more):
+    """A block of water of 40 x 30 x 20 mm, of cells or of triangles."""
+    scene = make_scene()
+    if volume is None:
+        scene.add("block", sk.Mesh.cuboid(40, 30, 20), material="Water")
+    else:
+        scene.add_volume("block", volume, AFFINE, **more)
+    return scene
+
+
+@pytest.mark.parametrize("cells, more", [
+    (np.ones((10, 15, 20), np.int8), {"values": "density", "material": "Water"}),
+    (np.ones((10, 15, 20), np.uint16), {"values": "density", "classes": [(0, "Water"), (2, "Pb")]}),
+    (np.ones((20, 15, 10)).T, {"values": "density", "material": sk.Material("Water")}),
+    (np.full((10, 15, 20), sk.Material("Water").attenuation(60), np.float64), {"values": "mu"}),
+])
+def test_cells_are_a_block(cells, more):
+    expected = block(None).image("attenuation")
+    found = block(cells, **more).image("attenuation")
+    np.testing.assert_allclose(found, expected, atol=2e-6 * expected.max())  # faces of meshes are rounded
+
+
+def test_the_axes_are_z_y_x():
+    cells = np.zeros((10, 15, 20), np.float32)
+    cells[:, 3, 7] = 1  # a rod along the beam, at x = -5 and y = -8 mm
+    scene = make_scene()
+    scene.add_volume("rod", cells, AFFINE, "mu", pose=sk.translate(0, 0, 0))
+    row, column = np.unravel_index(scene.image("attenuation").argmax(), (30, 40))
+    # The detector is 1.25 times as far as the middle of the cells.
+    assert abs((column - 19.5) * 2 / 1.25 + 5) < 1.5 and abs((row - 14.5) * 2 / 1.25 + 8) < 1.5
+
+
+def test_parts_inside_displace_cells():
+    images = []
+    for volume in (None, np.ones((10, 15, 20), np.int16)):
+        scene = block(volume, values="density", material="Water") if volume is not None else block(None)
+        part = scene.add("needle", sk.Mesh.cube(6), material="Ti", inside="block")
+        assert part.inside == "block" and (scene["block"].volume is None) == (volume is None) and part.volume is None
+        images.append(scene.image("attenuation"))
+        scene.remove("needle")
+        assert scene.image("attenuation").max() < images[-1].max()
+    np.testing.assert_allclose(images[1], images[0], atol=2e-6 * images[0].max())
+
+
+def test_what_cannot_be_is_refused(tmp_path):
+    cells = np.zeros((2, 3, 4), np.int16)
+    scene = make_scene()
+    with pytest.raises(sk.ArgumentError, match="affine is missing"):
+        scene.add_volume("ct", cells)
+    with pytest.raises(sk.ArgumentError, match=r"cells \[z, y, x\]"):
+        scene.add_volume("ct", cells[0], AFFINE)
+    with pytest.raises(sk.ArgumentError, match="'HU', 'density' or 'mu'"):
+        scene.add_volume("ct", cells, AFFINE, "grey")
+    with pytest.raises(sk.Error, match="singular"):
+        scene.add_volume("ct", cells, np.diag([1, 1, 0, 1]))
+    with pytest.raises(sk.Error, match="column 1, row 2, slice 0 is nan"):
+        scene.add_volume("ct", np.where(np.arange(24).reshape(2, 3, 4) == 9, np.nan, 0), AFFINE)
+    scene.add_volume("ct", cells, AFFINE)
+    with pytest.raises(sk.Error, match="whose cells say"):
+        scene["ct"].material = "Water"
+    with pytest.raises(sk.Error, match="not pickled"):
+        pickle.dumps(scene)
+    with pytest.raises(sk.Error, match="not written"):
+        scene.save(tmp_path / "scene.json")
+    with pytest.raises(sk.Error, match="no gradient"):
+        scene.gradient(np.ones((30, 40)), wrt=("poses",))
+    with pytest.raises(sk.Error, match="volume of cells"):
+        scene.image(scatter=0.1)
+
+
+def test_files_and_what_is_in_them(tmp_path):
+    cells = np.array([[[-1000, 40], [40, 40]]], "<i2")
+    path = tmp_path / "ct.mha"
+    path.write_bytes(b"NDims = 3\nElementSpacing = 2 3 4\nDimSize = 2 2 1\nElementType = MET_SHORT\nElementDataFile = LOCAL\n"
+                     + cells.tobytes())
+    scene = make_scene()
+    part = scene.add_volume("ct", path)
+    found = part.volume
+    assert (found["columns"], found["rows"], found["slices"], found["bits"]) == (2, 2, 1, 16)
+    assert found["low"] == -1000 and found["high"] == 40 and sorted(found["classes"].values()) == [0.25, 0.75]
+    with pytest.raises(sk.ArgumentError, match="beside a file"):
+        scene.add_volume("other", path, AFFINE)
+
+
+def test_a_scene_file_with_a_volume_is_saved_as_it_was(tmp_path):
+    cells = np.full((4, 4, 4), 40, "<i2")
+    (tmp_path / "ct.mha").write_bytes(b"NDims = 3\nElementSpacing = 9 9 9\nDimSize = 4 4 4\nElementType = MET_SHORT\n"
+                                      b"ElementDataFile = LOCAL\n" + cells.tobytes())
+    text = {"Source": {"Position": [0, 0, -400, "mm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 9}]},
+            "Detector": {"Position": [0, 0, 100, "mm"], "ColumnStep": [2, 0, 0, "mm"], "RowStep": [0, 2, 0, "mm"], "NumberOfPixels": [40, 30]},
+            "Samples": [{"Label": "ct", "Volume": "ct.mha", "Values": "HU"}]}
+    (tmp_path / "scene.json").write_text(json.dumps(text))
+    scene = sk.Scene(tmp_path / "scene.json")
+    scene["ct"].pose = sk.translate(3, -20, 0)
+    image = scene.image("attenuation")
+    assert image.max() > 0.5
+    scene.save(tmp_path / "moved.json")
+    np.testing.assert_array_equal(sk.Scene(tmp_path / "moved.json").image("attenuation"), image)
+
+
+def test_other_cells_make_another_scan(tmp_path):
+    hashes = []
+    for value in (1, 1, 2):
+        scene = block(np.full((10, 15, 20), value, np.int16), values="density", material="Water")
+        scene.trajectory = sk.Scan(scene.view, 1)
+        hashes.append(scene.scan(tmp_path / f"{len(hashes)}.mha")["hash"])
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
+def test_simpleitk_images():
+    itk = pytest.importorskip("SimpleITK")
+    image = itk.GetImageFromArray(np.ones((10, 15, 20), np.int16))
+    image.SetSpacing((2, 2, 2))
+    image.SetOrigin((-19, -14, -9))
+    scene = make_scene()
+    scene.add_volume("block", image, values="density", material="Water")
+    expected = block(None).image("attenuation")
+    np.testing.assert_allclose(scene.image("attenuation"), expected, atol=2e-6 * expected.max())
