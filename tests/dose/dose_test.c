@@ -2,6 +2,7 @@
 #define _GNU_SOURCE /* sched_setaffinity */
 #include "analogue_box.h"
 
+#include "dose/pieces.h"
 #include "scatter/matter.h"
 #include "scatter/subject.h"
 #include "suite.h"
@@ -457,6 +458,46 @@ START_TEST(backscatter_is_that_of_a_water_phantom) {
 }
 END_TEST
 
+/* --- lines */
+
+/* Lines through corners, along edges and within faces of a cube and through the poles of a ball: signs cancel, and of a cube a line has a
+ * side or nothing. */
+START_TEST(lines_through_edges_and_corners_are_closed) {
+    static const double ways[][3] = {{0, 0, 1}, {0, 1, 0}, {-1, 0, 0}, {1, 1, 0}, {1, -1, 1}, {0, 1, -2}};
+    for (int shape = 0; shape < 2; shape++) {
+        subject s;
+        skg_mesh *mesh = NULL;
+        skg_forest tree;
+        skg_way way = {0};
+        subject_open(&s);
+        if (shape)
+            ck_skg(skg_mesh_create_sphere(2, 16, &mesh));
+        else
+            ck_skg(skg_mesh_create_cuboid(2, 2, 2, &mesh));
+        subject_add(&s, mesh, "Water, Liquid", 0, 0, 0, -1);
+        ck_skg(skg_forest_make(s.scene, &tree));
+        for (int i = 0; i < 6 * 9 * 9; i++) {
+            const double *direction = ways[i / 81], u = (i % 81 % 9 - 4) / 4.0,
+                         v = (double)(i % 81 / 9 - 4) / 4;
+            double from[3] = {u, v, 0};
+            if (direction[2] > -1 && direction[2] < 1) from[1] = 0, from[2] = v;
+            for (int k = 0; k < 3; k++) from[k] -= 8 * direction[k];
+            ck_skg(skg_way_cross(&tree, from, direction, &way));
+            int32_t signs = 0;
+            double length = 0;
+            for (int64_t c = 0; c < way.crossing_count; c++)
+                signs += way.crossings[c].sign, length -= way.crossings[c].sign * way.crossings[c].at;
+            ck_assert_int_eq(signs, 0);
+            ck_assert_double_ge(length, 0);
+            if (shape == 0 && i < 3 * 81) ck_assert(length == 0 || fabs(length - 2) < 1e-12); /* rounding */
+        }
+        skg_way_free(&way);
+        skg_forest_free(&tree);
+        subject_close(&s);
+    }
+}
+END_TEST
+
 /* --- threads, and what is refused */
 
 START_TEST(figures_do_not_depend_on_threads) {
@@ -532,6 +573,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, fluorescence_carries_energy_away);
     tcase_add_test(tests, parts_share_what_a_block_keeps);
     tcase_add_loop_test(tests, backscatter_is_that_of_a_water_phantom, 0, 3);
+    tcase_add_test(tests, lines_through_edges_and_corners_are_closed);
     tcase_add_test(tests, figures_do_not_depend_on_threads);
     tcase_add_test(tests, what_cannot_be_known_is_refused);
     tcase_add_test(tests, photons_are_not_followed_through_what_is_not_known);
