@@ -136,6 +136,28 @@ START_TEST(test_bad_pixels_have_their_value) {
 }
 END_TEST
 
+/* Gain on what is beyond the dark value and on its noise; offset on all; then the level of saturation. */
+START_TEST(test_pixels_differ) {
+    const float energies[4] = {0, 25, 50, 50}, gain[4] = {2, 2, 1, 0}, offset[4] = {5, 5, -30, 0};
+    float grey[4];
+    skg_readout readout = floats();
+    readout.gain = gain, readout.offset = offset;
+    read_floats(&readout, 4, energies, grey);
+    const float expected[4] = {105, 1105, 1070, 100};
+    ck_assert_int_eq(memcmp(grey, expected, sizeof expected), 0); /* exact in float */
+    readout.saturation = 1080;
+    read_floats(&readout, 4, energies, grey);
+    ck_assert(grey[1] >= 1080 && grey[1] <= 1080);
+    ck_assert(grey[2] >= 1070 && grey[2] <= 1070);
+    /* Noise is amplified with the signal: a flat field divides both out. */
+    static float twice[PIXELS];
+    for (int i = 0; i < PIXELS; i++) twice[i] = 2;
+    readout = floats();
+    readout.snr = 55, readout.gain = twice;
+    check_moments(&readout, 50, 2100, 40);
+}
+END_TEST
+
 START_TEST(test_wrong_fields_are_refused) {
     const double falling[4] = {1, 1, 0, 2};
     float grey[1];
@@ -159,6 +181,19 @@ START_TEST(test_wrong_fields_are_refused) {
     readout.curve_count = 1;
     ck_skg_fails(skg_readout_image(&readout, 1, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
                  "1 points");
+    const float maps[2] = {1, NAN}, negative[1] = {-1};
+    readout = floats();
+    readout.offset = maps;
+    ck_skg_fails(skg_readout_image(&readout, 2, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
+                 "offset of pixel 1");
+    readout = floats();
+    readout.gain = negative;
+    ck_skg_fails(skg_readout_image(&readout, 1, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
+                 "gain of pixel 0");
+    readout = floats();
+    readout.saturation = -1;
+    ck_skg_fails(skg_readout_image(&readout, 1, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
+                 "saturation");
 }
 END_TEST
 
@@ -168,6 +203,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, test_noise_follows_its_ratio);
     tcase_add_test(tests, test_noise_depends_on_seed_and_index_alone);
     tcase_add_test(tests, test_bad_pixels_have_their_value);
+    tcase_add_test(tests, test_pixels_differ);
     tcase_add_test(tests, test_wrong_fields_are_refused);
 }
 

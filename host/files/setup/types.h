@@ -32,7 +32,7 @@ typedef struct {
     int32_t is_given;
     skg_readout readout; /* points to the arrays below */
     double *curve, *noise;
-    float *bad_pixels;
+    float *bad_pixels, *gain, *offset;
 } skg_grey_section;
 
 /* A value over time: linear between its points (s, value), constant beyond them. */

@@ -11,8 +11,8 @@ extern "C" {
 #endif
 
 /** How a detector is read out. Prepare with skg_readout_init: 0 without radiation, 60000 where the free beam is strongest,
- * 16 bits, no noise, no bad pixels. A pixel passes through these steps: grey value of its energy, noise, bad pixels, whole
- * numbers. */
+ * 16 bits, no noise, no bad pixels, all pixels alike. A pixel passes through these steps: grey value of its energy, its gain and
+ * offset, noise, saturation, bad pixels, whole numbers. */
 typedef struct {
     /** Set by skg_readout_init. */
     int32_t size;
@@ -43,6 +43,13 @@ typedef struct {
     const float *bad_pixels;
     /** Seed of the noise. */
     int64_t seed;
+    /** [pixels] factor of each pixel, finite and at least 0, on its grey value beyond that without radiation, and on the standard
+     * deviation of its noise; NULL: 1. */
+    const float *gain;
+    /** [pixels] grey value of each pixel, finite, added to all of its values, such as its dark current; NULL: 0. */
+    const float *offset;
+    /** Grey value at which pixels saturate; 0: none, but for the bits. */
+    double saturation;
 } skg_readout;
 
 SKG_INIT(skg_readout)
