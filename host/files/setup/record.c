@@ -16,6 +16,7 @@ static const skg_json_key grey_keys[] = {
     {"NoiseCurve", NULL, SKG_KEY_READ}, {"Frames", NULL, SKG_KEY_READ},     {"BadPixels", NULL, SKG_KEY_READ},
     {"Seed", NULL, SKG_KEY_READ},       {"Gain", NULL, SKG_KEY_READ},       {"Offset", NULL, SKG_KEY_READ},
     {"Saturation", NULL, SKG_KEY_READ}, {"BadColumns", NULL, SKG_KEY_READ}, {"BadRows", NULL, SKG_KEY_READ},
+    {"Lag", NULL, SKG_KEY_READ},
 };
 static const skg_json_key map_keys[] = {
     {"Path", NULL, SKG_KEY_READ},
@@ -180,6 +181,20 @@ static skg_status read_maps(skg_setup_reader *reader, const skg_json_object *obj
     return SKG_OK;
 }
 
+/* [[share, frames], ...] */
+static skg_status read_lag(const skg_json_object *object, skg_grey_section *grey) {
+    const skg_json_node node = skg_json_member(object, "Lag");
+    skg_lag *made = NULL;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_setup_read_rows(&node, 2, "[[0.03, 1.5], [0.005, 40]], shares and frames",
+                                &grey->readout.lag_count, &grey->lag));
+    grey->readout.lag = grey->lag;
+    const skg_status status =
+        skg_lag_create(1, grey->readout.lag_count, grey->lag, &made); /* it checks them */
+    skg_lag_release(&made);
+    return skg_json_at(&node, status);
+}
+
 skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_object *detector) {
     const skg_json_node node = skg_json_member(detector, "GreyValues");
     skg_grey_section *grey = &reader->setup->grey;
@@ -205,12 +220,14 @@ skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_o
     SKG_TRY(read_count(&object, "Frames", 1, &r->frames));
     SKG_TRY(read_count(&object, "Seed", 0, &r->seed));
     SKG_TRY(read_number(&object, "Saturation", &r->saturation));
+    SKG_TRY(read_lag(&object, grey));
     return read_maps(reader, &object, grey);
 }
 
 void skg_grey_section_free(skg_grey_section *section) {
     skg_free(&section->curve);
     skg_free(&section->noise);
+    skg_free(&section->lag);
     skg_free(&section->bad_pixels);
     skg_free(&section->gain);
     skg_free(&section->offset);
