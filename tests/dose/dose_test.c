@@ -9,6 +9,8 @@
 
 #include <math.h>
 #include <sched.h>
+#include <stdatomic.h>
+#include <stdlib.h>
 
 static const double JOULE_PER_KEV = 1.602176634e-16;
 
@@ -272,6 +274,47 @@ START_TEST(the_exposure_index_is_100_for_each_ugy_of_rqa5) {
     skg_material_release(&metal);
     skg_dose_release(&dose);
     subject_close(&s);
+    skg_spectrum_release(&beam);
+}
+END_TEST
+
+/* Heel effect, bow-tie filter and a world: the meter at the detector reads what kerma at the places of its pixels says. */
+START_TEST(the_beam_in_the_room_is_that_of_images) {
+    enum { SIDE = 7 };
+    static const double angle[] = {-20, 0, 20}, path[] = {12, 1, 12};
+    static double places[3 * SIDE * SIDE];
+    subject s = open_box(20, 20, 20, "Vacuum");
+    skg_spectrum *beam = tube_of(2);
+    skg_material *metal = NULL, *air = NULL;
+    skg_dose_options options = options_of(0);
+    skg_heel heel;
+    skg_bowtie bowtie;
+    skg_heel_init(&heel);
+    skg_bowtie_init(&bowtie);
+    ck_skg(skg_material_create_element(13, &metal));
+    ck_skg(skg_material_create_named("Air, Dry (near sea level)", &air));
+    heel.kvp = 100, heel.angle_deg = 12;
+    heel.direction[1] = 1;
+    bowtie.material = metal, bowtie.count = 3, bowtie.angle_deg = angle, bowtie.path_mm = path;
+    s.beam = beam, s.options.heel = &heel, s.options.bowtie = &bowtie, s.options.world = air;
+    s.view.columns = s.view.rows = SIDE;
+    s.view.column_step[0] = s.view.row_step[1] = 30;
+    for (int i = 0; i < SIDE * SIDE; i++)
+        places[3 * i] = 30 * (i % SIDE - 3), places[3 * i + 1] = 30 * ((double)(i / SIDE) - 3),
+                   places[3 * i + 2] = 200;
+    options.point_count = (int64_t)SIDE * SIDE, options.points = places;
+    skg_dose *dose = dose_of(&s, &options);
+    double mean = 0;
+    for (int i = 0; i < SIDE * SIDE; i++) mean += point_of(dose, i).air_kerma_ugy / (SIDE * SIDE);
+    /* Rays of the heel effect and the filter are fitted to 1e-4 in images, and of kerma there is a table with steps of .2 %. */
+    ck_assert_double_eq_tol(report_of(dose).detector_air_kerma_ugy / mean, 1, 5e-4);
+    /* They matter: without them there is more towards the cathode. */
+    ck_assert_double_gt(point_of(dose, SIDE / 2).air_kerma_ugy,
+                        1.1 * point_of(dose, SIDE * SIDE - 1 - SIDE / 2).air_kerma_ugy);
+    skg_dose_release(&dose);
+    subject_close(&s);
+    skg_material_release(&metal);
+    skg_material_release(&air);
     skg_spectrum_release(&beam);
 }
 END_TEST
@@ -546,6 +589,60 @@ START_TEST(what_cannot_be_known_is_refused) {
 }
 END_TEST
 
+/* --- memory */
+
+static atomic_llong allowed; /* so many more allocations succeed */
+
+static void *allocate(int64_t size, void *user) {
+    (void)user;
+    return atomic_fetch_sub(&allowed, 1) > 0 ? malloc((size_t)size) : NULL;
+}
+
+static void *reallocate(void *memory, int64_t size, void *user) {
+    (void)user;
+    return atomic_fetch_sub(&allowed, 1) > 0 ? realloc(memory, (size_t)size) : NULL;
+}
+
+static void give_back(void *memory, void *user) {
+    (void)user;
+    free(memory);
+}
+
+/* Whichever allocation fails, the call says so and keeps nothing. */
+START_TEST(nothing_is_kept_without_memory) {
+    enum { MANY = 1000000000 };
+    skg_allocator allocator;
+    skg_dose_options options = options_of(64);
+    int64_t before = 0, after = 0, failed = 0;
+    run_close();
+    skg_allocator_init(&allocator);
+    allocator.allocate = allocate, allocator.reallocate = reallocate, allocator.release = give_back;
+    atomic_store(&allowed, MANY);
+    ck_skg(skg_allocator_set(&allocator));
+    run_open();
+    subject s = open_box(60, 60, 40, "Water, Liquid");
+    s.options.noise = 1;
+    skg_dose *dose = dose_of(&s, &options);
+    skg_dose_release(&dose);
+    ck_skg(skg_allocation_count(&before));
+    for (int64_t at = 0;; at += 1 + at / 24) {
+        atomic_store(&allowed, at);
+        const skg_status status = skg_dose_create(s.plan, &options, &dose);
+        const int is_done = atomic_load(&allowed) > 0;
+        atomic_store(&allowed, MANY);
+        skg_dose_release(&dose);
+        if (is_done) break;
+        failed++;
+        ck_assert_msg(status == SKG_ERR_MEMORY, "allocation %d: %s (%s)", (int)at, skg_status_name(status),
+                      skg_last_error());
+        ck_skg(skg_allocation_count(&after));
+        ck_assert_msg(after <= before, "allocation %d: %d pieces were kept", (int)at, (int)(after - before));
+    }
+    ck_assert_int_gt(failed, 50);
+    subject_close(&s);
+}
+END_TEST
+
 /* A material that is known by its attenuation alone: no photons, and the rest is known. */
 START_TEST(photons_are_not_followed_through_what_is_not_known) {
     subject s = open_box(20, 20, 20, "mu:0.2");
@@ -567,6 +664,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, kerma_over_the_field_is_the_same_at_each_distance);
     tcase_add_test(tests, a_tube_gives_its_output);
     tcase_add_test(tests, the_detector_gets_what_the_parts_leave);
+    tcase_add_test(tests, the_beam_in_the_room_is_that_of_images);
     tcase_add_test(tests, the_exposure_index_is_100_for_each_ugy_of_rqa5);
     tcase_add_test(tests, a_foil_keeps_what_its_energy_transfer_says);
     tcase_add_test(tests, layers_keep_what_single_photons_leave);
@@ -576,6 +674,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, lines_through_edges_and_corners_are_closed);
     tcase_add_test(tests, figures_do_not_depend_on_threads);
     tcase_add_test(tests, what_cannot_be_known_is_refused);
+    tcase_add_test(tests, nothing_is_kept_without_memory);
     tcase_add_test(tests, photons_are_not_followed_through_what_is_not_known);
 }
 
