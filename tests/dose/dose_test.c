@@ -357,25 +357,30 @@ START_TEST(a_foil_keeps_what_its_energy_transfer_says) {
 }
 END_TEST
 
-/* A block of water in two layers, beside photons that are followed one by one: what stays, and in which. */
+/* A block in two layers, beside photons that are followed one by one: what stays, and in which. Fluorescence is below what is followed. */
 START_TEST(layers_keep_what_single_photons_leave) {
-    const analogue_box box = {.material = "Water, Liquid",
-                              .kev = 60,
+    static const struct {
+        const char *material;
+        double kev;
+    } blocks[] = {{"Water, Liquid", 60}, {"Water, Liquid", 22}, {"Al", 300}};
+    const analogue_box box = {.material = blocks[_i].material,
+                              .kev = blocks[_i].kev,
                               .low = {-60, -50, 0},
                               .high = {60, 50, 80},
                               .source = -500,
                               .plane = 200,
-                              .side = 200,
+                              .side = 80,
                               .inner = {0, 20}};
     const analogue_absorbed truth = analogue_box_run(&box, 200000, 7);
     const skg_dose_options options = options_of(64000);
     skg_mesh *mesh = NULL;
     subject s;
     subject_open(&s);
-    s.view.rows = 40;
+    s.view.rows = 40, s.view.column_step[0] = s.view.row_step[1] = 2;
+    s.kev = box.kev;
     for (int k = 0; k < 2; k++) {
         ck_skg(skg_mesh_create_cuboid(120, 100, k ? 60 : 20, &mesh));
-        subject_add(&s, mesh, "Water, Liquid", 0, 0, k ? 50 : 10, -1);
+        subject_add(&s, mesh, box.material, 0, 0, k ? 50 : 10, -1);
     }
     skg_dose *dose = dose_of(&s, &options);
     const skg_dose_report report = report_of(dose);
@@ -667,7 +672,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_beam_in_the_room_is_that_of_images);
     tcase_add_test(tests, the_exposure_index_is_100_for_each_ugy_of_rqa5);
     tcase_add_test(tests, a_foil_keeps_what_its_energy_transfer_says);
-    tcase_add_test(tests, layers_keep_what_single_photons_leave);
+    tcase_add_loop_test(tests, layers_keep_what_single_photons_leave, 0, 3);
     tcase_add_test(tests, fluorescence_carries_energy_away);
     tcase_add_test(tests, parts_share_what_a_block_keeps);
     tcase_add_loop_test(tests, backscatter_is_that_of_a_water_phantom, 0, 3);
