@@ -11,6 +11,7 @@ const cli_verb cli_verbs[] = {
     {&cli_manual_live, cli_live},
     {&cli_manual_cost, cli_cost},
     {&cli_manual_parts, cli_parts},
+    {&cli_manual_dose, cli_dose},
     {&cli_manual_mesh, cli_mesh},
     {&cli_manual_distance, cli_distance},
     {&cli_manual_material, cli_material},

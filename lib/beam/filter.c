@@ -60,6 +60,7 @@ skg_status skg_spectrum_create_filtered(const skg_spectrum *spectrum, int64_t co
     }
     made->count = used;
     made->absolute = spectrum->absolute;
+    made->unloaded = spectrum->unloaded;
     *behind = made;
     return SKG_OK;
 cleanup:

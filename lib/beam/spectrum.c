@@ -112,6 +112,7 @@ skg_status skg_spectrum_create_scaled(const skg_spectrum *spectrum, double facto
     SKG_TRY(check_sum(spectrum->count, spectrum->energy_kev, spectrum->photons, factor));
     SKG_TRY(skg_spectrum_make(spectrum->count, scaled));
     (*scaled)->absolute = spectrum->absolute;
+    (*scaled)->unloaded = spectrum->unloaded;
     for (int64_t i = 0; i < spectrum->count; i++) {
         (*scaled)->energy_kev[i] = spectrum->energy_kev[i];
         (*scaled)->photons[i] = spectrum->photons[i] * factor;
@@ -128,6 +129,7 @@ skg_status skg_spectrum_create_counts(const skg_spectrum *spectrum, double facto
 skg_status skg_spectrum_create_absolute(const skg_spectrum *spectrum, skg_spectrum **absolute) {
     SKG_TRY(skg_spectrum_create_scaled(spectrum, 1, absolute));
     (*absolute)->absolute = 1;
+    (*absolute)->unloaded = 0;
     return SKG_OK;
 }
 

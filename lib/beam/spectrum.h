@@ -9,7 +9,7 @@
 struct skg_spectrum {
     skg_refs refs;
     int32_t absolute; /* 1: photons are per microsteradian, not per pixel */
-    int32_t reserved;
+    int32_t unloaded; /* 1: of a tube whose load is not known, so that the number of photons means nothing */
     int64_t count;
     double *energy_kev; /* [count], rising */
     double *photons;    /* [count] above 0 */

@@ -190,6 +190,7 @@ skg_status skg_spectrum_create_tube(const skg_tube *tube, skg_spectrum **spectru
         scale *= ours.output_ugy_mas * pow(ours.output_at_mm / 1000, 2) / skg_spectrum_kerma(behind);
     SKG_TRY_CLEANUP(skg_spectrum_create_scaled(behind, scale, spectrum));
     (*spectrum)->absolute = ours.mas > 0 && !(ours.pixel_mm2 > 0);
+    (*spectrum)->unloaded = !(ours.mas > 0);
 cleanup:
     skg_spectrum_release(&bare);
     skg_spectrum_release(&behind);

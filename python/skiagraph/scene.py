@@ -10,7 +10,8 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays, _command, _edit, _gradient, _images, _look, _pickle, _projections, _register, _save, _scatter, _show, _source, _volume
+from . import (_arrays, _command, _dose, _edit, _gradient, _images, _look, _pickle, _projections, _register, _save, _scatter, _show, _source,
+               _volume)
 from ._device import Device
 from ._frames import Batch
 from ._interface import ArgumentError, SceneError
@@ -267,6 +268,19 @@ class Scene(_gradient.Differentiable):
         "scatter" and "total".
         """
         return _scatter.prediction(self._state, options)
+
+    def dose(self, at: Any = None, *, histories: int | None = None, seed: int = 0, progress: Progress = False,
+             **options: Any) -> dict[str, Any]:
+        """What one exposure gives to people and things.
+
+        at: a place [x, y, z] in mm, or several; without it, where the middle ray of the field enters the first part. histories:
+        photons that are followed through the parts, 200,000 by default. options as of image(). Returns "kerma", a list of {"at",
+        "air_kerma_uGy", "backscatter"}; "kap_uGy_cm2"; "detector_air_kerma_uGy"; "exposure_index"; "parts", a list of {"label",
+        "dose_uGy", "sigma", "energy_keV"}; "hvl1_mm_al" and "hvl2_mm_al"; with noise "darkest". What is not known is None.
+
+        BeamError if the scene does not say how many photons there are, by the mAs of a tube or by photons of a pixel.
+        """
+        return _dose.dose(self._state, at, histories, seed, progress, options)
 
     # Scans
 

@@ -68,6 +68,44 @@ START_TEST(parts_are_a_table) {
 }
 END_TEST
 
+/* The scene's parallel beam has 1000 photons of 60 keV in a pixel of 2 mm2, and a field of 65 x 98 mm. */
+START_TEST(dose_is_that_of_the_beam) {
+    /* Energy transfer of dry air at 60 keV, .2 to .6 % above NIST's .03041 cm2/g. */
+    const double kerma = 1000 / 0.02 * 60 * 1.602176634e-16 * 0.03041 * 1e3 * 1e6;
+    ck_run(0,
+           "dose scene.json --json --at 0,0,0 --at 40,0,0 --histories 2000 --set Samples.skin.Material=H2O "
+           "--set Samples.skin.Density=1 --set Samples.bone.Material=H2O --set Samples.bone.Density=2");
+    json_t *object = said_json(), *places = member(object, "kerma"), *parts = member(object, "parts");
+    ck_assert_uint_eq(json_object_size(object), 7);
+    ck_assert_uint_eq(json_array_size(places), 2);
+    json_t *first = json_array_get(places, 0), *second = json_array_get(places, 1);
+    /* .2 to .6 %. */
+    ck_assert_double_eq_tol(json_number_value(member(first, "air_kerma_uGy")) / kerma, 1.002, 4e-3);
+    ck_assert(json_is_null(member(first, "backscatter"))); /* it is within the parts */
+    ck_assert_double_eq(json_number_value(json_array_get(member(second, "at"), 0)), 40);
+    ck_assert_double_eq(json_number_value(member(second, "air_kerma_uGy")), 0); /* beside the field */
+    ck_assert_double_eq_tol(json_number_value(member(object, "kap_uGy_cm2")) / (kerma * 6.5 * 9.8), 1.002,
+                            4e-3);
+    ck_assert_str_eq(json_string_value(member(json_array_get(parts, 1), "label")), "bone");
+    ck_assert_double_gt(json_number_value(member(json_array_get(parts, 1), "dose_uGy")), 0);
+    ck_assert_double_eq_tol(json_number_value(member(object, "hvl1_mm_al")), 9.27,
+                            0.05); /* ln 2 / (.277 x 2.70 g/cm3) by NIST */
+    ck_assert(json_is_number(member(object, "hvl2_mm_al")) &&
+              json_is_number(member(object, "exposure_index")) &&
+              json_is_number(member(object, "detector_air_kerma_uGy")));
+    json_decref(object);
+    /* Materials of unknown composition, and noise: the first part is entered in the middle of its face. */
+    ck_run(0, "dose scene.json --set Noise=true");
+    ck_assert_ptr_nonnull(strstr(complained, "no photons are followed"));
+    ck_assert_ptr_nonnull(strstr(said, "at (0, -20.25, 0) mm 0.0146"));
+    ck_assert_ptr_nonnull(strstr(said, "least signal"));
+    ck_assert_ptr_null(strstr(said, "dose uGy"));
+    ck_run_fails(2, "--at 1,2: give three numbers in mm", "dose scene.json --at 1,2");
+    ck_run_fails(3, "give mAs",
+                 "dose scene.json --set 'Source.Beam={\"kVp\": 80, \"Filter\": [[\"Al\", 3, \"mm\"]]}'");
+}
+END_TEST
+
 /* 60 keV x 1000 photons behind 20.5 mm of skin and 20 mm of bone; bars are those of single and double path
  * lengths, 3e-6 and 1e-11 of the largest, times the exponent. */
 START_TEST(quantities_have_their_values) {
@@ -466,6 +504,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, bands_are_channels);
     tcase_add_test(tests, lengths_are_net_or_of_the_surface);
     tcase_add_test(tests, parts_are_a_table);
+    tcase_add_test(tests, dose_is_that_of_the_beam);
     tcase_add_test(tests, every_output_is_written);
     tcase_add_test(tests, a_picture_of_a_scan_says_what_it_leaves_out);
     tcase_add_test(tests, noise_without_an_efficiency_is_warned_of);

@@ -52,6 +52,33 @@ START_TEST(projections_are_images) {
 }
 END_TEST
 
+/* The beam is on for three projections; a pixel beside the parts shows what comes later. */
+START_TEST(projections_leave_a_lag) {
+    enum { IMAGE = COLUMNS * ROWS * sizeof(float) };
+    static const char settings[] =
+        "--set Scan='{\"NumberOfProjections\":12,\"FinalAngle\":360,\"Intensity\":[1,1,1,0,0,0,0,0,0,0,0,0]}' "
+        "--set Detector.GreyValues='{\"Bits\":0,\"Lag\":[[0.1,2]]}'";
+    const double stays = exp(-0.5);
+    ck_run(0, "scan scene.json %s -o scan.mha --quiet", settings);
+    const size_t size = read_file("scan.mha", bytes);
+    double held = 0;
+    for (int k = 0; k < COUNT; k++) {
+        float shown;
+        memcpy(&shown, bytes + size - (size_t)(COUNT - k) * IMAGE, sizeof shown);
+        const double light = k < 3 ? 60000 : 0;
+        ck_assert_double_eq_tol((double)shown, 0.9 * light + held * (1 - stays), 0.05); /* 1e-6 of floats */
+        held = held * stays + 0.1 * light;
+    }
+    ck_run_fails(2, "the detector has Lag", "scan scene.json %s -o other.mha --only 3", settings);
+    ck_run_fails(2, "--from: the detector has Lag", "scan scene.json %s -o other.mha --from 3", settings);
+    ck_run_fails(2, "shards: the detector has Lag", "scan scene.json %s -o other.mha --shard 1/2", settings);
+    ck_run(0, "scan scene.json %s -o other.mha --to 5 --quiet", settings);
+    ck_run_fails(2, "remove the output and begin anew", "scan scene.json %s -o other.mha", settings);
+    ck_run_fails(3, "add up to 1", "scan scene.json %s --set 'Detector.GreyValues.Lag=[[1,2]]' -o bad.mha",
+                 settings);
+}
+END_TEST
+
 START_TEST(parts_of_a_scan_make_the_whole) {
     ck_run(0, "scan scene.json %s -o whole.mha --quiet", SCAN);
     ck_run(0, "scan scene.json %s -o scan.mha --only 3,7 --json", SCAN);
@@ -485,6 +512,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
     tcase_add_test(tests, projections_are_images);
+    tcase_add_test(tests, projections_leave_a_lag);
     tcase_add_test(tests, parts_of_a_scan_make_the_whole);
     tcase_add_test(tests, another_state_of_the_scene_is_another_scan);
     tcase_add_test(tests, a_folder_and_a_geometry);

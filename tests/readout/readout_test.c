@@ -136,6 +136,73 @@ START_TEST(test_bad_pixels_have_their_value) {
 }
 END_TEST
 
+/* Gain on what is beyond the dark value and on its noise; offset on all; then the level of saturation. */
+START_TEST(test_pixels_differ) {
+    const float energies[4] = {0, 25, 50, 50}, gain[4] = {2, 2, 1, 0}, offset[4] = {5, 5, -30, 0};
+    float grey[4];
+    skg_readout readout = floats();
+    readout.gain = gain, readout.offset = offset;
+    read_floats(&readout, 4, energies, grey);
+    const float expected[4] = {105, 1105, 1070, 100};
+    ck_assert_int_eq(memcmp(grey, expected, sizeof expected), 0); /* exact in float */
+    readout.saturation = 1080;
+    read_floats(&readout, 4, energies, grey);
+    ck_assert(grey[1] >= 1080 && grey[1] <= 1080);
+    ck_assert(grey[2] >= 1070 && grey[2] <= 1070);
+    /* Noise is amplified with the signal: a flat field divides both out. */
+    static float twice[PIXELS];
+    for (int i = 0; i < PIXELS; i++) twice[i] = 2;
+    readout = floats();
+    readout.snr = 55, readout.gain = twice;
+    check_moments(&readout, 50, 2100, 40);
+}
+END_TEST
+
+/* Light from frame 0 to before frame `until`: what is shown in frame n, by the sum over all frames before. */
+static double shown_of(const double terms[4], int until, int n) {
+    double shown = n < until ? 1 : 0;
+    for (int k = 0; k < 2; k++) {
+        const double share = terms[2 * k], stays = exp(-1 / terms[2 * k + 1]);
+        if (n < until) shown -= share;
+        for (int m = 0; m < n && m < until; m++) shown += share * (1 - stays) * pow(stays, n - 1 - m);
+    }
+    return shown;
+}
+
+START_TEST(test_signals_come_later) {
+    enum { FRAMES = 60, UNTIL = 40 };
+    const double terms[4] = {0.05, 1.5, 0.01, 12}, light[2] = {30, 0};
+    double frame[2], sum = 0;
+    float single[2];
+    skg_lag *lag = NULL;
+    ck_skg(skg_lag_create(2, 2, terms, &lag));
+    for (int n = 0; n < FRAMES; n++) {
+        ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, n < UNTIL ? light : NULL, 2, frame));
+        ck_assert_double_eq_tol(frame[0], 60 * shown_of(terms, UNTIL, n),
+                                1e-12 * 60); /* rounding of sums of 60 */
+        ck_assert_double_eq(frame[1], 0);
+        sum += frame[0];
+    }
+    /* What is still held is the rest. */
+    ck_assert_double_eq_tol(sum, 60 * UNTIL, 60 * (0.01 / (1 - exp(-1.0 / 12))) * exp(-19.0 / 12));
+    /* After a long exposure the first frame shows the sum of the shares; a steady one is shown as it is. */
+    for (int n = 0; n < 400; n++) ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, light, 1, frame));
+    ck_assert_double_eq_tol(frame[0], 30, 1e-12 * 30); /* exp(-400 / 12), and rounding */
+    ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT32, NULL, 1, single));
+    ck_assert_double_eq_tol((double)single[0], 30 * 0.06, 1e-6); /* of floats */
+    ck_skg(skg_lag_clear(lag));
+    ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT32, NULL, 1, single));
+    ck_assert_double_eq((double)single[0], 0);
+    ck_skg_fails(skg_lag_apply(lag, SKG_TYPE_UINT16, NULL, 1, single), SKG_ERR_ARGUMENT, "type");
+    skg_lag_release(&lag);
+    const double many[4] = {0.6, 1, 0.4, 1}, still[2] = {0.1, 0};
+    ck_skg_fails(skg_lag_create(2, 2, many, &lag), SKG_ERR_ARGUMENT, "add up to 1");
+    ck_skg_fails(skg_lag_create(2, 1, still, &lag), SKG_ERR_ARGUMENT, "0 frames");
+    ck_skg_fails(skg_lag_create(2, 9, many, &lag), SKG_ERR_ARGUMENT, "9 terms");
+    ck_assert_ptr_null(lag);
+}
+END_TEST
+
 START_TEST(test_wrong_fields_are_refused) {
     const double falling[4] = {1, 1, 0, 2};
     float grey[1];
@@ -159,6 +226,19 @@ START_TEST(test_wrong_fields_are_refused) {
     readout.curve_count = 1;
     ck_skg_fails(skg_readout_image(&readout, 1, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
                  "1 points");
+    const float maps[2] = {1, NAN}, negative[1] = {-1};
+    readout = floats();
+    readout.offset = maps;
+    ck_skg_fails(skg_readout_image(&readout, 2, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
+                 "offset of pixel 1");
+    readout = floats();
+    readout.gain = negative;
+    ck_skg_fails(skg_readout_image(&readout, 1, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
+                 "gain of pixel 0");
+    readout = floats();
+    readout.saturation = -1;
+    ck_skg_fails(skg_readout_image(&readout, 1, SKG_TYPE_FLOAT32, NULL, 1, 0, grey), SKG_ERR_ARGUMENT,
+                 "saturation");
 }
 END_TEST
 
@@ -168,6 +248,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, test_noise_follows_its_ratio);
     tcase_add_test(tests, test_noise_depends_on_seed_and_index_alone);
     tcase_add_test(tests, test_bad_pixels_have_their_value);
+    tcase_add_test(tests, test_pixels_differ);
+    tcase_add_test(tests, test_signals_come_later);
     tcase_add_test(tests, test_wrong_fields_are_refused);
 }
 

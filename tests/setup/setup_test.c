@@ -386,6 +386,33 @@ START_TEST(mends_and_priorities) {
 }
 END_TEST
 
+/* Maps of pixels, as bytes: A is 65. Lines are bad as a whole, and a later line wins. */
+START_TEST(pixels_of_grey_values_differ) {
+    enum { COLUMNS = 64, PIXELS = 64 * 48 };
+    static char bytes[PIXELS + 1];
+    const char *const settings[] = {
+        "Detector.GreyValues={\"Gain\": {\"Path\": \"motion.csv\", \"Format\": \"uint8\"}, \"Saturation\": 50000, "
+        "\"Offset\": {\"Path\": \"motion.csv\", \"Format\": \"int8\"}, \"BadColumns\": [[3, 0]], \"BadRows\": [[47, 777]]}",
+        "Detector.GreyValues.BadRows=[[48, 0]]"};
+    skg_readout r;
+    memset(bytes, 'A', PIXELS);
+    bytes[PIXELS - 1] = 'B';
+    write_file("motion.csv", bytes);
+    write_file("scene.json", good);
+    ck_skg(skg_setup_load(NULL, path, 1, settings, &setup));
+    skg_readout_init(&r);
+    ck_skg(skg_setup_readout_get(setup, &r));
+    ck_assert_double_eq((double)r.gain[0], 65);
+    ck_assert_double_eq((double)r.offset[PIXELS - 1], 66);
+    ck_assert_double_eq(r.saturation, 50000);
+    ck_assert_double_eq((double)r.bad_pixels[2], -1);
+    ck_assert_double_eq((double)r.bad_pixels[46 * COLUMNS + 3], 0);
+    ck_assert_double_eq((double)r.bad_pixels[47 * COLUMNS + 3], 777);
+    skg_setup_release(&setup);
+    ck_skg_fails(skg_setup_load(NULL, path, 2, settings, &setup), SKG_ERR_FORMAT, "from 0 to 47");
+}
+END_TEST
+
 START_TEST(settings_change_the_file) {
     const char *const settings[] = {"detector.numberofpixels=[32, 16]", "Samples.bone.Type=inner",
                                     "Samples.0.Cube=[2, \"cm\"]", "Precision=double", "Scan.StartAngle=180"};
@@ -449,6 +476,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_scan_gives_its_first_projection);
     tcase_add_test(tests, options_are_given_on);
     tcase_add_test(tests, mends_and_priorities);
+    tcase_add_test(tests, pixels_of_grey_values_differ);
     tcase_add_test(tests, settings_change_the_file);
     tcase_add_test(tests, the_example_of_the_manual_is_read);
     tcase_add_test(tests, labels_with_dots_can_be_set);

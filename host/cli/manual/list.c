@@ -1,13 +1,17 @@
 /* The list of manuals, and those of `help` and `version`. */
 #include "manual/manual.h"
 
-const cli_manual *const cli_manuals[] = {&cli_manual_image,       &cli_manual_lbuffer,  &cli_manual_plan,
-                                         &cli_manual_view,        &cli_manual_live,     &cli_manual_cost,
-                                         &cli_manual_parts,       &cli_manual_mesh,     &cli_manual_distance,
-                                         &cli_manual_material,    &cli_manual_beam,     &cli_manual_devices,
-                                         &cli_manual_thorax,      &cli_manual_make,     &cli_manual_breathe,
-                                         &cli_manual_fit,         &cli_manual_register, &cli_manual_scan,
-                                         &cli_manual_reconstruct, &cli_manual_schema,   NULL};
+const cli_manual *const cli_manuals[] = {&cli_manual_image,    &cli_manual_lbuffer,
+                                         &cli_manual_plan,     &cli_manual_view,
+                                         &cli_manual_live,     &cli_manual_cost,
+                                         &cli_manual_parts,    &cli_manual_dose,
+                                         &cli_manual_mesh,     &cli_manual_distance,
+                                         &cli_manual_material, &cli_manual_beam,
+                                         &cli_manual_devices,  &cli_manual_thorax,
+                                         &cli_manual_make,     &cli_manual_breathe,
+                                         &cli_manual_fit,      &cli_manual_register,
+                                         &cli_manual_scan,     &cli_manual_reconstruct,
+                                         &cli_manual_schema,   NULL};
 
 const char cli_summary[] = "X-ray images of triangle meshes on any OpenCL device";
 

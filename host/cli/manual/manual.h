@@ -46,10 +46,10 @@ int cli_flag_has_value(const cli_flag *flag);
 void cli_flag_argument(const cli_flag *flag, char *text, size_t size);
 
 extern const cli_manual cli_manual_beam, cli_manual_breathe, cli_manual_cost, cli_manual_devices,
-    cli_manual_distance, cli_manual_fit, cli_manual_image, cli_manual_lbuffer, cli_manual_live,
-    cli_manual_material, cli_manual_make, cli_manual_mesh, cli_manual_plan, cli_manual_reconstruct,
-    cli_manual_parts, cli_manual_register, cli_manual_scan, cli_manual_schema, cli_manual_thorax,
-    cli_manual_view;
+    cli_manual_distance, cli_manual_dose, cli_manual_fit, cli_manual_image, cli_manual_lbuffer,
+    cli_manual_live, cli_manual_material, cli_manual_make, cli_manual_mesh, cli_manual_plan,
+    cli_manual_reconstruct, cli_manual_parts, cli_manual_register, cli_manual_scan, cli_manual_schema,
+    cli_manual_thorax, cli_manual_view;
 
 extern const cli_flag cli_flag_help; /* of every verb */
 
@@ -69,6 +69,7 @@ extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_
     cli_flag_image_only, cli_flag_image_without, cli_flag_image_band_weight, cli_flag_image_scatter,
     cli_flag_image_scatter_image, cli_flag_image_scatter_sigma, cli_flag_image_mean, cli_flag_image_variance;
 extern const cli_flag cli_flag_parts_output;
+extern const cli_flag cli_flag_dose_at, cli_flag_dose_histories, cli_flag_dose_seed;
 extern const cli_flag cli_flag_lbuffer_part, cli_flag_lbuffer_surface;
 extern const cli_flag cli_flag_cost_output, cli_flag_cost_quick, cli_flag_cost_within, cli_flag_cost_frames,
     cli_flag_cost_sensitivity;

@@ -201,6 +201,8 @@ static int run_alone(cli_acquisition *a) {
 }
 
 int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
+    const int lag = lag_open(a);
+    if (lag != CLI_DONE) return lag;
     if (a->ranks.rank == 0 && a->found > 0 && a->found < a->projections && !cli_is_quiet())
         cli_log(SKG_LOG_NOTE, "the output has projections of this scan already; it is continued", NULL);
     a->options.file = a->file;
@@ -230,4 +232,5 @@ void acquisition_close(cli_acquisition *a) {
     free(a->shard_place);
     free(a->stem);
     free(a->grey);
+    lag_close(a);
 }

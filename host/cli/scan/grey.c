@@ -55,7 +55,8 @@ int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
         cli_log(SKG_LOG_WARNING,
                 "the intensity of the beam changes in grey values only; this scan has another quantity",
                 NULL);
-    if (!has_stem(a)) return CLI_DONE;
+    const int exit_status = lag_check(arguments, a);
+    if (exit_status != CLI_DONE || !has_stem(a)) return exit_status;
     a->stem = make_stem(a->session.path);
     return a->stem ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
 }
@@ -111,10 +112,16 @@ skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const voi
     }
     for (int64_t i = 0; i < batch->count; i++) {
         const int64_t index = batch->indices[i];
-        const double share = a->record.intensities ? a->record.intensities[index] : 1;
-        const skg_status status = skg_readout_image(&a->readout, pixels_of(a), batch->type,
-                                                    (const char *)batch->images + i * raw_bytes(a), share,
-                                                    index, (char *)a->grey + i * grey_bytes(a));
+        const void *energies = (const char *)batch->images + i * raw_bytes(a);
+        double share = a->record.intensities ? a->record.intensities[index] : 1;
+        skg_status status = SKG_OK;
+        if (a->lag) {
+            status = skg_lag_apply(a->lag, batch->type, energies, share, a->lagged);
+            energies = a->lagged, share = 1;
+        }
+        if (status == SKG_OK)
+            status = skg_readout_image(&a->readout, pixels_of(a), batch->type, energies, share, index,
+                                       (char *)a->grey + i * grey_bytes(a));
         if (status != SKG_OK) return status;
     }
     *images = a->grey;

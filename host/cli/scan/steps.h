@@ -53,6 +53,13 @@ skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const voi
 /* Reads all flat fields or all dark fields out, one after another in `to`. */
 skg_status grey_fields(const cli_acquisition *a, int is_dark, const void *energies, void *to);
 
+/* Refuses, before anything is laid out, what a detector with lag cannot do. */
+int lag_check(const cli_arguments *arguments, const cli_acquisition *a);
+
+/* Makes the lag, once it is known which projections there are. */
+int lag_open(cli_acquisition *a);
+void lag_close(cli_acquisition *a);
+
 /* Makes and writes flat and dark fields. */
 int fields_write(cli_acquisition *a);
 

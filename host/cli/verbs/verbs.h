@@ -7,6 +7,7 @@
 int cli_beam(const cli_arguments *arguments);
 int cli_devices(const cli_arguments *arguments);
 int cli_distance(const cli_arguments *arguments);
+int cli_dose(const cli_arguments *arguments);
 int cli_image(const cli_arguments *arguments);
 int cli_lbuffer(const cli_arguments *arguments);
 int cli_material(const cli_arguments *arguments);

@@ -89,16 +89,25 @@ static const skg_json_key grey_values[] = {
     SKG_KEY("SNR", "number 0..", "ratio of grey value to standard deviation at Full"),
     SKG_KEY("NoiseCurve", "rows 2", "instead of SNR: grey value and ratio"),
     SKG_KEY("Frames", "integer 1..", "frames of which each image is averaged; 1 by default"),
-    SKG_KEY("BadPixels", "object BadPixels",
+    SKG_KEY("BadColumns", "rows 2", "numbers of columns, from 0 on, and the grey value of their pixels"),
+    SKG_KEY("BadRows", "rows 2", "numbers of rows, from 0 on, and the grey value of their pixels"),
+    SKG_KEY("Gain", "object PixelMap",
+            "the factor of each pixel on its grey value beyond that without radiation"),
+    SKG_KEY("Offset", "object PixelMap", "the grey value that each pixel has more"),
+    SKG_KEY("Saturation", "number 0..", "grey value at which pixels saturate, before the bits do"),
+    SKG_KEY(
+        "Lag", "rows 2",
+        "shares of the signal that a projection leaves to the next ones, and their constants in projections"),
+    SKG_KEY("BadPixels", "object PixelMap",
             "an image with -1 for a good pixel, and the grey value of a bad one"),
     SKG_KEY("Seed", "integer 0..", "of the noise; 0 by default"),
 };
 SKG_TABLE(skg_keys_grey_values, "GreyValues", grey_values);
 
-static const skg_json_key bad_pixels[] = {
+static const skg_json_key pixel_map[] = {
     SKG_KEY("Path", "text", "file of the pixels"),
     SKG_KEY("Format", "words uint8, int8, uint16, int16, float32, float64", "of a pixel"),
     SKG_KEY("ByteOrder", "words little, big", "of a pixel; little by default"),
     SKG_KEY("Header", "integer 0..", "bytes before the first pixel; 0 by default"),
 };
-SKG_TABLE(skg_keys_bad_pixels, "BadPixels", bad_pixels);
+SKG_TABLE(skg_keys_pixel_map, "PixelMap", pixel_map);

@@ -7,6 +7,7 @@
 #include "setup/sections.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <string.h>
 
@@ -78,8 +79,8 @@ static skg_status load_map(const char *path, int64_t pixels, int64_t format, int
     skg_status status = SKG_OK;
     FILE *file = NULL;
     SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &file, NULL));
-    SKG_TRY_CLEANUP(skg_alloc(pixels, (size_t)size, "map of bad pixels", &bytes));
-    SKG_TRY_CLEANUP(skg_alloc(pixels, sizeof **map, "map of bad pixels", map));
+    SKG_TRY_CLEANUP(skg_alloc(pixels, (size_t)size, "map of pixels", &bytes));
+    SKG_TRY_CLEANUP(skg_alloc(pixels, sizeof **map, "map of pixels", map));
     if (fseek(file, (long)header, SEEK_SET) != 0 ||
         fread(bytes, (size_t)size, (size_t)pixels, file) != (size_t)pixels)
         status = skg_fail(SKG_ERR_FORMAT, "%s: is too short for %" PRId64 " pixels of %" PRId64 " bytes",
@@ -92,15 +93,17 @@ cleanup:
     return status;
 }
 
-static skg_status read_map(skg_setup_reader *reader, const skg_json_node *node, skg_grey_section *grey) {
+/* format: of the map if it does not say */
+static skg_status read_map(skg_setup_reader *reader, const skg_json_node *node, int64_t format,
+                           float **pixels) {
     static const char *const formats[] = {"uint8", "int8", "uint16", "int16", "float32", "float64"};
     static const char *const orders[] = {"little", "big"};
     const skg_view *view = &reader->setup->view;
-    int64_t format = 3, order = 0, header = 0;
+    int64_t order = 0, header = 0;
     const char *name = NULL, *path = NULL;
     skg_json_object map;
     skg_json_node file;
-    SKG_TRY(skg_json_read_object(node, &skg_keys_bad_pixels, &map));
+    SKG_TRY(skg_json_read_object(node, &skg_keys_pixel_map, &map));
     SKG_TRY(skg_json_need(&map, "Path", "\"bad.raw\"", &file));
     const skg_json_node kind = skg_json_member(&map, "Format"), bytes = skg_json_member(&map, "ByteOrder");
     if (kind.value) SKG_TRY(skg_json_choice(&kind, "format of pixels", formats, 6, &format));
@@ -108,10 +111,69 @@ static skg_status read_map(skg_setup_reader *reader, const skg_json_node *node, 
     SKG_TRY(read_count(&map, "Header", 0, &header));
     SKG_TRY(skg_json_text(&file, &name));
     SKG_TRY(skg_setup_find_file(reader, name, &path));
-    const skg_status status =
-        load_map(path, view->columns * view->rows, format, order == 1, header, &grey->bad_pixels);
+    return skg_json_at(&file, load_map(path, view->columns * view->rows, format, order == 1, header, pixels));
+}
+
+/* A map under a name; none if there is no such key. */
+static skg_status read_map_of(skg_setup_reader *reader, const skg_json_object *object, const char *name,
+                              int64_t format, float **pixels) {
+    const skg_json_node node = skg_json_member(object, name);
+    return node.value ? read_map(reader, &node, format, pixels) : SKG_OK;
+}
+
+/* [[number, grey value], ...] of columns or rows of which every pixel is bad. */
+static skg_status read_bad_lines(skg_setup_reader *reader, const skg_json_object *object, const char *name,
+                                 int is_row, float **pixels) {
+    const skg_view *view = &reader->setup->view;
+    const skg_json_node node = skg_json_member(object, name);
+    const int64_t lines = is_row ? view->rows : view->columns, across = is_row ? view->columns : view->rows;
+    double *pairs = NULL;
+    int64_t count = 0;
+    skg_status status = SKG_OK;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_setup_read_rows(&node, 2, "[[3, 0], [17, 65535]], numbers and grey values", &count, &pairs));
+    if (!*pixels) {
+        status = skg_alloc(view->columns * view->rows, sizeof **pixels, "map of pixels", pixels);
+        for (int64_t i = 0; status == SKG_OK && i < view->columns * view->rows; i++) (*pixels)[i] = -1;
+    }
+    for (int64_t k = 0; k < count && status == SKG_OK; k++) {
+        const double line = pairs[2 * k], grey = pairs[2 * k + 1];
+        if (!(line >= 0 && line < (double)lines && floor(line) >= line && grey >= 0))
+            status = skg_json_fail(&node, SKG_ERR_FORMAT,
+                                   "line %g with grey value %g; give a whole number from 0 to %" PRId64
+                                   ", and 0 or more",
+                                   line, grey, lines - 1);
+        for (int64_t i = 0; i < across && status == SKG_OK; i++)
+            (*pixels)[is_row ? (int64_t)line * across + i : i * lines + (int64_t)line] = (float)grey;
+    }
+    skg_free(&pairs);
+    return status;
+}
+
+static skg_status read_maps(skg_setup_reader *reader, const skg_json_object *object, skg_grey_section *grey) {
+    enum { INT16 = 3, FLOAT32 = 4 };
+    SKG_TRY(read_map_of(reader, object, "BadPixels", INT16, &grey->bad_pixels));
+    SKG_TRY(read_bad_lines(reader, object, "BadColumns", 0, &grey->bad_pixels));
+    SKG_TRY(read_bad_lines(reader, object, "BadRows", 1, &grey->bad_pixels));
+    SKG_TRY(read_map_of(reader, object, "Gain", FLOAT32, &grey->gain));
+    SKG_TRY(read_map_of(reader, object, "Offset", FLOAT32, &grey->offset));
     grey->readout.bad_pixels = grey->bad_pixels;
-    return skg_json_at(&file, status);
+    grey->readout.gain = grey->gain, grey->readout.offset = grey->offset;
+    return SKG_OK;
+}
+
+/* [[share, frames], ...] */
+static skg_status read_lag(const skg_json_object *object, skg_grey_section *grey) {
+    const skg_json_node node = skg_json_member(object, "Lag");
+    skg_lag *made = NULL;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_setup_read_rows(&node, 2, "[[0.03, 1.5], [0.005, 40]], shares and frames",
+                                &grey->readout.lag_count, &grey->lag));
+    grey->readout.lag = grey->lag;
+    const skg_status status =
+        skg_lag_create(1, grey->readout.lag_count, grey->lag, &made); /* it checks them */
+    skg_lag_release(&made);
+    return skg_json_at(&node, status);
 }
 
 skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_object *detector) {
@@ -138,14 +200,18 @@ skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_o
     r->bits = (int32_t)bits;
     SKG_TRY(read_count(&object, "Frames", 1, &r->frames));
     SKG_TRY(read_count(&object, "Seed", 0, &r->seed));
-    const skg_json_node map = skg_json_member(&object, "BadPixels");
-    return map.value ? read_map(reader, &map, grey) : SKG_OK;
+    SKG_TRY(read_number(&object, "Saturation", &r->saturation));
+    SKG_TRY(read_lag(&object, grey));
+    return read_maps(reader, &object, grey);
 }
 
 void skg_grey_section_free(skg_grey_section *section) {
     skg_free(&section->curve);
     skg_free(&section->noise);
+    skg_free(&section->lag);
     skg_free(&section->bad_pixels);
+    skg_free(&section->gain);
+    skg_free(&section->offset);
 }
 
 static skg_status read_fields(const skg_json_object *scan, const char *name, int64_t *count, int64_t *frames,

@@ -31,8 +31,8 @@ typedef struct {
 typedef struct {
     int32_t is_given;
     skg_readout readout; /* points to the arrays below */
-    double *curve, *noise;
-    float *bad_pixels;
+    double *curve, *noise, *lag;
+    float *bad_pixels, *gain, *offset;
 } skg_grey_section;
 
 /* A value over time: linear between its points (s, value), constant beyond them. */

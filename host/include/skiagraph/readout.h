@@ -11,8 +11,8 @@ extern "C" {
 #endif
 
 /** How a detector is read out. Prepare with skg_readout_init: 0 without radiation, 60000 where the free beam is strongest,
- * 16 bits, no noise, no bad pixels. A pixel passes through these steps: grey value of its energy, noise, bad pixels, whole
- * numbers. */
+ * 16 bits, no noise, no bad pixels, all pixels alike. A pixel passes through these steps: grey value of its energy, its gain and
+ * offset, noise, saturation, bad pixels, whole numbers. */
 typedef struct {
     /** Set by skg_readout_init. */
     int32_t size;
@@ -43,6 +43,17 @@ typedef struct {
     const float *bad_pixels;
     /** Seed of the noise. */
     int64_t seed;
+    /** [pixels] factor of each pixel, finite and at least 0, on its grey value beyond that without radiation, and on the standard
+     * deviation of its noise; NULL: 1. */
+    const float *gain;
+    /** [pixels] grey value of each pixel, finite, added to all of its values, such as its dark current; NULL: 0. */
+    const float *offset;
+    /** Grey value at which pixels saturate; 0: none, but for the bits. */
+    double saturation;
+    /** Number of terms of `lag`; 0: none. */
+    int64_t lag_count;
+    /** [lag_count][2] of a sequence, as of skg_lag_create. skg_readout_image, which has no past, does without. */
+    const double *lag;
 } skg_readout;
 
 SKG_INIT(skg_readout)
@@ -59,6 +70,37 @@ SKG_INIT(skg_readout)
  *     errors    SKG_ERR_ARGUMENT (a field of the readout) */
 SKG_API skg_status skg_readout_image(const skg_readout *readout, int64_t pixels, int32_t type,
                                      const void *energies, double share, int64_t index, void *grey);
+
+/** The lag of a detector: what its pixels hold back of the frames of a sequence. */
+typedef struct skg_lag skg_lag;
+
+/** Makes the lag of a detector at rest.
+ *
+ *     pixels   number of pixels, at least 1
+ *     count    number of terms, 1 to 8
+ *     terms    [count][2] share of the signal that is held back, 0 or more, all together below 1; and the time constant of its
+ *              release in frames, above 0
+ *     lag      result; the caller releases it
+ *     errors   SKG_ERR_ARGUMENT
+ *     method   In each frame a share s of the signal is caught, and of what was held before, 1 - exp(-1/t) is set free. So the n-th frame
+ *              after a long exposure shows the sum of s exp(-(n - 1) / t) of its signal; a steady signal is shown as it is; and no signal is
+ *              lost. The sensitivity does not change (no ghosting). */
+SKG_API skg_status skg_lag_create(int64_t pixels, int64_t count, const double *terms, skg_lag **lag);
+
+/** Frees a lag. */
+SKG_API void skg_lag_release(skg_lag **lag);
+
+/** Lets the detector come to rest. */
+SKG_API skg_status skg_lag_clear(skg_lag *lag);
+
+/** Shows the next frame of a sequence.
+ *
+ *     type       of energies and result: SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64
+ *     energies   [pixels] keV; NULL: no radiation
+ *     factor     on all energies
+ *     result     [pixels] keV; may be `energies` */
+SKG_API skg_status skg_lag_apply(skg_lag *lag, int32_t type, const void *energies, double factor,
+                                 void *result);
 
 #ifdef __cplusplus
 }

@@ -20,6 +20,7 @@
 #include <skiagraph/collimation.h>
 #include <skiagraph/context.h>
 #include <skiagraph/distance.h>
+#include <skiagraph/dose.h>
 #include <skiagraph/error.h>
 #include <skiagraph/fit.h>
 #include <skiagraph/image.h>

@@ -36,6 +36,9 @@ static skg_status check(const skg_readout *r) {
         return skg_fail(SKG_ERR_ARGUMENT, "readout: full_kev is %g; it has to be above 0", r->full_kev);
     if (!(r->snr >= 0) || !(r->per_joule >= 0) || !isfinite(r->dark + r->full))
         return skg_fail(SKG_ERR_ARGUMENT, "readout: snr, per_joule, dark or full is no number, or negative");
+    if (!(r->saturation >= 0))
+        return skg_fail(SKG_ERR_ARGUMENT, "readout: saturation at %g; give a grey value above 0, or 0",
+                        r->saturation);
     if (r->frames < 1)
         return skg_fail(SKG_ERR_ARGUMENT, "readout: an average of %" PRId64 " frames", r->frames);
     return SKG_OK;
@@ -75,6 +78,34 @@ static double energy_at(int32_t type, const void *energies, int64_t i) {
     return type == SKG_TYPE_FLOAT64 ? ((const double *)energies)[i] : (double)((const float *)energies)[i];
 }
 
+/* A map that every pixel reads. lowest: of its values */
+static skg_status check_map(const char *name, int64_t pixels, const float *map, double lowest) {
+    for (int64_t i = 0; map && i < pixels; i++)
+        if (!(isfinite(map[i]) && (double)map[i] >= lowest))
+            return skg_fail(SKG_ERR_ARGUMENT, "readout: the %s of pixel %" PRId64 " is %g", name, i,
+                            (double)map[i]);
+    return SKG_OK;
+}
+
+/* The grey value of a pixel before bits. full_sigma, averaged: of the noise; index: of the image */
+static double read_pixel(const skg_readout *r, int64_t i, double kev, double full_sigma, double averaged,
+                         int64_t index) {
+    const double plain = grey_of(r, kev), gain = r->gain ? (double)r->gain[i] : 1;
+    const int is_noisy = full_sigma > 0 || r->noise_count > 0;
+    const double sigma = is_noisy ? gain * averaged * sigma_of(r, full_sigma, kev, plain) : 0;
+    double value = plain;
+    if (r->gain) {
+        const double dark = grey_of(r, 0);
+        value = dark + gain * (plain - dark);
+    }
+    if (r->offset) value += (double)r->offset[i];
+    if (sigma > 0) value += sigma * skg_deviate(r->seed, index, i);
+    if (r->saturation > 0) value = fmin(value, r->saturation);
+    /* -1 marks a good pixel, exactly. */
+    return r->bad_pixels && !(r->bad_pixels[i] >= -1 && r->bad_pixels[i] <= -1) ? (double)r->bad_pixels[i]
+                                                                                : value;
+}
+
 skg_status skg_readout_image(const skg_readout *readout, int64_t pixels, int32_t type, const void *energies,
                              double share, int64_t index, void *grey) {
     SKG_PLAIN;
@@ -85,15 +116,11 @@ skg_status skg_readout_image(const skg_readout *readout, int64_t pixels, int32_t
     SKG_TRY(check(&r));
     const double most = r.bits ? (double)((1 << r.bits) - 1) : 0, averaged = 1 / sqrt((double)r.frames);
     const double full_sigma = r.snr > 0 ? fabs(grey_of(&r, r.full_kev)) / r.snr : 0;
-    const int is_noisy = full_sigma > 0 || r.noise_count > 0;
+    SKG_TRY(check_map("gain", pixels, r.gain, 0));
+    SKG_TRY(check_map("offset", pixels, r.offset, -HUGE_VAL));
     for (int64_t i = 0; i < pixels; i++) {
         const double kev = share * energy_at(type, energies, i);
-        double value = grey_of(&r, kev);
-        const double sigma = is_noisy ? averaged * sigma_of(&r, full_sigma, kev, value) : 0;
-        if (sigma > 0) value += sigma * skg_deviate(r.seed, index, i);
-        /* -1 marks a good pixel, exactly. */
-        if (r.bad_pixels && !(r.bad_pixels[i] >= -1 && r.bad_pixels[i] <= -1))
-            value = (double)r.bad_pixels[i];
+        const double value = read_pixel(&r, i, kev, full_sigma, averaged, index);
         if (r.bits)
             ((uint16_t *)grey)[i] = (uint16_t)fmin(fmax(floor(value + 0.5), 0), most);
         else

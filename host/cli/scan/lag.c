@@ -1,0 +1,42 @@
+/* The lag of a scan's grey values: projections in their order, from a detector at rest. */
+#include "scan/steps.h"
+
+#include "common/say.h"
+
+#include <stdlib.h>
+
+int lag_check(const cli_arguments *arguments, const cli_acquisition *a) {
+    const char *what = NULL;
+    if (!a->is_grey || a->readout.lag_count == 0) return CLI_DONE;
+    if (cli_given(arguments, &cli_flag_scan_shard) || cli_given(arguments, &cli_flag_scan_join))
+        what = "shards";
+    if (cli_given(arguments, &cli_flag_scan_only)) what = "--only";
+    if (a->options.from > 0) what = "--from";
+    if (a->ranks.count > 1) what = "several processes (MPI)";
+    if (!what) return CLI_DONE;
+    return cli_error(
+        CLI_USAGE,
+        "%s: the detector has Lag, so that each projection needs all before it; compute the scan in one run from its "
+        "first projection on, or leave out GreyValues.Lag",
+        what);
+}
+
+int lag_open(cli_acquisition *a) {
+    if (!a->is_grey || a->readout.lag_count == 0 || a->found == a->projections) return CLI_DONE;
+    if (a->found > 0)
+        return cli_error(
+            CLI_USAGE,
+            "%s: the detector has Lag, and what it held when the scan was stopped is not known; remove the output and "
+            "begin anew",
+            a->place);
+    const int64_t pixels = a->session.view.columns * a->session.view.rows;
+    a->lagged = malloc((size_t)pixels * sizeof(double));
+    if (!a->lagged) return cli_error(CLI_DEVICE, "out of host memory");
+    const skg_status status = skg_lag_create(pixels, a->readout.lag_count, a->readout.lag, &a->lag);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+void lag_close(cli_acquisition *a) {
+    skg_lag_release(&a->lag);
+    free(a->lagged);
+}

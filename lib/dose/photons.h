@@ -1,0 +1,55 @@
+/* One photon at a time on the host, and what a batch of them gave. Private. */
+#ifndef SKG_DOSE_PHOTONS_H
+#define SKG_DOSE_PHOTONS_H
+
+#include "dose/figures.h"
+
+/* Photons of fluorescence that wait for the one that is followed. */
+enum { SKG_DOSE_WAITING = 16 };
+
+/* What all batches read. */
+typedef struct {
+    const skg_dose_walk *walk;
+    skg_rules rules;
+    int64_t matter_count;
+    skg_dose_matter *matter; /* [matter_count] each material once */
+    int32_t *of_part;        /* [parts] number of its matter */
+    int32_t of_world;        /* -1: none */
+    int32_t reserved;
+    double *bins; /* [bins] share of the photons up to each */
+    skg_kerma_table kerma;
+    double low[3], high[3]; /* the box of source and parts, beyond which nothing is met */
+} skg_dose_hall;
+
+typedef struct {
+    double at[3], direction[3];
+    double kev, weight;
+} skg_dose_photon;
+
+/* What a batch has and gave. Energies in keV, of photons of weight 1; kerma in uGy likewise. */
+typedef struct {
+    const skg_dose_hall *hall;
+    uint64_t seed;
+    skg_way way, sight; /* of the photon; to the points */
+    skg_dose_photon waiting[SKG_DOSE_WAITING];
+    int32_t waiting_count, reserved;
+    double *energy; /* [parts] */
+    double *kerma;  /* [points] */
+    double incident, escaped, around;
+} skg_dose_batch;
+
+/* Follows one photon of the beam and all that it sets free. */
+skg_status skg_dose_follow(skg_dose_batch *batch);
+
+/* Adds what an interaction sends to the points, in expectation. in: the matter at the place of the photon */
+skg_status skg_dose_send(skg_dose_batch *batch, const skg_dose_photon *photon, const skg_dose_matter *in,
+                         const skg_dose_meeting *meeting);
+
+/* The matter of a presence; NULL: nothing is met there. */
+static inline const skg_dose_matter *skg_dose_matter_of(const skg_dose_hall *hall,
+                                                        const skg_presence *presence) {
+    const int32_t number = presence->part < 0 ? hall->of_world : hall->of_part[presence->part];
+    return number < 0 || !hall->matter[number].material ? NULL : &hall->matter[number];
+}
+
+#endif

@@ -1,0 +1,56 @@
+/* The volume of each part, without what lies inside it. */
+#include "dose/figures.h"
+
+#include "core/maths.h"
+#include "mesh/mesh.h"
+#include "scene/scene.h"
+
+/* Lines along each side, where parts compete: a volume is right to some 1e-3. */
+enum { LINES = 384 };
+
+/* Of surfaces: a mesh's times the pose's determinant, less those of the parts inside. */
+static skg_status by_surfaces(const skg_scene *scene, double *volumes) {
+    double *of = NULL;
+    SKG_TRY(skg_alloc(scene->count, sizeof *of, "dose", &of));
+    for (int64_t i = 0; i < scene->count; i++) {
+        const skg_scene_part_data *part = &scene->parts[i];
+        skg_mesh_health health;
+        skg_mesh_health_init(&health);
+        skg_mesh_measure(part->mesh, &health);
+        of[i] = part->mesh->closed ? health.volume * fabs(skg_pose_determinant(part->pose)) : (double)NAN;
+        volumes[i] = of[i];
+    }
+    for (int64_t i = 0; i < scene->count; i++)
+        if (scene->parts[i].inside >= 0) volumes[scene->parts[i].inside] -= of[i];
+    skg_free(&of);
+    return SKG_OK;
+}
+
+/* Of the pieces of parallel lines: what priorities, clip and unite leave of each part. */
+static skg_status by_lines(const skg_recipe *recipe, const skg_forest *tree, double *volumes) {
+    const skg_rules rules = {recipe->scene, 1, recipe->options.clip, recipe->options.unite};
+    const skg_forest_node *box = &tree->nodes[0];
+    const double along[3] = {0, 0, 1}, reach = 2 * (box->high[2] - box->low[2]) + 2;
+    const double step[2] = {(box->high[0] - box->low[0]) / LINES, (box->high[1] - box->low[1]) / LINES};
+    skg_way way = {0};
+    skg_status status = SKG_OK;
+    for (int i = 0; i < LINES * LINES && status == SKG_OK; i++) {
+        /* Off the middles, so that faces along the axes are rarely met exactly. */
+        const double from[3] = {box->low[0] + (i % LINES + 0.4142135623730951) * step[0],
+                                box->low[1] + ((double)(i / LINES) + 0.7320508075688772) * step[1],
+                                box->low[2] - 1};
+        status = skg_way_find(tree, &rules, from, along, reach, &way);
+        for (int64_t p = 0; p < way.piece_count && status == SKG_OK; p++)
+            for (int64_t k = way.pieces[p].first; k < way.pieces[p].first + way.pieces[p].count; k++)
+                if (way.presences[k].part >= 0)
+                    volumes[way.presences[k].part] +=
+                        way.presences[k].share * (way.pieces[p].to - way.pieces[p].from) * step[0] * step[1];
+    }
+    skg_way_free(&way);
+    return status;
+}
+
+skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, double *volumes) {
+    return recipe->priority_possible && tree->count > 0 ? by_lines(recipe, tree, volumes)
+                                                        : by_surfaces(recipe->scene, volumes);
+}

@@ -1,0 +1,56 @@
+"""What an exposure gives to people and things. Private."""
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ._interface import ArgumentError
+from ._library import ffi, filled, listed, make, release, struct
+from ._progress import Progress, Watch
+from ._state import State
+
+
+def _known(value: float) -> float | None:
+    return None if math.isnan(value) else value
+
+
+def _report(state: State, handle: Any) -> dict[str, Any]:
+    """What `skiagraph dose --json` prints, with what there is besides."""
+    report = filled("skg_dose_report", "skg_dose_report_get", handle)
+    parts = [(part.label, filled("skg_dose_part", "skg_dose_part_get", handle, i)) for i, part in enumerate(state.parts())]
+    found = {
+        "kerma": [{"at": point["at"], "air_kerma_uGy": point["air_kerma_ugy"], "backscatter": _known(point["backscatter"])}
+                  for point in listed("skg_dose_point", "skg_dose_point", handle)],
+        "kap_uGy_cm2": report["kap_ugy_cm2"], "detector_air_kerma_uGy": report["detector_air_kerma_ugy"],
+        "exposure_index": _known(report["exposure_index"]),
+        "parts": [{"label": label, "dose_uGy": _known(part["dose_ugy"]), "sigma": _known(part["sigma_ugy"]),
+                   "energy_keV": _known(part["energy_kev"])} for label, part in parts],
+        "hvl1_mm_al": report["hvl1_mm_al"], "hvl2_mm_al": report["hvl2_mm_al"]}
+    if report["has_darkest"]:
+        found["darkest"] = {"row": report["darkest_row"], "column": report["darkest_column"],
+                            "signal": report["darkest_signal"], "snr": report["darkest_snr"]}
+    return found
+
+
+def dose(state: State, at: ArrayLike | None, histories: int | None, seed: int, progress: Progress,
+         options: dict[str, Any]) -> dict[str, Any]:
+    places = np.ascontiguousarray(() if at is None else at, dtype=np.float64)
+    if at is not None and (places.ndim not in (1, 2) or places.shape[-1] != 3):
+        raise ArgumentError(f"at has the shape {places.shape}; give a place [x, y, z] in mm, or several [n, 3]")
+    asked = struct("skg_dose_options")
+    asked.point_count, asked.seed = places.size // 3, seed
+    if histories is not None:
+        asked.histories = int(histories)
+    if places.size:
+        asked.points = ffi.cast("double *", ffi.from_buffer(places))
+    with state.calls():
+        plan = state.plan(options)
+        with Watch(progress, "rounds of photons") as asked.progress:
+            handle = make("skg_dose_create", "skg_dose", plan, asked)
+        try:
+            return _report(state, handle)
+        finally:
+            release("skg_dose", handle)
