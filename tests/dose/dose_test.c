@@ -2,7 +2,8 @@
 #define _GNU_SOURCE /* sched_setaffinity */
 #include "analogue_box.h"
 
-#include "dose/pieces.h"
+#include "beam/spectrum.h"
+#include "dose/figures.h"
 #include "scatter/matter.h"
 #include "scatter/subject.h"
 #include "suite.h"
@@ -506,6 +507,44 @@ START_TEST(backscatter_is_that_of_a_water_phantom) {
 }
 END_TEST
 
+/* Tungsten before a beam of 40 keV: its L lines come back from some micrometres. A plane source shines (S / 2) E1(mu z) on a place at the
+ * distance z, so that one that falls like exp(-mu0 z) gives S / (2 mu0) ln(1 + mu0 / mu). */
+START_TEST(lines_come_back_from_a_metal) {
+    skg_dose_matter m;
+    skg_material *metal = NULL;
+    subject s = open_box(100, 100, 1, "W");
+    const skg_dose_options options = options_of(50000);
+    double lines = 0;
+    s.kev = 40;
+    ck_skg(skg_material_create_named("W", &metal));
+    ck_skg(skg_dose_matter_make(metal, SKG_FLUORESCENCE_AUTO, s.kev, &m));
+    const double mu = skg_dose_meet(&m, s.kev).total;
+    for (int64_t k = 0; k < m.emitters.count; k++) {
+        double before = 0;
+        for (int l = 0; l < SKG_SCATTER_LINES; l++) {
+            const double share = (double)m.emitters.of[k].lines[l][0] - before,
+                         kev = (double)m.emitters.of[k].lines[l][1];
+            before += share;
+            lines += skg_dose_emitted(&m, skg_dose_place_of(&m, s.kev), k) * share / (2 * mu) *
+                     log1p(mu / skg_dose_total(&m, skg_dose_place_of(&m, kev))) * skg_air_kerma(kev) /
+                     skg_air_kerma(s.kev);
+        }
+    }
+    skg_dose *dose = dose_of(&s, &options);
+    const skg_dose_point entrance = point_of(dose, 0);
+    printf("tungsten: %.4f +- %.4f, by its lines %.4f\n", entrance.backscatter, entrance.backscatter_sigma,
+           1 + lines);
+    fflush(stdout); /* before an assertion ends the process */
+    ck_assert_double_gt(lines, 0.05);
+    /* Compton scattering, 1 % of what is met, adds to it, and lines that make softer ones. */
+    ck_assert_double_eq_tol(entrance.backscatter, 1.005 + lines, 0.01 + 4 * entrance.backscatter_sigma);
+    skg_dose_matter_free(&m);
+    skg_material_release(&metal);
+    skg_dose_release(&dose);
+    subject_close(&s);
+}
+END_TEST
+
 /* --- lines */
 
 /* Lines through corners, along edges and within faces of a cube and through the poles of a ball: signs cancel, and of a cube a line has a
@@ -676,6 +715,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, fluorescence_carries_energy_away);
     tcase_add_test(tests, parts_share_what_a_block_keeps);
     tcase_add_loop_test(tests, backscatter_is_that_of_a_water_phantom, 0, 3);
+    tcase_add_test(tests, lines_come_back_from_a_metal);
     tcase_add_test(tests, lines_through_edges_and_corners_are_closed);
     tcase_add_test(tests, figures_do_not_depend_on_threads);
     tcase_add_test(tests, what_cannot_be_known_is_refused);
