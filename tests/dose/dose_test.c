@@ -372,7 +372,7 @@ START_TEST(layers_keep_what_single_photons_leave) {
                               .plane = 200,
                               .side = 80,
                               .inner = {0, 20}};
-    const analogue_absorbed truth = analogue_box_run(&box, 200000, 7);
+    const analogue_absorbed truth = analogue_box_run(&box, 120000, 7);
     const skg_dose_options options = options_of(64000);
     skg_mesh *mesh = NULL;
     subject s;
@@ -483,7 +483,7 @@ START_TEST(backscatter_is_that_of_a_water_phantom) {
     } published[] = {{29.344129, 1.259964}, {64, 1.437416}, {98.701493, 1.313453}};
     subject s;
     skg_mesh *mesh = NULL;
-    const skg_dose_options options = options_of(200000);
+    const skg_dose_options options = options_of(60000);
     subject_open(&s);
     ck_skg(skg_mesh_create_cuboid(300, 300, 150, &mesh));
     subject_add(&s, mesh, "Water, Liquid", 0, 0, 75, -1);
@@ -501,7 +501,7 @@ START_TEST(backscatter_is_that_of_a_water_phantom) {
     /* Air takes more of the softer photons that come back than water does, up to 1 % of the factor; other tables, .5 %; and its noise. */
     ck_assert_double_eq_tol(entrance.backscatter / published[_i].factor, 1,
                             0.015 + 3 * entrance.backscatter_sigma);
-    ck_assert_double_lt(entrance.backscatter_sigma, 0.01); /* the noise of 200,000 photons */
+    ck_assert_double_lt(entrance.backscatter_sigma, 0.02); /* the noise of 60,000 photons */
     skg_dose_release(&dose);
     subject_close(&s);
 }
