@@ -122,15 +122,15 @@ int skg_dose_beam_way(const skg_dose_beam *b, const double place[3], double way[
     return u >= b->field.low[0] && u <= b->field.high[0] && v >= b->field.low[1] && v <= b->field.high[1];
 }
 
-/* Kerma where there is one photon of the spectrum per mm2, times its profile, along a direction. depth: optical depths of what lies
- * before; NULL: none. */
-static double kerma_along(const skg_dose_beam *b, const double way[3], const double *depth) {
+/* What a photon of the spectrum gives on average along a direction, with the profile of the beam. of: [bins] what one of each energy gives, such as
+ * kerma of one per mm2; depth: optical depths of what lies before; NULL: none */
+static double along(const skg_dose_beam *b, const double *of, const double way[3], const double *depth) {
     const skg_spectrum *spectrum = b->recipe->spectrum;
     const skg_beam_place place = skg_beam_profile_find(&b->profile, way);
     double photons = 0, sum = 0;
     for (int64_t i = 0; i < spectrum->count; i++) {
         photons += spectrum->photons[i];
-        sum += spectrum->photons[i] * b->kerma[i] * skg_beam_profile_at(&b->profile, &place, i) *
+        sum += spectrum->photons[i] * of[i] * skg_beam_profile_at(&b->profile, &place, i) *
                (depth ? exp(-depth[i]) : 1);
     }
     return sum / photons;
@@ -163,30 +163,39 @@ skg_status skg_dose_beam_kerma(const skg_dose_beam *b, const double place[3], do
     /* Photons per mm2 across the beam. */
     const double per_mm2 =
         b->parallel ? b->photons / skg_dot(b->direction, b->normal) : b->photons / (mm * mm);
-    if (status == SKG_OK) *kerma = per_mm2 * kerma_along(b, way, depth);
+    if (status == SKG_OK) *kerma = per_mm2 * along(b, b->kerma, way, depth);
     skg_free(&depth);
     return status;
 }
 
-double skg_dose_beam_kap(const skg_dose_beam *b) {
-    const double cm2 = 1e-2;
+/* The integral of what photons give over the field. on_area: 1: over an area across the middle ray; 0: over the solid angle. Of a parallel
+ * beam over the area of the field. */
+static double over_field(const skg_dose_beam *b, const double *of, int on_area) {
     double central[3], sum = 0;
-    if (b->parallel) return cm2 * b->area * b->photons * kerma_along(b, b->direction, NULL);
+    if (b->parallel) return b->area * b->photons * along(b, of, b->direction, NULL);
     skg_add_scaled(b->middle, -1, b->recipe->view.source, central);
     skg_scale_vector(1 / skg_length(central), central, central);
     const int is_even = !b->profile.heel && !b->profile.bowtie;
-    const double even = kerma_along(b, central, NULL);
+    const double even = along(b, of, central, NULL);
     for (int i = 0; i < STRIPS * STRIPS; i++) {
         double place[3], way[3];
         place_on(b, (i % STRIPS + 0.5) / STRIPS, ((double)(i / STRIPS) + 0.5) / STRIPS, place);
         skg_add_scaled(place, -1, b->recipe->view.source, way);
         const double mm = skg_length(way);
         skg_scale_vector(1 / mm, way, way);
-        /* The solid angle, as an area across the central ray has it. */
         const double sr = b->area / (STRIPS * STRIPS) * skg_dot(way, b->normal) / (mm * mm);
-        sum += sr / skg_dot(way, central) * (is_even ? even : kerma_along(b, way, NULL));
+        sum += (on_area ? sr / skg_dot(way, central) : sr) * (is_even ? even : along(b, of, way, NULL));
     }
-    return cm2 * b->photons * sum;
+    return b->photons * sum;
+}
+
+double skg_dose_beam_kap(const skg_dose_beam *b) {
+    const double cm2 = 1e-2;
+    return cm2 * over_field(b, b->kerma, 1);
+}
+
+double skg_dose_beam_energy(const skg_dose_beam *b) {
+    return over_field(b, b->recipe->spectrum->energy_kev, 0);
 }
 
 skg_status skg_dose_beam_layers(const skg_dose_beam *b, double *first, double *second) {

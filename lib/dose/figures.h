@@ -53,6 +53,9 @@ skg_status skg_dose_beam_kerma(const skg_dose_beam *beam, const double place[3],
 /* The integral of air kerma over the field, uGy cm2, before the world. */
 double skg_dose_beam_kap(const skg_dose_beam *beam);
 
+/* The energy of all photons of the field, keV. */
+double skg_dose_beam_energy(const skg_dose_beam *beam);
+
 /* Half-value layers on the ray to the middle of the field. */
 skg_status skg_dose_beam_layers(const skg_dose_beam *beam, double *first, double *second);
 
@@ -91,9 +94,6 @@ skg_status skg_dose_walk_check(const skg_recipe *recipe);
 /* Free what was found also after a failure. */
 skg_status skg_dose_walk_run(const skg_dose_walk *walk, skg_dose_found *found);
 void skg_dose_found_free(skg_dose_found *found);
-
-/* Interactions nearer to a place, mm, count by their mean: so near that their density changes little, and so far that some are there. */
-#define SKG_DOSE_NEAR 3.0
 
 /* --- Masses. */
 

@@ -24,51 +24,6 @@ static void turn(double direction[3], double cosine, uint64_t *seed) {
     skg_scale_vector(1 / skg_length(direction), direction, direction);
 }
 
-/* --- the source */
-
-/* A photon towards a random place of the field, with the weight of all those that it stands for. */
-static void emit(skg_dose_batch *b, skg_dose_photon *photon) {
-    const skg_dose_walk *walk = b->hall->walk;
-    const skg_dose_beam *beam = walk->beam;
-    const skg_recipe *recipe = beam->recipe;
-    const skg_field *f = &beam->field;
-    double on[3], place = skg_draw(&b->seed);
-    int64_t low = 0, high = recipe->spectrum->count - 1;
-    while (low < high) {
-        const int64_t middle = (low + high) / 2;
-        if (b->hall->bins[middle] > place)
-            high = middle;
-        else
-            low = middle + 1;
-    }
-    photon->kev = recipe->spectrum->energy_kev[low];
-    skg_add_scaled(f->centre, f->low[0] + skg_draw(&b->seed) * (f->high[0] - f->low[0]), f->column, on);
-    skg_add_scaled(on, f->low[1] + skg_draw(&b->seed) * (f->high[1] - f->low[1]), f->row, on);
-    photon->weight = beam->photons * beam->area / (double)walk->histories;
-    if (beam->parallel) {
-        skg_scale_vector(1, beam->direction, photon->direction);
-        /* From before all parts, or from where the beam begins. */
-        double back[3];
-        const double *start = recipe->view.source;
-        skg_add_scaled(on, -1, start, back);
-        double far = skg_dot(back, beam->direction);
-        if (recipe->view.projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY) {
-            far = 0;
-            for (int k = 0; k < 3; k++)
-                far += fmax(fabs(on[k] - b->hall->low[k]), fabs(on[k] - b->hall->high[k]));
-        }
-        skg_add_scaled(on, -far, beam->direction, photon->at);
-        return;
-    }
-    skg_scale_vector(1, recipe->view.source, photon->at);
-    skg_add_scaled(on, -1, photon->at, photon->direction);
-    const double mm = skg_length(photon->direction);
-    skg_scale_vector(1 / mm, photon->direction, photon->direction);
-    const skg_beam_place found = skg_beam_profile_find(&beam->profile, photon->direction);
-    photon->weight *= skg_dot(photon->direction, beam->normal) / (mm * mm) *
-                      skg_beam_profile_at(&beam->profile, &found, low);
-}
-
 /* --- a flight */
 
 /* How far a photon may fly: to the detector, which stops it, or out of the box in which anything is met. */
@@ -199,7 +154,7 @@ static skg_status follow_one(skg_dose_batch *b, skg_dose_photon photon, int is_f
         if (!where) return SKG_OK;
         const skg_dose_matter *m = skg_dose_matter_of(hall, where);
         const skg_dose_meeting meeting = skg_dose_meet(m, photon.kev);
-        SKG_TRY(skg_dose_send(b, &photon, m, &meeting));
+        SKG_TRY(skg_dose_send(b, &photon, m, &meeting, is_first && order == 0));
         if (!interact(b, m, &meeting, &photon)) return SKG_OK;
         if (photon.kev > SKG_DOSE_LOWEST_KEV) continue;
         leave(b, where, photon.weight * photon.kev);
@@ -210,7 +165,7 @@ static skg_status follow_one(skg_dose_batch *b, skg_dose_photon photon, int is_f
 
 skg_status skg_dose_follow(skg_dose_batch *b) {
     skg_dose_photon photon;
-    emit(b, &photon);
+    if (!skg_dose_emit(b->hall, &b->seed, &photon)) return SKG_OK;
     b->incident += photon.weight * photon.kev;
     SKG_TRY(follow_one(b, photon, 1));
     while (b->waiting_count > 0) {

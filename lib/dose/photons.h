@@ -7,6 +7,12 @@
 /* Photons of fluorescence that wait for the one that is followed. */
 enum { SKG_DOSE_WAITING = 16 };
 
+/* The ray to a place where backscatter is asked for, in the plane of the field. */
+typedef struct {
+    double place[2]; /* mm from the field's centre along its column and row */
+    double radius;   /* within which the density of photons stays the same */
+} skg_dose_aim;
+
 /* What all batches read. */
 typedef struct {
     const skg_dose_walk *walk;
@@ -16,7 +22,10 @@ typedef struct {
     int32_t *of_part;        /* [parts] number of its matter */
     int32_t of_world;        /* -1: none */
     int32_t reserved;
-    double *bins; /* [bins] share of the photons up to each */
+    int64_t aim_count;
+    skg_dose_aim *aims; /* [aim_count] */
+    double reach;       /* mm: the field's diagonal */
+    double *bins;       /* [bins] share of the photons up to each */
     skg_kerma_table kerma;
     double low[3], high[3]; /* the box of source and parts, beyond which nothing is met */
 } skg_dose_hall;
@@ -38,12 +47,19 @@ typedef struct {
     double incident, escaped, around;
 } skg_dose_batch;
 
+/* Finds the rays to the places where backscatter is asked for. */
+skg_status skg_dose_aims_find(skg_dose_hall *hall);
+
+/* Draws a photon of the beam, with the weight of all those that it stands for. Returns 0 for one that the jaws stop. */
+int skg_dose_emit(const skg_dose_hall *hall, uint64_t *seed, skg_dose_photon *photon);
+
 /* Follows one photon of the beam and all that it sets free. */
 skg_status skg_dose_follow(skg_dose_batch *batch);
 
-/* Adds what an interaction sends to the points, in expectation. in: the matter at the place of the photon */
+/* Adds what an interaction sends to the points, in expectation. in: the matter at the place of the photon; is_first: it came straight
+ * from the source */
 skg_status skg_dose_send(skg_dose_batch *batch, const skg_dose_photon *photon, const skg_dose_matter *in,
-                         const skg_dose_meeting *meeting);
+                         const skg_dose_meeting *meeting, int is_first);
 
 /* The matter of a presence; NULL: nothing is met there. */
 static inline const skg_dose_matter *skg_dose_matter_of(const skg_dose_hall *hall,

@@ -102,6 +102,7 @@ static skg_status open_hall(const skg_dose_walk *walk, skg_dose_hall *h) {
     SKG_TRY(skg_alloc(spectrum->count, sizeof *h->bins, "dose", &h->bins));
     for (int64_t i = 0; i < spectrum->count; i++) all += spectrum->photons[i];
     for (int64_t i = 0; i < spectrum->count; i++) h->bins[i] = (sum += spectrum->photons[i]) / all;
+    SKG_TRY(skg_dose_aims_find(h));
     return find_matter(h);
 }
 
@@ -110,6 +111,7 @@ static void close_hall(skg_dose_hall *h) {
     skg_free(&h->matter);
     skg_free(&h->of_part);
     skg_free(&h->bins);
+    skg_free(&h->aims);
 }
 
 /* --- batches */
@@ -165,39 +167,51 @@ static skg_status run_rounds(const skg_dose_walk *walk, skg_dose_batch *batches)
     return skg_progress_step(walk->progress, ROUNDS, ROUNDS);
 }
 
-/* The sum of the batches and its standard error. */
-static double add_up(const double values[SKG_DOSE_BATCHES], double *sigma) {
-    double sum = 0, squares = 0;
-    for (int b = 0; b < SKG_DOSE_BATCHES; b++) sum += values[b];
-    const double mean = sum / SKG_DOSE_BATCHES;
-    for (int b = 0; b < SKG_DOSE_BATCHES; b++) squares += (values[b] - mean) * (values[b] - mean);
-    *sigma = sqrt(squares * SKG_DOSE_BATCHES / (SKG_DOSE_BATCHES - 1));
-    return sum;
+/* What all batches gave, with the standard error from their spread. */
+typedef struct {
+    double given[SKG_DOSE_BATCHES]; /* keV of photons from the source */
+    double known;                   /* all of it, as the beam says; 0: no ratios */
+} tally;
+
+/* The sum of the batches; with `known` its ratio to the energy from the source, times that of the beam, whose noise both have. */
+static double add_up(const tally *t, const double values[SKG_DOSE_BATCHES], double *sigma) {
+    double sum = 0, given = 0, squares = 0;
+    for (int b = 0; b < SKG_DOSE_BATCHES; b++) sum += values[b], given += t->given[b];
+    const int is_ratio = t->known > 0 && given > 0;
+    const double factor = is_ratio ? t->known / given : 1;
+    for (int b = 0; b < SKG_DOSE_BATCHES; b++) {
+        const double off = values[b] - (is_ratio ? sum / given * t->given[b] : sum / SKG_DOSE_BATCHES);
+        squares += off * off;
+    }
+    *sigma = factor * sqrt(squares * SKG_DOSE_BATCHES / (SKG_DOSE_BATCHES - 1));
+    return factor * sum;
 }
 
 static void collect(const skg_dose_walk *walk, const skg_dose_batch *batches, skg_dose_found *found) {
     const int64_t parts = walk->beam->recipe->scene->count;
     double values[SKG_DOSE_BATCHES], sigma;
+    tally t = {.known = skg_dose_beam_energy(walk->beam)};
+    const tally plain = {.known = 0};
+    for (int b = 0; b < SKG_DOSE_BATCHES; b++) t.given[b] = batches[b].incident;
     for (int64_t p = 0; p < parts; p++) {
         for (int b = 0; b < SKG_DOSE_BATCHES; b++) values[b] = batches[b].energy[p];
-        found->energy[p] = add_up(values, &found->sigma[p]);
+        found->energy[p] = add_up(&t, values, &found->sigma[p]);
     }
     for (int64_t p = 0; p < walk->points; p++) {
         for (int b = 0; b < SKG_DOSE_BATCHES; b++) values[b] = batches[b].kerma[p];
-        found->kerma[p] = add_up(values, &found->kerma_sigma[p]);
+        found->kerma[p] = add_up(&plain, values, &found->kerma_sigma[p]);
     }
-    for (int b = 0; b < SKG_DOSE_BATCHES; b++) values[b] = batches[b].incident;
-    found->incident = add_up(values, &sigma);
+    found->incident = t.known;
     for (int b = 0; b < SKG_DOSE_BATCHES; b++) values[b] = batches[b].around;
-    found->around = add_up(values, &sigma);
+    found->around = add_up(&t, values, &sigma);
     for (int b = 0; b < SKG_DOSE_BATCHES; b++) values[b] = batches[b].escaped;
-    found->escaped = add_up(values, &found->escaped_sigma);
+    found->escaped = add_up(&t, values, &found->escaped_sigma);
     /* What is left over of the balance of each batch: energy is kept in expectation, not by each photon. */
     for (int b = 0; b < SKG_DOSE_BATCHES; b++) {
         values[b] = batches[b].incident - batches[b].escaped - batches[b].around;
         for (int64_t p = 0; p < parts; p++) values[b] -= batches[b].energy[p];
     }
-    add_up(values, &found->absorbed_sigma);
+    add_up(&t, values, &found->absorbed_sigma);
 }
 
 skg_status skg_dose_walk_run(const skg_dose_walk *given, skg_dose_found *found) {

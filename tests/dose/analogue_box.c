@@ -56,8 +56,7 @@ static void follow(const analogue_box *box, const matter *m, uint64_t *seed, dou
 
 /* The field as the source sees it: photons towards even places of a plane are fewer per sr at its rim, which weights make good. Fields here
  * are small, so that even directions are even places within the cube of the cosine; photons carry it. */
-static double weight_of(const analogue_box *box, const double way[3]) {
-    (void)box;
+static double weight_of(const double way[3]) {
     return way[2] * way[2] * way[2];
 }
 
@@ -74,7 +73,7 @@ analogue_absorbed analogue_box_run(const analogue_box *box, int64_t photons, uin
             double own[2] = {0}, from[3], way[3];
             uint64_t look = seed; /* where this photon will fly */
             emit(box, from, way, &look);
-            const double weight = weight_of(box, way);
+            const double weight = weight_of(way);
             follow(box, m, &seed, own);
             given += weight * box->kev;
             for (int k = 0; k < 2; k++) left[k] += weight * own[k];

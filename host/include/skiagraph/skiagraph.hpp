@@ -86,6 +86,8 @@ using plan = handle<skg_plan, skg_plan_release>;
 using motion = handle<skg_motion, skg_motion_release>;
 using body = handle<skg_body, skg_body_release>;
 using thorax = handle<skg_thorax, skg_thorax_release>;
+using dose = handle<skg_dose, skg_dose_release>;
+using lag = handle<skg_lag, skg_lag_release>;
 
 /** Calls a function whose last argument is the address of a new handle:
  *

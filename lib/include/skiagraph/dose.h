@@ -121,8 +121,8 @@ typedef struct {
     /** Free in air: as if the parts were not there, uGy. */
     double air_kerma_ugy;
     /** Backscatter factor: air kerma with what the parts scatter over air kerma free in air. NAN: photons were not followed, the
-     * place is outside the field, or parts stand between it and the source. Of interactions within 3 mm
-     * of the place each counts as they do on average. */
+     * place is outside the field, or parts stand between it and the source. Interactions nearest to the
+     * place count as they do on average there. */
     double backscatter;
     /** Its standard error. */
     double backscatter_sigma;
