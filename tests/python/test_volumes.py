@@ -117,6 +117,13 @@ def test_a_scene_file_with_a_volume_is_saved_as_it_was(tmp_path):
     np.testing.assert_array_equal(sk.Scene(tmp_path / "moved.json").image("attenuation"), image)
 
 
+def test_metal_is_warned_of():
+    cells = np.full((2, 3, 4), 5000, np.int16)
+    with pytest.warns(sk.SkiagraphWarning, match="24 cells are above HU 3000, up to HU 5000"):
+        make_scene().add_volume("ct", cells, AFFINE)
+    make_scene().add_volume("ct", cells, AFFINE, classes=[(-1000, "Air"), (0, "Water"), (3000, "Ti")])
+
+
 def test_other_cells_make_another_scan(tmp_path):
     hashes = []
     for value in (1, 1, 2):

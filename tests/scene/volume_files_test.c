@@ -150,9 +150,30 @@ START_TEST(nrrd_files_are_read) {
 }
 END_TEST
 
+/* Values beyond what scanners give are counted; padding far below air is air. */
+START_TEST(values_beyond_tissue_are_counted) {
+    static const int16_t cells[CELLS] = {-3024, -1024, 3000, 3001, 12000};
+    double share = 0;
+    const char *name = NULL;
+    skg_volume *volume = NULL;
+    skg_volume_source source;
+    skg_volume_contents contents;
+    source_of(&source, cells, SKG_VOLUME_INT16, SKG_VOLUME_HU);
+    ck_skg(skg_volume_create(&source, &volume));
+    skg_volume_contents_init(&contents);
+    ck_skg(skg_volume_contents_get(volume, &contents));
+    ck_assert_int_eq(contents.beyond, 2);
+    ck_skg(skg_volume_class_get(volume, 0, &name, &share));
+    ck_assert_str_eq(name, "Air");
+    ck_assert_double_eq_tol(share, 2.0 / CELLS, 1e-12);
+    skg_volume_release(&volume);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, bad_volumes_are_refused);
     tcase_add_test(tests, files_say_where_cells_are);
+    tcase_add_test(tests, values_beyond_tissue_are_counted);
     tcase_add_test(tests, nrrd_files_are_read);
 }
 
