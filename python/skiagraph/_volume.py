@@ -70,7 +70,7 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     source.slices, source.rows, source.columns = cells.shape
     source.affine = _arrays.matrix(affine, "affine").ravel().tolist()
     return (make("skg_volume_create", "skg_volume", source),
-            [values, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells).hexdigest(), np.asarray(affine, np.float64)])
+            [values, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells.tobytes()).hexdigest(), np.asarray(affine, np.float64)])
 
 
 def warn_of(label: str, volume: Any, named: bool) -> None:

@@ -133,7 +133,7 @@ def test_other_cells_make_another_scan(tmp_path):
     assert hashes[0] == hashes[1] != hashes[2]
 
 
-def test_simpleitk_images():
+def test_simpleitk_images(tmp_path):
     itk = pytest.importorskip("SimpleITK")
     image = itk.GetImageFromArray(np.ones((10, 15, 20), np.int16))
     image.SetSpacing((2, 2, 2))
@@ -142,3 +142,17 @@ def test_simpleitk_images():
     scene.add_volume("block", image, values="density", material="Water")
     expected = block(None).image("attenuation")
     np.testing.assert_allclose(scene.image("attenuation"), expected, atol=2e-6 * expected.max())
+    cells = np.random.default_rng(1).integers(-900, 1500, (10, 15, 20)).astype(np.int16)
+    image = itk.GetImageFromArray(cells)
+    image.SetSpacing((2, 2.5, 1.5))
+    image.SetOrigin((-19, 14, -9))
+    image.SetDirection((0.8, 0.6, 0, 0.6, -0.8, 0, 0, 0, 1))
+    scene = make_scene()
+    scene.add_volume("ct", image)
+    expected = scene.image("attenuation")
+    for name in ("ct.mha", "ct.mhd", "ct.nrrd"):
+        for compressed in (False, True):
+            itk.WriteImage(image, str(tmp_path / name), compressed)
+            scene = make_scene()
+            scene.add_volume("ct", tmp_path / name)
+            np.testing.assert_allclose(scene.image("attenuation"), expected, atol=1e-6 * expected.max())
