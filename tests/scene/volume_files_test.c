@@ -69,8 +69,8 @@ static void write_file(const char *path, int cells) {
         "Offset = 5 6 7\nElementSpacing = 2 3 4\nDimSize = 3 2 4\nElementType = MET_SHORT\n"
         "ElementDataFile = LOCAL\n");
     for (int k = 0; k < cells; k++) {
-        const unsigned char bytes[2] = {(unsigned char)(numbers[k] & 255),
-                                        (unsigned char)(numbers[k] >> 8 & 255)};
+        const unsigned char bytes[2] = {(unsigned char)(numbers[k % CELLS] & 255),
+                                        (unsigned char)(numbers[k % CELLS] >> 8 & 255)};
         fwrite(bytes, 1, 2, file);
     }
     fclose(file);
@@ -86,6 +86,9 @@ START_TEST(files_say_where_cells_are) {
     snprintf(path, sizeof path, "volume-%d.mha", (int)getpid());
     write_file(path, CELLS - 1);
     ck_skg_fails(skg_volume_load(path, 1, NULL, &volume), SKG_ERR_FORMAT, "ends in slice 3 of 4");
+    write_file(path, CELLS + 1);
+    ck_skg_fails(skg_volume_load(path, 1, NULL, &volume), SKG_ERR_FORMAT,
+                 "holds more than the 3 x 2 x 4 cells");
     write_file(path, CELLS);
     ck_skg_fails(skg_volume_load(path, 0, NULL, &volume), SKG_ERR_ARGUMENT, "unit of 0 mm");
     ck_skg(skg_volume_load(path, 1, NULL, &volume));
