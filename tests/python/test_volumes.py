@@ -133,6 +133,19 @@ def test_other_cells_make_another_scan(tmp_path):
     assert hashes[0] == hashes[1] != hashes[2]
 
 
+def test_values_beside_a_header_are_part_of_the_scan(tmp_path):
+    text = {"Source": {"Position": [0, 0, -400, "mm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 9}]},
+            "Detector": {"Position": [0, 0, 100, "mm"], "ColumnStep": [2, 0, 0, "mm"], "RowStep": [0, 2, 0, "mm"], "NumberOfPixels": [8, 8]},
+            "Samples": [{"Label": "ct", "Volume": "ct.mhd"}], "Scan": {"NumberOfProjections": 2, "FinalAngle": 180}}
+    (tmp_path / "scene.json").write_text(json.dumps(text))
+    (tmp_path / "ct.mhd").write_text("NDims = 3\nElementSpacing = 9 9 9\nDimSize = 2 2 2\nElementType = MET_SHORT\nElementDataFile = ct.raw\n")
+    hashes = []
+    for number in (40, 40, 41):
+        (tmp_path / "ct.raw").write_bytes(np.full(8, number, "<i2").tobytes())
+        hashes.append(sk.Scene(tmp_path / "scene.json").scan(tmp_path / f"{len(hashes)}.mha")["hash"])
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
 def test_simpleitk_images(tmp_path):
     itk = pytest.importorskip("SimpleITK")
     image = itk.GetImageFromArray(np.ones((10, 15, 20), np.int16))
