@@ -50,6 +50,12 @@ skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *da
     return create(context->device, bytes, CL_MEM_READ_ONLY | CL_MEM_COPY_HOST_PTR, data, what, buffer);
 }
 
+skg_status skg_buffer_share(skg_context *context, int64_t bytes, void *data, const char *what,
+                            skg_buffer *buffer) {
+    const cl_mem_flags own = context->device->info.cpu ? CL_MEM_USE_HOST_PTR : CL_MEM_COPY_HOST_PTR;
+    return create(context->device, bytes, CL_MEM_READ_ONLY | own, data, what, buffer);
+}
+
 void skg_buffer_release(skg_buffer *buffer) {
     if (buffer->memory) clReleaseMemObject(buffer->memory);
     *buffer = (skg_buffer){0};

@@ -112,6 +112,10 @@ void skg_buffer_forget(skg_context *context);
 skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *data, const char *what,
                              skg_buffer *buffer);
 
+/* The same of memory that outlives the buffer: a CPU reads it where it is. bytes: above 0 */
+skg_status skg_buffer_share(skg_context *context, int64_t bytes, void *data, const char *what,
+                            skg_buffer *buffer);
+
 /* Reserves the bytes and writes the data. The call returns when the data has been copied. */
 skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t bytes, const void *data,
                             const char *what);

@@ -92,6 +92,12 @@ skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_fi
         else
             take_slice(slice, file, z * plane, plane, grid);
     }
+    unsigned char more;
+    if (status == SKG_OK && read_bytes(s, &more, 1) == 1)
+        status =
+            skg_fail(SKG_ERR_FORMAT,
+                     "%s: holds more than the %lld x %lld x %lld cells of its header; correct one of them",
+                     path, (long long)grid->size[0], (long long)grid->size[1], (long long)grid->size[2]);
 cleanup:
     if (s) close_source(s);
     skg_free(&s);

@@ -114,7 +114,10 @@ static skg_status open_data(const char *path, const metaimage *image, FILE **str
     fclose(*stream);
     *stream = NULL;
     SKG_TRY(skg_input_open(beside, SKG_INPUT_LARGE, stream, NULL));
-    if (image->header > 0 && fseek(*stream, image->header, SEEK_SET) != 0)
+    /* -1: the values end the file */
+    const double bytes = image->size[0] * image->size[1] * image->size[2] * image->bytes;
+    if ((image->header > 0 && fseek(*stream, image->header, SEEK_SET) != 0) ||
+        (image->header < 0 && fseek(*stream, -(long)bytes, SEEK_END) != 0))
         return skg_fail(SKG_ERR_FORMAT, "%s: ends within its header", beside);
     return SKG_OK;
 }

@@ -91,7 +91,9 @@ static skg_status check_source(const skg_volume_source *s, const char *name) {
         return skg_fail(SKG_ERR_ARGUMENT, "%s: type %d; SKG_VOLUME_INT16, _UINT16, _FLOAT32 or _FLOAT64",
                         name, (int)s->type);
     if (!s->cells) return skg_fail(SKG_ERR_ARGUMENT, "%s: there are no cells", name);
-    return skg_scene_check_pose(name, s->affine);
+    const skg_status status = skg_scene_check_pose(name, s->affine);
+    return status == SKG_OK ? SKG_OK
+                            : skg_fail(status, "%s: the place of its cells: %s", name, skg_last_error());
 }
 
 static skg_status check_classes(const skg_volume_source *s, const char *name) {

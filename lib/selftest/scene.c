@@ -74,6 +74,10 @@ static void place_boxes(skg_self_test_scene *scene) {
                                                                   : skg_box_turned(middle, half, angles);
     const double beside[3] = {9, 3, 1}, other[3] = {8, 5, 6}, others[3] = {0.71, 0.13, 0.4};
     scene->boxes[SKG_SELF_TEST_BOXES] = skg_box_turned(beside, other, others);
+    /* Cells that the large box displaces in part. */
+    const double above[3] = {4, 3, 19}, cells[3] = {6, 5, 7};
+    if (scene->number == SKG_SELF_TEST_VOLUME)
+        scene->boxes[SKG_SELF_TEST_BOXES] = skg_box_turned(above, cells, others);
 }
 
 /* Boxes elsewhere, of which the mesh of SKG_SELF_TEST_PLACE is made. */

@@ -9,7 +9,7 @@ static const int counts[3] = {ACROSS, DOWN, DEEP};
 
 /* 1/cm of a cell: whole numbers, so that cells are codes of 16 bits. */
 static uint16_t attenuation_of(int cell) {
-    return (uint16_t)(cell * 7 % 4);
+    return (uint16_t)(cell * 7 % 3);
 }
 
 static void split(int cell, int place[3]) {

@@ -37,8 +37,8 @@ skg_status skg_volumes_create(skg_context *context, const skg_scene *scene, skg_
         SKG_TRY(check_size(context, scene, p));
         *placed = (skg_placed_volume){.part = p, .volume = volume};
         volumes->count++;
-        SKG_TRY(skg_buffer_create(context, skg_volume_bytes(volume), volume->cells, "cells of a volume",
-                                  &placed->cells));
+        SKG_TRY(skg_buffer_share(context, skg_volume_bytes(volume), volume->cells, "cells of a volume",
+                                 &placed->cells));
     }
     return SKG_OK;
 }
@@ -289,9 +289,10 @@ static skg_status add(skg_placed_volume *placed, const skg_pass *pass, const skg
                       skg_staging *staging) {
     skg_volume_args args = {.layout = pass->main.raster->layout};
     if (placed->volume->hull->version != 1)
-        return skg_fail(SKG_ERR_SCENE,
-                        "%s: the vertices of its box were moved, which moves no cell; move the part by its pose",
-                        pass->scene->parts[placed->part].label);
+        return skg_fail(
+            SKG_ERR_SCENE,
+            "%s: the vertices of its box were moved, which moves no cell; move the part by its pose",
+            pass->scene->parts[placed->part].label);
     if (!pass->extents[placed->part].on_detector || placed->plane_count == 0) return SKG_OK;
     SKG_TRY(fill_rays(placed, pass, &args));
     SKG_TRY(fill_lists(placed, pass, hits, staging, &args));

@@ -11,6 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays
+from ._device import warn
 from ._interface import ENUMS, ArgumentError
 from ._library import call, encode, ffi, filled, make, struct, text
 from .material import Material, as_material
@@ -69,7 +70,15 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     source.slices, source.rows, source.columns = cells.shape
     source.affine = _arrays.matrix(affine, "affine").ravel().tolist()
     return (make("skg_volume_create", "skg_volume", source),
-            [values, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells).hexdigest(), np.asarray(affine, np.float64)])
+            [values, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells.tobytes()).hexdigest(), np.asarray(affine, np.float64)])
+
+
+def warn_of(label: str, volume: Any, named: bool) -> None:
+    """Warns of cells that no tissue is. named: their compositions were given."""
+    found = filled("skg_volume_contents", "skg_volume_contents_get", volume)
+    if found["beyond"] and not named:
+        warn(f"{label}: {found['beyond']} cells are above HU 3000, up to HU {found['high']:g}, and are taken for bone of rising density; if "
+             "they are metal, name it by classes")
 
 
 def describe(volume: Any) -> dict[str, Any]:

@@ -125,6 +125,7 @@ class Scene(_gradient.Differentiable):
                 part.pose = _arrays.matrix(pose, "pose").ravel().tolist()
             part.volume, content = _volume.make_volume(label, array, affine, values, material, classes)
             try:
+                _volume.warn_of(label, part.volume, material is not None or bool(classes))
                 made = Part(state, state.add_part(part))
                 state.volumes[made._name] = content
                 return made

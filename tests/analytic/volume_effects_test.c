@@ -201,11 +201,58 @@ START_TEST(leaky_meshes_stand_beside) {
 }
 END_TEST
 
+/* A volume in a volume in a bath, each of which displaces what it lies in. */
+START_TEST(volumes_lie_in_each_other) {
+    static double images[2][PIXELS];
+    static const double sizes[2] = {20, 8};
+    for (int k = 0; k < 2; k++) {
+        skg_scene *scene = NULL;
+        skg_plan *plan = NULL;
+        skg_mesh *mesh = NULL;
+        ck_skg(skg_scene_create(context, &scene));
+        ck_skg(skg_mesh_create_cuboid(50, 50, 50, &mesh));
+        add_mesh(scene, "bath", mesh, air, 0, -1);
+        for (int v = 0; v < 2; v++) {
+            static const uint16_t one = 1;
+            skg_volume_source source;
+            skg_part part;
+            if (!k) {
+                ck_skg(skg_mesh_create_cuboid(sizes[v], sizes[v], sizes[v], &mesh));
+                add_mesh(scene, v ? "inner" : "outer", mesh, v ? metal : water, v ? 3 : 0, v);
+                continue;
+            }
+            skg_part_init(&part);
+            skg_volume_source_init(&source);
+            source.columns = source.rows = source.slices = 1, source.cells = &one,
+            source.type = SKG_VOLUME_UINT16;
+            source.values = SKG_VOLUME_DENSITY, source.material = v ? metal : water;
+            for (int a = 0; a < 3; a++) source.affine[5 * a] = sizes[v];
+            ck_skg(skg_volume_create(&source, &part.volume));
+            part.label = v ? "inner" : "outer", part.inside = v, part.pose[3] = v ? 3 : 0;
+            ck_skg(skg_scene_part_add(scene, &part, NULL));
+            skg_volume_release(&part.volume);
+        }
+        if (!k) { /* the cells have 1 g/cm3 */
+            skg_material *light = NULL;
+            ck_skg(skg_material_create_at_density(metal, 1, &light));
+            ck_skg(skg_scene_part_material_set(scene, 2, light));
+            skg_material_release(&light);
+        }
+        ck_skg(skg_plan_create(context, scene, &view, beam, NULL, &plan));
+        render(plan, NULL, SKG_OUTPUT_IMAGE, images[k]);
+        skg_plan_release(&plan);
+        skg_scene_release(&scene);
+    }
+    compare(images[1], images[0], 3e-6);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
     tcase_add_loop_test(tests, effects_are_those_of_meshes, 0, 7);
     tcase_add_test(tests, plans_go_on);
     tcase_add_test(tests, lengths_are_those_of_the_box);
+    tcase_add_test(tests, volumes_lie_in_each_other);
     tcase_add_test(tests, leaky_meshes_stand_beside);
 }
 

@@ -117,6 +117,13 @@ def test_a_scene_file_with_a_volume_is_saved_as_it_was(tmp_path):
     np.testing.assert_array_equal(sk.Scene(tmp_path / "moved.json").image("attenuation"), image)
 
 
+def test_metal_is_warned_of():
+    cells = np.full((2, 3, 4), 5000, np.int16)
+    with pytest.warns(sk.SkiagraphWarning, match="24 cells are above HU 3000, up to HU 5000"):
+        make_scene().add_volume("ct", cells, AFFINE)
+    make_scene().add_volume("ct", cells, AFFINE, classes=[(-1000, "Air"), (0, "Water"), (3000, "Ti")])
+
+
 def test_other_cells_make_another_scan(tmp_path):
     hashes = []
     for value in (1, 1, 2):
@@ -126,7 +133,20 @@ def test_other_cells_make_another_scan(tmp_path):
     assert hashes[0] == hashes[1] != hashes[2]
 
 
-def test_simpleitk_images():
+def test_values_beside_a_header_are_part_of_the_scan(tmp_path):
+    text = {"Source": {"Position": [0, 0, -400, "mm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 9}]},
+            "Detector": {"Position": [0, 0, 100, "mm"], "ColumnStep": [2, 0, 0, "mm"], "RowStep": [0, 2, 0, "mm"], "NumberOfPixels": [8, 8]},
+            "Samples": [{"Label": "ct", "Volume": "ct.mhd"}], "Scan": {"NumberOfProjections": 2, "FinalAngle": 180}}
+    (tmp_path / "scene.json").write_text(json.dumps(text))
+    (tmp_path / "ct.mhd").write_text("NDims = 3\nElementSpacing = 9 9 9\nDimSize = 2 2 2\nElementType = MET_SHORT\nElementDataFile = ct.raw\n")
+    hashes = []
+    for number in (40, 40, 41):
+        (tmp_path / "ct.raw").write_bytes(np.full(8, number, "<i2").tobytes())
+        hashes.append(sk.Scene(tmp_path / "scene.json").scan(tmp_path / f"{len(hashes)}.mha")["hash"])
+    assert hashes[0] == hashes[1] != hashes[2]
+
+
+def test_simpleitk_images(tmp_path):
     itk = pytest.importorskip("SimpleITK")
     image = itk.GetImageFromArray(np.ones((10, 15, 20), np.int16))
     image.SetSpacing((2, 2, 2))
@@ -135,3 +155,17 @@ def test_simpleitk_images():
     scene.add_volume("block", image, values="density", material="Water")
     expected = block(None).image("attenuation")
     np.testing.assert_allclose(scene.image("attenuation"), expected, atol=2e-6 * expected.max())
+    cells = np.random.default_rng(1).integers(-900, 1500, (10, 15, 20)).astype(np.int16)
+    image = itk.GetImageFromArray(cells)
+    image.SetSpacing((2, 2.5, 1.5))
+    image.SetOrigin((-19, 14, -9))
+    image.SetDirection((0.8, 0.6, 0, 0.6, -0.8, 0, 0, 0, 1))
+    scene = make_scene()
+    scene.add_volume("ct", image)
+    expected = scene.image("attenuation")
+    for name in ("ct.mha", "ct.mhd", "ct.nrrd"):
+        for compressed in (False, True):
+            itk.WriteImage(image, str(tmp_path / name), compressed)
+            scene = make_scene()
+            scene.add_volume("ct", tmp_path / name)
+            np.testing.assert_allclose(scene.image("attenuation"), expected, atol=1e-6 * expected.max())

@@ -2,6 +2,7 @@
 #include "core/digest.h"
 #include "core/files.h"
 #include "core/text.h"
+#include "scene/scene.h"
 #include "setup/sections.h"
 
 #include <errno.h>
@@ -36,6 +37,17 @@ static skg_status add_file(const char *path, skg_digester *sum) {
     return reason ? skg_fail_unreadable(path, reason) : SKG_OK;
 }
 
+/* Adds the cells of volumes, which may lie in a file beside the one that the scene names. */
+static void add_cells(const skg_scene *scene, skg_digester *sum) {
+    for (int64_t p = 0; p < scene->count; p++) {
+        const skg_volume *volume = scene->parts[p].volume;
+        if (!volume) continue;
+        skg_digest_add(sum, &volume->low, sizeof volume->low); /* that of code 0 */
+        skg_digest_add(sum, &volume->high, sizeof volume->high);
+        skg_digest_add(sum, volume->cells, (size_t)skg_volume_bytes(volume));
+    }
+}
+
 skg_status skg_setup_text_get(const skg_setup *setup, const char **text) {
     SKG_NEEDS(setup);
     SKG_NEEDS(text);
@@ -52,6 +64,7 @@ skg_status skg_setup_hash_get(const skg_setup *setup, char *hash, int64_t size) 
     skg_digest_start(&sum);
     skg_digest_add_text(&sum, setup->text);
     for (int64_t i = 0; i < setup->file_count; i++) SKG_TRY(add_file(setup->files[i].path, &sum));
+    add_cells(setup->scene, &sum);
     const skg_digest digest = skg_digest_end(&sum);
     skg_digest_text(&digest, hash);
     return SKG_OK;

@@ -80,6 +80,7 @@ using mesh = handle<skg_mesh, skg_mesh_release>;
 using material = handle<skg_material, skg_material_release>;
 using spectrum = handle<skg_spectrum, skg_spectrum_release>;
 using response = handle<skg_response, skg_response_release>;
+using volume = handle<skg_volume, skg_volume_release>;
 using scene = handle<skg_scene, skg_scene_release>;
 using setup = handle<skg_setup, skg_setup_release>;
 using plan = handle<skg_plan, skg_plan_release>;

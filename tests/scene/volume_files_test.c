@@ -1,0 +1,183 @@
+/* Volumes from files and arrays: where cells are, and what is refused. */
+#include "suite.h"
+
+#include <skiagraph/skiagraph.h>
+
+#include <math.h>
+#include <stdio.h>
+#include <string.h>
+
+enum { COLUMNS = 3, ROWS = 2, SLICES = 4, CELLS = COLUMNS * ROWS * SLICES };
+
+static const int16_t numbers[CELLS] = {-1000, -980, -700, -120, -60,  -10,  20,   60,   110,  250, 330, 480,
+                                       560,   690,  850,  990,  1100, 1210, 1320, 1430, 1540, 40,  0,   -300};
+
+static void source_of(skg_volume_source *source, const void *cells, int32_t type, int32_t values) {
+    skg_volume_source_init(source);
+    source->columns = COLUMNS, source->rows = ROWS, source->slices = SLICES;
+    source->cells = cells, source->type = type, source->values = values;
+}
+
+START_TEST(bad_volumes_are_refused) {
+    double values[CELLS];
+    float floats[CELLS] = {0};
+    skg_material *mu = NULL, *water = NULL;
+    skg_volume *volume = NULL;
+    skg_volume_source source, good;
+    for (int k = 0; k < CELLS; k++) values[k] = 1;
+    ck_skg(skg_material_create_mu("mu", 1, &mu));
+    ck_skg(skg_material_create_named("Water", &water));
+    source_of(&good, values, SKG_VOLUME_FLOAT64, SKG_VOLUME_DENSITY);
+    source = good;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_MATERIAL, "give it a material or classes");
+    source.material = mu;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_MATERIAL, "no density can change it");
+    source.values = SKG_VOLUME_MU;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_MATERIAL, "need no material");
+    good.material = water;
+    source = good;
+    values[7] = NAN;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "column 1, row 0, slice 1 is nan");
+    values[7] = -0.5;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "at least 0");
+    values[7] = 1;
+    source.affine[0] = 0;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_SCENE, "singular");
+    source = good, source.affine[5] = NAN;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_SCENE, "not finite");
+    source = good, source.slices = 0;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "3 x 2 x 0 cells");
+    source = good, source.cells = NULL;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "no cells");
+    source_of(&source, floats, SKG_VOLUME_FLOAT32, SKG_VOLUME_HU);
+    floats[0] = 1e6f;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "Hounsfield numbers from 0 to 1e+06");
+    ck_skg_fails(skg_volume_load("nowhere.mha", 1, NULL, &volume), SKG_ERR_FILE, "nowhere.mha");
+    ck_skg_fails(skg_volume_load("a.stl", 1, NULL, &volume), SKG_ERR_UNSUPPORTED, ".stl");
+    skg_material_release(&mu);
+    skg_material_release(&water);
+}
+END_TEST
+
+/* Writes a MetaImage whose second axis is z, downward. */
+static void write_file(const char *path, int cells) {
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    fprintf(
+        file,
+        "ObjectType = Image\nNDims = 3\nBinaryDataByteOrderMSB = False\nTransformMatrix = 1 0 0 0 0 -1 0 1 0\n"
+        "Offset = 5 6 7\nElementSpacing = 2 3 4\nDimSize = 3 2 4\nElementType = MET_SHORT\n"
+        "ElementDataFile = LOCAL\n");
+    for (int k = 0; k < cells; k++) {
+        const unsigned char bytes[2] = {(unsigned char)(numbers[k % CELLS] & 255),
+                                        (unsigned char)(numbers[k % CELLS] >> 8 & 255)};
+        fwrite(bytes, 1, 2, file);
+    }
+    fclose(file);
+}
+
+START_TEST(files_say_where_cells_are) {
+    static const double expected[16] = {2, 0, 0, 5, 0, 0, 4, 6, 0, -3, 0, 7, 0, 0, 0, 1};
+    char path[128];
+    const char *name = NULL;
+    double share = 0, all = 0;
+    skg_volume *volume = NULL;
+    skg_volume_contents contents;
+    snprintf(path, sizeof path, "volume-%d.mha", (int)getpid());
+    write_file(path, CELLS - 1);
+    ck_skg_fails(skg_volume_load(path, 1, NULL, &volume), SKG_ERR_FORMAT, "ends in slice 3 of 4");
+    write_file(path, CELLS + 1);
+    ck_skg_fails(skg_volume_load(path, 1, NULL, &volume), SKG_ERR_FORMAT,
+                 "holds more than the 3 x 2 x 4 cells");
+    write_file(path, CELLS);
+    ck_skg_fails(skg_volume_load(path, 0, NULL, &volume), SKG_ERR_ARGUMENT, "unit of 0 mm");
+    ck_skg(skg_volume_load(path, 1, NULL, &volume));
+    remove(path);
+    skg_volume_contents_init(&contents);
+    ck_skg(skg_volume_contents_get(volume, &contents));
+    ck_assert_int_eq(contents.columns, 3);
+    ck_assert_int_eq(contents.slices, 4);
+    ck_assert_int_eq(contents.bits, 16);
+    ck_assert_double_eq(contents.low, -1000);
+    ck_assert_double_eq(contents.high, 1540);
+    ck_assert_mem_eq(contents.affine, expected, sizeof expected);
+    ck_assert_double_eq(contents.spacing[1], 3);
+    for (int k = 0; k < contents.classes; k++) {
+        ck_skg(skg_volume_class_get(volume, k, &name, &share));
+        all += share;
+    }
+    ck_assert_double_eq_tol(all, 1, 1e-12);
+    skg_volume_release(&volume);
+}
+END_TEST
+
+/* The same cells and place in NRRD, raw and, as another program has written it, by gzip. */
+START_TEST(nrrd_files_are_read) {
+    static const unsigned char zipped[] = {
+        31,  139, 8,   0,   0,   0,   0,   0,   2,   3,   1,  48, 0,   207, 255, 24,  252, 44,
+        252, 68,  253, 136, 255, 196, 255, 246, 255, 20,  0,  60, 0,   110, 0,   250, 0,   74,
+        1,   224, 1,   48,  2,   178, 2,   82,  3,   222, 3,  76, 4,   186, 4,   40,  5,   150,
+        5,   4,   6,   40,  0,   0,   0,   212, 254, 187, 65, 26, 140, 48,  0,   0,   0};
+    static const double expected[16] = {2, 0, 0, 5, 0, 0, 4, 6, 0, -3, 0, 7, 0, 0, 0, 1};
+    char path[128];
+    skg_volume *volume = NULL;
+    skg_volume_contents contents;
+    snprintf(path, sizeof path, "volume-%d.nrrd", (int)getpid());
+    for (int gzip = 0; gzip < 2; gzip++) {
+        FILE *file = fopen(path, "wb");
+        ck_assert_ptr_nonnull(file);
+        fprintf(
+            file,
+            "NRRD0004\n# a comment\ntype: short\ndimension: 3\nspace: left-posterior-superior\nsizes: 3 2 4\n"
+            "space directions: (2,0,0) (0,0,-3) (0,4,0)\nkinds: domain domain domain\nendian: %s\nencoding: %s\n"
+            "space origin: (5,6,7)\nkey:=value\n\n",
+            gzip ? "little" : "big", gzip ? "gzip" : "raw");
+        for (int k = 0; k < CELLS && !gzip; k++)
+            fputc(numbers[k] >> 8 & 255, file), fputc(numbers[k] & 255, file);
+        if (gzip) fwrite(zipped, 1, sizeof zipped, file);
+        fclose(file);
+        ck_skg(skg_volume_load(path, 1, NULL, &volume));
+        skg_volume_contents_init(&contents);
+        ck_skg(skg_volume_contents_get(volume, &contents));
+        ck_assert_double_eq(contents.low, -1000);
+        ck_assert_double_eq(contents.high, 1540);
+        ck_assert_mem_eq(contents.affine, expected, sizeof expected);
+        skg_volume_release(&volume);
+    }
+    FILE *file = fopen(path, "wb");
+    fprintf(file, "NRRD0004\ntype: short\ndimension: 3\nsizes: 3 2 4\nencoding: gzip\n\n");
+    fwrite(zipped, 1, sizeof zipped / 2, file);
+    fclose(file);
+    ck_skg_fails(skg_volume_load(path, 1, NULL, &volume), SKG_ERR_FORMAT, "is it the whole file");
+    remove(path);
+}
+END_TEST
+
+/* Values beyond what scanners give are counted; padding far below air is air. */
+START_TEST(values_beyond_tissue_are_counted) {
+    static const int16_t cells[CELLS] = {-3024, -1024, 3000, 3001, 12000};
+    double share = 0;
+    const char *name = NULL;
+    skg_volume *volume = NULL;
+    skg_volume_source source;
+    skg_volume_contents contents;
+    source_of(&source, cells, SKG_VOLUME_INT16, SKG_VOLUME_HU);
+    ck_skg(skg_volume_create(&source, &volume));
+    skg_volume_contents_init(&contents);
+    ck_skg(skg_volume_contents_get(volume, &contents));
+    ck_assert_int_eq(contents.beyond, 2);
+    ck_skg(skg_volume_class_get(volume, 0, &name, &share));
+    ck_assert_str_eq(name, "Air");
+    ck_assert_double_eq_tol(share, 2.0 / CELLS, 1e-12);
+    skg_volume_release(&volume);
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_test(tests, bad_volumes_are_refused);
+    tcase_add_test(tests, files_say_where_cells_are);
+    tcase_add_test(tests, values_beyond_tissue_are_counted);
+    tcase_add_test(tests, nrrd_files_are_read);
+}
+
+SKG_SUITE_MAIN("volume_files", add_tests)
