@@ -67,26 +67,6 @@ void skg_scene_release(skg_scene **scene) {
     *scene = NULL;
 }
 
-/* The determinant is compared with the product of the lengths of the columns, so that a small or large scale is no
- * reason to refuse a pose. */
-skg_status skg_scene_check_pose(const char *label, const double *pose) {
-    if (!skg_all_finite(pose, 16))
-        return skg_fail(SKG_ERR_SCENE, "part %s: its pose has an entry that is not finite", label);
-    if (fabs(pose[12]) + fabs(pose[13]) + fabs(pose[14]) + fabs(pose[15] - 1) > 0)
-        return skg_fail(SKG_ERR_SCENE,
-                        "part %s: the last row of its pose is (%g, %g, %g, %g); an affine pose has (0, 0, 0, "
-                        "1) there, row by row",
-                        label, pose[12], pose[13], pose[14], pose[15]);
-    double volume = 1;
-    for (int c = 0; c < 3; c++) volume *= skg_length((const double[3]){pose[c], pose[4 + c], pose[8 + c]});
-    /* 16 epsilon cover the rounding of a determinant, which is a sum of six products of three. */
-    if (!(fabs(skg_pose_determinant(pose)) > 16 * DBL_EPSILON * volume) || !isfinite(volume))
-        return skg_fail(SKG_ERR_SCENE,
-                        "part %s: its pose is singular (it flattens the part); give one that can be undone",
-                        label);
-    return SKG_OK;
-}
-
 static uint64_t label_hash(const char *label) {
     return skg_hash_bytes(0, label, strlen(label));
 }
@@ -194,6 +174,13 @@ int64_t skg_scene_volumes(const skg_scene *scene) {
     int64_t count = 0;
     for (int64_t p = 0; p < scene->count; p++) count += scene->parts[p].volume != NULL;
     return count;
+}
+
+int64_t skg_scene_curves(const skg_scene *scene, int64_t part) {
+    int64_t curves = 0;
+    for (int64_t p = 0; p < part; p++)
+        if (scene->parts[p].volume) curves += scene->parts[p].volume->curve_count;
+    return curves;
 }
 
 skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside) {

@@ -4,6 +4,7 @@
 
 #include "core/core.h"
 #include "scene/part_index.h"
+#include "scene/pose.h"
 #include "scene/volume.h"
 
 #include <skiagraph/scene.h>
@@ -35,10 +36,10 @@ struct skg_scene {
 /* The number of parts that are volumes. */
 int64_t skg_scene_volumes(const skg_scene *scene);
 
+/* How many curves the volumes before a part have. */
+int64_t skg_scene_curves(const skg_scene *scene, int64_t part);
+
 /* Puts part `id` inside another one or into the world (-1). SKG_ERR_SCENE if that would make a circle. */
 skg_status skg_scene_set_inside(skg_scene *scene, int64_t id, int64_t inside);
-
-/* SKG_ERR_SCENE, with the label, if a pose (4x4, row by row) is not finite, not affine or singular. */
-skg_status skg_scene_check_pose(const char *label, const double *pose);
 
 #endif

@@ -5,7 +5,7 @@
 #include "core/maths.h"
 #include "core/text.h"
 #include "material/material.h"
-#include "scene/scene.h"
+#include "scene/pose.h"
 
 #include <inttypes.h>
 #include <math.h>

@@ -40,13 +40,6 @@ static skg_status choose_nodes(making *m, skg_model *model) {
     return model->nodes > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
-int64_t skg_scene_curves(const skg_scene *scene, int64_t part) {
-    int64_t curves = 0;
-    for (int64_t p = 0; p < part; p++)
-        if (scene->parts[p].volume) curves += scene->parts[p].volume->curve_count;
-    return curves;
-}
-
 /* The material of a curve, numbered over all volumes. */
 static const skg_material *curve_of(const skg_scene *scene, int64_t curve) {
     int64_t p = 0;

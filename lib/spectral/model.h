@@ -58,9 +58,6 @@ typedef struct {
     int64_t verified; /* points of the range of lengths on which the bound was verified */
 } skg_model;
 
-/* How many curves the volumes before a part have. */
-int64_t skg_scene_curves(const skg_scene *scene, int64_t part);
-
 /* Planes and shades: what exponents are made of. */
 static inline int32_t skg_model_width(const skg_model *model) {
     return model->planes + model->shades.count;

@@ -129,6 +129,7 @@ START_TEST(hounsfield_numbers_are_schneiders_tissues) {
     options.tolerance = 1e-3;
     ck_skg(render(context, of_boxes, &options, boxes));
     ck_skg(render(context, of_cells, &options, cells));
+    /* The tolerance that was asked for. */
     ck_assert_double_lt(worst_of(cells, exact), 1e-3);
     ck_assert_double_lt(worst_of(boxes, exact), 1e-3);
     /* Values with decimals become whole numbers. */
@@ -173,6 +174,7 @@ START_TEST(water_is_water) {
             source.material = classes[0];
         add_volume(scene, &source, -1);
         ck_skg(render(context, scene, &options, cells));
+        /* The faces of meshes are rounded, as above. */
         ck_assert_double_lt(worst_of(cells, cube), 2e-6);
         skg_scene_release(&scene);
     }
@@ -226,6 +228,7 @@ START_TEST(cells_stand_for_meshes) {
         skg_scene_release(&scene);
     }
     for (int p = 0; p < PIXELS; p++) sums[0] += image[p], sums[1] += other[p];
+    /* The faces of meshes are rounded, as above. */
     if (_i) ck_assert_double_lt(worst_of(image, other), 2e-6);
     /* The cells have 4.6e-4 less area than the circle, and some 30 rays across sample their steps. */
     ck_assert_double_eq_tol(sums[0] / sums[1], 1, _i ? 2e-6 : 3e-3);

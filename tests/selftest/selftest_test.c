@@ -241,7 +241,7 @@ static const struct {
     {"show.cl", "strip->through[r] -= share;", "", SKG_SELF_TEST_PICTURE},
     {"scatter.cl", "p->weight *= fall / ", "p->weight *= ", SKG_SELF_TEST_SCATTER},
     {"scatter.cl", "*left = kev * ratio", "*left = kev", SKG_SELF_TEST_SCATTER},
-    {"scatter.cl", "p->changed |= changes;", "p->weight *= (skg_fv)(0.8f);", SKG_SELF_TEST_SCATTER},
+    {"scatter.cl", "p->changed |= changes | emits;", "p->weight *= (skg_fv)(0.8f);", SKG_SELF_TEST_SCATTER},
     {"sight.clh", "s->sr = g0 + g1 - s->k", "s->sr = g0 + g1", SKG_SELF_TEST_SCATTER},
     {"gather.clh", "fma(value, (skg_realv)((skg_real)row), own->rows)", "own->rows", SKG_SELF_TEST_GRADIENT},
     {"gather.clh", "skg_real scale = batch->scale[k]", "skg_real scale = batch->scale[k] * 2",
