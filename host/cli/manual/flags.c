@@ -42,8 +42,8 @@ const cli_flag cli_flag_strategy = {
 const cli_flag cli_flag_set = {
     "--set", "KEY=VALUE",
     "Changes a key of the scene file before it is read: Detector.NumberOfPixels=[64,64], "
-    "Samples.liver.Type=inner. KEY=null deletes the key. May be repeated.",
-    NULL, CLI_NAMES_NOTHING};
+    "Samples.liver.Type=inner. KEY=null deletes the key. May be repeated. `skiagraph help keys` lists the keys.",
+    NULL, CLI_NAMES_KEY};
 
 const cli_flag cli_flag_lenient = {
     "--lenient", NULL,

@@ -6,8 +6,16 @@
 #include <stddef.h>
 #include <stdio.h>
 
-/* What a value or an operand names, for completion. CLI_NAMES_OUTPUT: a file that is written, by another flag than -o. */
-enum { CLI_NAMES_NOTHING, CLI_NAMES_FILE, CLI_NAMES_FOLDER, CLI_NAMES_SCENE, CLI_NAMES_OUTPUT };
+/* What a value or an operand names, for completion. CLI_NAMES_OUTPUT: a file that is written, by another flag than -o;
+ * CLI_NAMES_KEY: a key of a scene file, with its =. */
+enum {
+    CLI_NAMES_NOTHING,
+    CLI_NAMES_FILE,
+    CLI_NAMES_FOLDER,
+    CLI_NAMES_SCENE,
+    CLI_NAMES_OUTPUT,
+    CLI_NAMES_KEY
+};
 
 /* A name or a number and what it means. Lists end with a row whose name is NULL. */
 typedef struct {
@@ -103,7 +111,7 @@ extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_si
     cli_flag_view_orthographic, cli_flag_view_phase, cli_flag_view_at, cli_flag_view_seconds,
     cli_flag_view_sensitivity, cli_flag_view_zoom;
 extern const cli_flag cli_flag_live_port, cli_flag_live_no_open, cli_flag_live_bind, cli_flag_live_idle;
-extern const cli_flag cli_flag_schema_output;
+extern const cli_flag cli_flag_schema_output, cli_flag_schema_paths;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,
     cli_flag_reconstruct_filter, cli_flag_reconstruct_truncation, cli_flag_reconstruct_geometry;
 extern const cli_flag cli_flag_scan_output, cli_flag_scan_from, cli_flag_scan_to, cli_flag_scan_only,

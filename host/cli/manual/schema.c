@@ -3,6 +3,10 @@
 
 const cli_flag cli_flag_schema_output = {"-o", "FILE.json", "The schema as a file.", NULL, CLI_NAMES_FILE};
 
+const cli_flag cli_flag_schema_paths = {
+    "--paths", NULL, "Prints the keys as --set takes them instead, a line each: Detector.NumberOfPixels=.",
+    NULL, CLI_NAMES_NOTHING};
+
 static const char *const text[] = {
     "Prints the JSON Schema (draft 2020-12) of scene files. It is made of the tables by which they are read: what it refuses, reading refuses. "
     "What depends on several keys, or on other files, only reading tells (skiagraph plan SCENE).",
@@ -11,7 +15,8 @@ static const char *const text[] = {
     "share/skiagraph/scene.schema.json. `skiagraph help keys` lists the keys as text.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_schema_output, &cli_flag_quiet, NULL};
+static const cli_flag *const flags[] = {&cli_flag_schema_output, &cli_flag_schema_paths, &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item files[] = {{"FILE.json", "the schema"}, {NULL, NULL}};
 

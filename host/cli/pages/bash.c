@@ -14,6 +14,7 @@ static void put_names(int names, FILE *stream) {
                                            [CLI_NAMES_FILE] = "_skiagraph_files -f",
                                            [CLI_NAMES_OUTPUT] = "_skiagraph_files -f",
                                            [CLI_NAMES_FOLDER] = "_skiagraph_files -d",
+                                           [CLI_NAMES_KEY] = "_skiagraph_keys",
                                            [CLI_NAMES_SCENE] =
                                                "_skiagraph_files -d; _skiagraph_files -f -X '!*.json'"};
     fputs(commands[names], stream);
@@ -55,6 +56,10 @@ void pages_bash(FILE *stream) {
           "    mapfile -t reply < <(compgen \"$@\" -- \"$current\")\n"
           "    COMPREPLY+=(\"${reply[@]}\")\n"
           "    compopt -o filenames 2>/dev/null\n"
+          "}\n\n"
+          "_skiagraph_keys() {\n"
+          "    _skiagraph_words \"$(\"${COMP_WORDS[0]}\" schema --paths 2>/dev/null)\"\n"
+          "    compopt -o nospace 2>/dev/null\n"
           "}\n\n"
           "_skiagraph() {\n"
           "    local current=${COMP_WORDS[COMP_CWORD]} previous=${COMP_WORDS[COMP_CWORD-1]}\n"

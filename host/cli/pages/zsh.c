@@ -25,11 +25,13 @@ static size_t sentence_length(const char *text) {
 }
 
 static const char *action_of(int names) {
-    static const char *const actions[] = {[CLI_NAMES_NOTHING] = "",
-                                          [CLI_NAMES_FILE] = "_files",
-                                          [CLI_NAMES_OUTPUT] = "_files",
-                                          [CLI_NAMES_FOLDER] = "_files -/",
-                                          [CLI_NAMES_SCENE] = "_files -g \"*.json\""};
+    static const char *const actions[] = {
+        [CLI_NAMES_NOTHING] = "",
+        [CLI_NAMES_FILE] = "_files",
+        [CLI_NAMES_OUTPUT] = "_files",
+        [CLI_NAMES_FOLDER] = "_files -/",
+        [CLI_NAMES_KEY] = "{compadd -S \"\" -- ${(f)\"$(skiagraph schema --paths 2>/dev/null)\"}}",
+        [CLI_NAMES_SCENE] = "_files -g \"*.json\""};
     return actions[names];
 }
 
