@@ -218,6 +218,5 @@ cleanup:
 void skg_scatter_object_free(skg_scatter_object *object) {
     skg_scatter_physics_free(&object->physics);
     skg_emitters_free(&object->emitters);
-    skg_emitters_free(&object->emitters);
     skg_cells_free(&object->cells);
 }
