@@ -47,40 +47,66 @@ void skg_dose_part_init_sized(void *part, int32_t size) {
 
 /* --- places */
 
-/* Where the ray to the middle of the field enters the first part, or else that middle. */
-static skg_status find_entrance(const skg_dose_beam *beam, const skg_forest *tree, double place[3]) {
-    double from[3], way[3], mm;
-    skg_way crossed = {0};
-    skg_scale_vector(1, beam->middle, place);
-    if (!skg_dose_beam_way(beam, beam->middle, way, &mm)) return SKG_OK;
+/* Where a ray to a place begins: at the source, or, of a parallel beam, before all parts. Returns the distance to the place. */
+static double begin_ray(const skg_dose_beam *beam, const skg_forest *tree, const double place[3],
+                        const double way[3], double mm, double from[3]) {
+    double far = 0;
     skg_scale_vector(1, beam->recipe->view.source, from);
-    if (beam->parallel && tree->node_count > 0) {
-        const skg_forest_node *box = &tree->nodes[0];
-        double far = 0;
-        for (int k = 0; k < 3; k++) far += fmax(fabs(place[k] - box->low[k]), fabs(place[k] - box->high[k]));
-        skg_add_scaled(place, -far, way, from);
-    }
-    const skg_status status = skg_way_cross(tree, from, way, &crossed);
-    if (status == SKG_OK && crossed.crossing_count > 0)
-        skg_add_scaled(from, crossed.crossings[0].at, way, place);
-    skg_way_free(&crossed);
+    if (!beam->parallel) return mm;
+    for (int k = 0; k < 3 && tree->node_count > 0; k++)
+        far += fmax(fabs(place[k] - tree->nodes[0].low[k]), fabs(place[k] - tree->nodes[0].high[k]));
+    skg_add_scaled(place, -far, way, from);
+    return far;
+}
+
+/* Where a ray from there first meets matter of a part, in mm, within `reach`; HUGE_VAL: nowhere. The rules of overlaps are those of images;
+ * a volume is matter in all of its box. */
+static skg_status first_matter(const skg_dose_beam *beam, const skg_forest *tree, const double from[3],
+                               const double way[3], double reach, double *at) {
+    const skg_rules rules = skg_rules_of(beam->recipe);
+    skg_way found = {0};
+    *at = HUGE_VAL;
+    const skg_status status = skg_way_find(tree, &rules, from, way, reach, &found);
+    for (int64_t i = 0; status == SKG_OK && i < found.piece_count && *at == HUGE_VAL; i++)
+        for (int64_t k = found.pieces[i].first; k < found.pieces[i].first + found.pieces[i].count; k++) {
+            const int32_t part = found.presences[k].part;
+            if (part < 0) continue;
+            const skg_scene_part_data *its = &rules.scene->parts[part];
+            if (its->volume || !skg_material_is_void(its->material)) *at = found.pieces[i].from;
+        }
+    skg_way_free(&found);
     return status;
+}
+
+/* Where the ray to the middle of the field enters the first part, or else that middle, which a warning says. */
+static skg_status find_entrance(const skg_dose_beam *beam, const skg_forest *tree, double place[3]) {
+    double from[3], way[3], mm, at = HUGE_VAL;
+    skg_scale_vector(1, beam->middle, place);
+    if (skg_dose_beam_way(beam, beam->middle, way, &mm)) {
+        begin_ray(beam, tree, beam->middle, way, mm, from);
+        SKG_TRY(first_matter(beam, tree, from, way, HUGE_VAL, &at));
+    }
+    if (at < HUGE_VAL)
+        skg_add_scaled(from, at, way, place);
+    else
+        skg_log(
+            beam->recipe->scene->context, SKG_LOG_WARNING,
+            "dose: the ray to the middle of the field meets no part, so that air kerma is that at the middle of the "
+            "detector, (%g, %g, %g) mm; name the places that are meant",
+            place[0], place[1], place[2]);
+    return SKG_OK;
 }
 
 /* Whether nothing stands before a place; its own surface does not count. */
 static skg_status is_bare(const skg_dose_beam *beam, const skg_forest *tree, const double place[3],
                           int *bare) {
     static const double on_surface = 1e-6; /* mm */
-    double way[3], back[3], mm;
-    skg_way crossed = {0};
+    double from[3], way[3], mm, at = HUGE_VAL;
     *bare = skg_dose_beam_way(beam, place, way, &mm);
     if (!*bare) return SKG_OK;
-    skg_scale_vector(-1, way, back);
-    SKG_TRY(skg_way_cross(tree, place, back, &crossed));
-    for (int64_t i = 0; i < crossed.crossing_count; i++)
-        if (crossed.crossings[i].at > on_surface && (beam->parallel || crossed.crossings[i].at < mm))
-            *bare = 0;
-    skg_way_free(&crossed);
+    const double distance = begin_ray(beam, tree, place, way, mm, from);
+    SKG_TRY(first_matter(beam, tree, from, way, distance, &at));
+    *bare = !(at < distance - on_surface);
     return SKG_OK;
 }
 

@@ -50,6 +50,9 @@ typedef struct {
     int32_t competing, clip, unite; /* competing: 1: priorities, clip or unite decide */
 } skg_rules;
 
+/* Those of a plan. */
+skg_rules skg_rules_of(const skg_recipe *recipe);
+
 /* A line and what was found along it. All zero: no memory yet. One for each thread. */
 typedef struct {
     int64_t crossing_count, crossing_room, piece_count, piece_room, presence_count, presence_room;

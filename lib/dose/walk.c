@@ -21,6 +21,9 @@ skg_status skg_dose_walk_check(const skg_recipe *recipe) {
     skg_material *world = skg_scatter_world(recipe);
     for (int64_t i = 0; i < scene->count; i++) {
         const skg_scene_part_data *part = &scene->parts[i];
+        if (part->volume)
+            return skg_fail(SKG_ERR_UNSUPPORTED,
+                            "%s: is a volume of cells, through which photons are not followed", part->label);
         if (!part->mesh->closed)
             return skg_fail(SKG_ERR_UNSUPPORTED,
                             "%s: its mesh is not closed, so what lies inside is not known", part->label);
@@ -92,11 +95,7 @@ static skg_status open_hall(const skg_dose_walk *walk, skg_dose_hall *h) {
     const skg_recipe *recipe = walk->beam->recipe;
     const skg_spectrum *spectrum = recipe->spectrum;
     double sum = 0, all = 0;
-    *h = (skg_dose_hall){.walk = walk,
-                         .rules = {.scene = recipe->scene,
-                                   .competing = recipe->priority_possible,
-                                   .clip = recipe->options.clip,
-                                   .unite = recipe->options.unite}};
+    *h = (skg_dose_hall){.walk = walk, .rules = skg_rules_of(recipe)};
     skg_kerma_table_fill(walk->beam->high_kev, &h->kerma);
     find_box(h);
     SKG_TRY(skg_alloc(spectrum->count, sizeof *h->bins, "dose", &h->bins));

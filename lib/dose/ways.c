@@ -4,6 +4,10 @@
 #include "core/maths.h"
 #include "scene/scene.h"
 
+skg_rules skg_rules_of(const skg_recipe *recipe) {
+    return (skg_rules){recipe->scene, recipe->priority_possible, recipe->options.clip, recipe->options.unite};
+}
+
 static skg_status reserve(const skg_rules *rules, skg_way *way) {
     if (way->winding) return SKG_OK;
     SKG_TRY(skg_alloc(rules->scene->count, sizeof *way->winding, "dose", &way->winding));

@@ -11,8 +11,11 @@ enum { LINE = 4096, LINES = 200 };
 /* What the header says. */
 typedef struct {
     double size[3], spacing[3], offset[3];
-    double axes[9]; /* a row for each axis */
-    int dimensions, bytes, swapped, compressed, channels;
+    double axes[9];                                             /* a row for each axis */
+    double element[3];                                          /* ElementSize; [0] 0: not given */
+    double slope, intercept;                                    /* ElementToIntensityFunction... */
+    int dimensions, told, bytes, swapped, compressed, channels; /* told: NDims; 0: not given */
+    int has_spacing, is_text;
     char kind;
     char data[LINE]; /* ElementDataFile */
     long header;     /* HeaderSize; 0: the data follow the header, or begin the file */
@@ -54,7 +57,8 @@ static void read_numbers(const char *value, int count, double *numbers) {
 
 /* Where the grid lies; MetaIO knows several names. */
 static void read_place(const char *key, const char *value, metaimage *image) {
-    if (!strcmp(key, "ElementSpacing")) read_numbers(value, 3, image->spacing);
+    if (!strcmp(key, "ElementSpacing")) read_numbers(value, 3, image->spacing), image->has_spacing = 1;
+    if (!strcmp(key, "ElementSize")) read_numbers(value, 3, image->element);
     if (!strcmp(key, "Offset") || !strcmp(key, "Position") || !strcmp(key, "Origin"))
         read_numbers(value, 3, image->offset);
     if (!strcmp(key, "TransformMatrix") || !strcmp(key, "Rotation") || !strcmp(key, "Orientation"))
@@ -65,6 +69,10 @@ static void read_place(const char *key, const char *value, metaimage *image) {
 static void read_line(const char *key, const char *value, metaimage *image) {
     if (!strcmp(key, "DimSize")) read_sizes(value, image);
     read_place(key, value, image);
+    if (!strcmp(key, "NDims")) image->told = atoi(value);
+    if (!strcmp(key, "BinaryData")) image->is_text = !is_true(value);
+    if (!strcmp(key, "ElementToIntensityFunctionSlope")) read_numbers(value, 1, &image->slope);
+    if (!strcmp(key, "ElementToIntensityFunctionOffset")) read_numbers(value, 1, &image->intercept);
     if (!strcmp(key, "ElementNumberOfChannels")) image->channels = atoi(value);
     if (!strcmp(key, "CompressedData")) image->compressed = is_true(value);
     if (!strcmp(key, "BinaryDataByteOrderMSB") || !strcmp(key, "ElementByteOrderMSB"))
@@ -98,6 +106,20 @@ static skg_status read_header(const char *path, FILE *stream, metaimage *image) 
     if (!image->bytes) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its ElementType is none of a number", path);
     if (image->channels > 1)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is of several channels; write it with one", path);
+    if (image->told && image->told != image->dimensions)
+        return skg_fail(SKG_ERR_FORMAT, "%s: its NDims is %d, but DimSize has %d sizes", path, image->told,
+                        image->dimensions);
+    if (image->is_text)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s: its values are text (BinaryData = False); write them binary", path);
+    if (image->slope != 1 || image->intercept != 0)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s: its values mean others (ElementToIntensityFunctionSlope %g, Offset %g); write those", path,
+            image->slope, image->intercept);
+    /* As MetaIO does. */
+    if (!image->has_spacing && image->element[0] > 0)
+        memcpy(image->spacing, image->element, sizeof image->spacing);
     if (image->dimensions < 3) image->size[2] = 1;
     return skg_picture_size_check(path, image->size[0], image->size[1], image->size[2]);
 }
@@ -143,7 +165,7 @@ static skg_status read_values(const char *path, FILE *stream, const metaimage *i
 
 skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents,
                               double *values) {
-    metaimage image = {.quantity = -1, .channels = 1};
+    metaimage image = {.quantity = -1, .channels = 1, .slope = 1};
     FILE *stream = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
@@ -166,7 +188,7 @@ cleanup:
 
 skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
     metaimage image = {
-        .quantity = -1, .channels = 1, .spacing = {1, 1, 1}, .axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+        .quantity = -1, .channels = 1, .slope = 1, .spacing = {1, 1, 1}, .axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
     FILE *stream = NULL;
     skg_status status = SKG_OK;
     *grid = (skg_grid){0};

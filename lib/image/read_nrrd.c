@@ -11,8 +11,9 @@ enum { LINE = 4096, LINES = 1000 };
 typedef struct {
     skg_grid_file file;
     int64_t sizes[3];
-    double spacing[3];
-    int dimensions, has_directions, is_big;
+    double spacing[3], unit_mm[3]; /* unit_mm: of each axis; 0: of no unit that is known */
+    double sign[3];                /* of x, y, z towards left, back and head */
+    int dimensions, has_directions, has_origin, has_minima, is_big;
     long bytes_skipped, lines_skipped;
     char data[LINE]; /* of a header alone: the file of the values; "": they follow */
 } nrrd;
@@ -63,6 +64,27 @@ static void read_directions(const char *value, nrrd *n, skg_grid *grid) {
         for (int k = 0; k < 3; k++) grid->affine[4 * k + axis] = d[3 * axis + k];
 }
 
+/* "mm" "mm" "mm" */
+static void read_units(const char *value, nrrd *n) {
+    for (int k = 0; k < 3 && *value; k++) {
+        char unit[32];
+        value += strspn(value, " \"");
+        const size_t length = strcspn(value, "\"");
+        snprintf(unit, sizeof unit, "%.*s", (int)length, value);
+        n->unit_mm[k] = 0;
+        if (skg_unit_of_length(unit, &n->unit_mm[k]) != SKG_OK) n->unit_mm[k] = 0;
+        value += length;
+    }
+}
+
+/* "right-anterior-superior" or RAS: where x, y and z point to. Others have no anatomy. */
+static void read_space(const char *value, nrrd *n) {
+    const int is_short = strlen(value) == 3;
+    if (strstr(value, "right-") == value || (is_short && value[0] == 'R')) n->sign[0] = -1;
+    if (strstr(value, "-anterior") || (is_short && value[1] == 'A')) n->sign[1] = -1;
+    if (strstr(value, "-inferior") || (is_short && value[2] == 'I')) n->sign[2] = -1;
+}
+
 /* One line "field: value"; fields that say nothing of cells and place are passed over. */
 static void read_field(const char *field, const char *value, nrrd *n, skg_grid *grid) {
     double d[3];
@@ -77,8 +99,13 @@ static void read_field(const char *field, const char *value, nrrd *n, skg_grid *
         for (int k = 0; k < 3; k++) n->sizes[k] = (int64_t)d[k];
     if (!strcmp(field, "spacings") && read_numbers(value, 3, d) == 3) memcpy(n->spacing, d, sizeof d);
     if (!strcmp(field, "space directions")) read_directions(value, n, grid);
-    if (!strcmp(field, "space origin") && read_numbers(value, 3, d) == 3)
+    if (!strcmp(field, "space origin") && read_numbers(value, 3, d) == 3) {
+        n->has_origin = 1;
         for (int k = 0; k < 3; k++) grid->affine[4 * k + 3] = d[k];
+    }
+    if (!strcmp(field, "space units") || !strcmp(field, "units")) read_units(value, n);
+    if (!strcmp(field, "space")) read_space(value, n);
+    if (!strcmp(field, "axis mins") || !strcmp(field, "axismins")) n->has_minima = 1;
     if (!strcmp(field, "byte skip") || !strcmp(field, "byteskip")) n->bytes_skipped = atol(value);
     if (!strcmp(field, "line skip") || !strcmp(field, "lineskip")) n->lines_skipped = atol(value);
     if (!strcmp(field, "data file") || !strcmp(field, "datafile"))
@@ -92,6 +119,13 @@ static skg_status check(const char *path, const nrrd *n) {
     if (!n->file.bytes) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its type is none of a number", path);
     if (n->file.compressed < 0)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its encoding is neither raw nor gzip; write it so", path);
+    for (int k = 0; k < 3; k++)
+        if (!(n->unit_mm[k] > 0))
+            return skg_fail(SKG_ERR_UNSUPPORTED,
+                            "%s: its axes have a unit that is no length; write them in mm", path);
+    if (n->has_minima && !n->has_origin)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s: is placed by axis mins; write space directions and space origin", path);
     if (n->bytes_skipped < 0 || n->lines_skipped < 0)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: skips from the end; write it without", path);
     return skg_picture_size_check(path, (double)n->sizes[0], (double)n->sizes[1], (double)n->sizes[2]);
@@ -133,7 +167,7 @@ static skg_status open_data(const char *path, const nrrd *n, FILE **stream) {
 }
 
 skg_status skg_nrrd_read_grid(const char *path, skg_grid *grid) {
-    nrrd n = {.spacing = {1, 1, 1}};
+    nrrd n = {.spacing = {1, 1, 1}, .unit_mm = {1, 1, 1}, .sign = {1, 1, 1}};
     FILE *stream = NULL;
     skg_status status = SKG_OK;
     *grid = (skg_grid){.affine = {[15] = 1}};
@@ -142,6 +176,9 @@ skg_status skg_nrrd_read_grid(const char *path, skg_grid *grid) {
     n.file.swapped = n.file.bytes > 1 && n.is_big != skg_host_is_big_endian();
     memcpy(grid->size, n.sizes, sizeof grid->size);
     for (int k = 0; k < 3 && !n.has_directions; k++) grid->affine[5 * k] = n.spacing[k];
+    for (int row = 0; row < 3; row++)
+        for (int column = 0; column < 4; column++)
+            grid->affine[4 * row + column] *= n.sign[row] * n.unit_mm[row];
     SKG_TRY_CLEANUP(open_data(path, &n, &stream));
     status = skg_grid_read_cells(path, stream, &n.file, grid);
 cleanup:

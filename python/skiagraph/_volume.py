@@ -34,6 +34,7 @@ def _cells(array: Any) -> NDArray[Any]:
     cells = _arrays.numbers(array, "array")
     if cells.ndim != 3 or cells.size == 0:
         raise ArgumentError(f"array has {_arrays.describe(cells)}; give cells [z, y, x]")
+    cells = cells.astype(cells.dtype.newbyteorder("="), copy=False)  # of files in the other byte order
     if cells.dtype.name not in _TYPES:
         whole = cells.dtype.kind in "iub"
         fits = [name for name in ("int16", "uint16") if whole and np.iinfo(name).min <= cells.min() and cells.max() <= np.iinfo(name).max]
@@ -76,6 +77,8 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
 def warn_of(label: str, volume: Any, named: bool) -> None:
     """Warns of cells that no tissue is. named: their compositions were given."""
     found = filled("skg_volume_contents", "skg_volume_contents_get", volume)
+    if found["values"] == _VALUES["density"] and found["high"] > 23:  # osmium has 22.6
+        warn(f"{label}: its densities go up to {found['high']:g} g/cm3, which nothing has; are they mg/cm3 or Hounsfield numbers?")
     if found["beyond"] and not named:
         warn(f"{label}: {found['beyond']} cells are above HU 3000, up to HU {found['high']:g}, and are taken for bone of rising density; if "
              "they are metal, name it by classes")

@@ -371,6 +371,65 @@ START_TEST(photons_are_not_followed_through_what_is_not_known) {
 }
 END_TEST
 
+/* Cells of a volume are not followed: no doses beside one, in front of it or behind, while what the detector receives is known. */
+START_TEST(photons_are_not_followed_through_cells) {
+    static const int16_t cells[8] = {0};
+    subject s = open_box(20, 20, 20, "Water, Liquid");
+    skg_volume_source source;
+    skg_part part;
+    skg_volume_source_init(&source);
+    skg_part_init(&part);
+    source.columns = source.rows = source.slices = 2;
+    source.cells = cells, source.type = SKG_VOLUME_INT16, source.values = SKG_VOLUME_HU;
+    source.affine[11] = -100;
+    ck_skg(skg_volume_create(&source, &part.volume));
+    part.label = "ct";
+    ck_skg(skg_scene_part_add(s.scene, &part, NULL));
+    skg_volume_release(&part.volume);
+    const skg_dose_options options = options_of(100);
+    skg_dose *dose = dose_of(&s, &options);
+    ck_assert_int_eq(report_of(dose).followed, 0);
+    ck_assert_double_gt(report_of(dose).detector_air_kerma_ugy, 0);
+    ck_assert(isnan(part_of(dose, 0).dose_ugy) && isnan(part_of(dose, 1).dose_ugy) &&
+              isnan(point_of(dose, 0).backscatter));
+    /* The cells are of 1 mm, about z = -99.5: their front is where the ray enters the first part. */
+    ck_assert_double_eq_tol(point_of(dose, 0).at[2], -100.5, 500 * 16 * DBL_EPSILON);
+    skg_dose_release(&dose);
+    subject_close(&s);
+}
+END_TEST
+
+/* The entrance, and whether a place is bare, by the same rules as images: a child that is clipped, a hole of vacuum, a source within. */
+START_TEST(the_entrance_is_that_of_images) {
+    subject s = open_box(60, 60, 40, "Water, Liquid");
+    skg_mesh *mesh = NULL;
+    skg_dose_options options = options_of(200);
+    ck_skg(skg_mesh_create_cuboid(20, 20, 30, &mesh));
+    subject_add(&s, mesh, "Al", 0, 0, -20,
+                0); /* from z = -35 to -5, of which what is before -20 is clipped away */
+    s.options.clip = 1;
+    skg_dose *dose = dose_of(&s, &options);
+    ck_assert_double_eq_tol(point_of(dose, 0).at[2], -20, 500 * 16 * DBL_EPSILON);
+    ck_assert_double_gt(point_of(dose, 0).backscatter, 1);
+    skg_dose_release(&dose);
+    s.options.clip = 0;
+    dose = dose_of(&s, &options);
+    ck_assert_double_eq_tol(point_of(dose, 0).at[2], -35, 500 * 16 * DBL_EPSILON);
+    skg_dose_release(&dose);
+    subject_close(&s);
+    /* A source in the water, 10 mm before the place. */
+    const double place[3] = {0, 0, 0};
+    s = open_box(400, 400, 100, "Water, Liquid");
+    s.view.source[2] = -10;
+    options.points = place, options.point_count = 1;
+    dose = dose_of(&s, &options);
+    ck_assert_double_gt(point_of(dose, 0).air_kerma_ugy, 0);
+    ck_assert(isnan(point_of(dose, 0).backscatter));
+    skg_dose_release(&dose);
+    subject_close(&s);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_set_timeout(tests, 300);
@@ -385,6 +444,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, what_cannot_be_known_is_refused);
     tcase_add_test(tests, nothing_is_kept_without_memory);
     tcase_add_test(tests, photons_are_not_followed_through_what_is_not_known);
+    tcase_add_test(tests, photons_are_not_followed_through_cells);
+    tcase_add_test(tests, the_entrance_is_that_of_images);
 }
 
 SKG_SUITE_MAIN("dose", add_tests)

@@ -39,6 +39,20 @@ def test_cells_are_a_block(cells, more):
     np.testing.assert_allclose(found, expected, atol=2e-6 * expected.max())  # faces of meshes are rounded
 
 
+@pytest.mark.parametrize("kind", ["i1", "u1", "i2", "u2", "i4", "u4", "i8", "u8", "f2", "f4", "f8"])
+def test_the_byte_order_of_an_array_does_not_matter(kind):
+    cells = np.full((10, 15, 20), 50)
+    cells[3, 4, 5] = 100
+    images = [block(cells.astype(order + kind), values="HU").image("attenuation") for order in "<>"]
+    np.testing.assert_array_equal(*images)
+    assert images[0].max() > 0.3  # 20 mm of tissue
+
+
+def test_densities_that_nothing_has_are_warned_of():
+    with pytest.warns(sk.SkiagraphWarning, match="are they mg/cm3"):
+        block(np.full((10, 15, 20), 1000.0), values="density", material="Water")
+
+
 def test_the_axes_are_z_y_x():
     cells = np.zeros((10, 15, 20), np.float32)
     cells[:, 3, 7] = 1  # a rod along the beam, at x = -5 and y = -8 mm

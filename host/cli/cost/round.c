@@ -153,6 +153,7 @@ int64_t cost_count_unknown(const cost_study *study, const char **label) {
         skg_part_init(&part);
         if (skg_scene_part_get(study->session.scene, i, &part) != SKG_OK) continue;
         if (skg_mesh_name_get(part.mesh, &name) != SKG_OK) continue;
+        if (part.volume) continue; /* its cells are the body */
         if (strcmp(name, "cube") == 0 || strcmp(name, "cuboid") == 0 || strcmp(name, "step wedge") == 0 ||
             is_round(part.mesh, &sectors))
             continue;

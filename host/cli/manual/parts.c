@@ -7,7 +7,7 @@ const cli_flag cli_flag_parts_output = {"-o", "FILE.csv", "The table as a file, 
 static const char *const text[] = {
     "Prints a table of the parts of a scene, for a report: material, density, volume, mass, mean path and share of the "
     "attenuation. The volume is that of the part's mesh, times its pose, without the parts that lie inside it; overlaps "
-    "that a Priority decides are not taken off. A part whose mesh is not closed has no volume and no mass.",
+    "that a Priority or Clip decides are not taken off. A part whose mesh is not closed has no volume and no mass.",
     "The mean path is the mean net length of the rays that meet the part. The share is the part's of the sum, over all "
     "pixels and parts, of attenuation coefficient times length, at the mean energy of the beam.",
     cli_text_meshes,

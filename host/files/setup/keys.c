@@ -15,7 +15,7 @@ static const skg_json_key scene[] = {
     SKG_KEY("Tolerance", "number 0..<1",
             "largest error that a compressed spectrum may make; 0, the default: every energy is used"),
     SKG_KEY("SceneGraph", "object Sample", "one more sample, whose shape is all meshes of a file together"),
-    SKG_KEY("Breathing", "object Breathing", "how the samples move with the breath"),
+    SKG_KEY("Breathing", "null | object Breathing", "how the samples move with the breath"),
     SKG_KEY("Noise", "flag | object Noise", "noise of the photons and of the electronics; none by default"),
     SKG_KEY(
         "Falloff", "flag",

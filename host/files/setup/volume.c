@@ -78,15 +78,35 @@ static skg_status read_classes(skg_setup_reader *reader, const skg_json_node *no
     return SKG_OK;
 }
 
+/* Above the densest element, osmium, 22.6 g/cm3; and a CT image without a cell that is nearer to air than to water. */
+static const double DENSEST = 23, NO_AIR = -100;
+
+/* A picture of another unit looks the same, so values that are none of a body's are told. */
+static void doubt(const skg_setup_reader *reader, const char *place, const skg_volume_contents *contents,
+                  int is_named) {
+    if (contents->values == SKG_VOLUME_DENSITY && contents->high > DENSEST)
+        skg_logger_say(
+            &reader->log, SKG_LOG_WARNING,
+            "%s: its densities go up to %g g/cm3, which nothing has; are they mg/cm3 or Hounsfield numbers?",
+            place, contents->high);
+    if (contents->values == SKG_VOLUME_HU && !is_named && contents->low > NO_AIR)
+        skg_logger_say(
+            &reader->log, SKG_LOG_WARNING,
+            "%s: has no Values, so that its cells are taken for Hounsfield numbers, from %g to %g: none of them is air; if they "
+            "are, say \"Values\": \"HU\"",
+            place, contents->low, contents->high);
+}
+
 /* Says what was done with cells beyond the scanners' range. */
 static skg_status note(const skg_setup_reader *reader, const skg_json_node *node, const skg_volume *volume,
-                       int has_compositions) {
+                       int is_named, int has_compositions) {
     skg_volume_contents contents;
     char place[256];
     skg_volume_contents_init(&contents);
     SKG_TRY(skg_volume_contents_get(volume, &contents));
-    if (contents.beyond == 0 || has_compositions) return SKG_OK;
     skg_json_place(node, place, sizeof place);
+    doubt(reader, place, &contents, is_named);
+    if (contents.beyond == 0 || has_compositions) return SKG_OK;
     skg_logger_say(&reader->log, SKG_LOG_WARNING,
                    "%s: %" PRId64
                    " cells are above HU 3000, up to HU %g, and are taken for bone of rising density; if they "
@@ -133,7 +153,9 @@ skg_status skg_setup_read_volume(skg_setup_reader *reader, const skg_json_object
     source.class_count = c->count, source.class_from = c->from, source.class_materials = c->materials;
     source.name = name;
     status = skg_json_at(&file, skg_volume_load(path, unit_mm, &source, volume));
-    if (status == SKG_OK) status = note(reader, &file, *volume, c->material || c->count);
+    if (status == SKG_OK)
+        status = note(reader, &file, *volume, skg_json_member(sample, "Values").value != NULL,
+                      c->material || c->count);
 cleanup:
     release(c);
     skg_free(&c);
