@@ -153,7 +153,7 @@ skg_status skg_scene_part_add(skg_scene *scene, const skg_part *part, int64_t *i
     skg_material_retain(ours.material);
     made.material = ours.material;
     made.volume = ours.volume;
-    if (made.volume) skg_ref(&made.volume->refs);
+    if (made.volume) skg_ref(&made.volume->refs), scene->volumes++;
     note_place(scene, &made);
     skg_part_index_add(&scene->labels, label_hash(label), scene->count);
     scene->parts[scene->count] = made;
@@ -171,14 +171,13 @@ static skg_status check_id(const skg_scene *scene, int64_t id, const char *call)
 }
 
 int64_t skg_scene_volumes(const skg_scene *scene) {
-    int64_t count = 0;
-    for (int64_t p = 0; p < scene->count; p++) count += scene->parts[p].volume != NULL;
-    return count;
+    return scene->volumes;
 }
 
 int64_t skg_scene_curves(const skg_scene *scene, int64_t part) {
     int64_t curves = 0;
-    for (int64_t p = 0; p < part; p++)
+    /* Asked for every part; scenes may have a hundred thousand, and no volume. */
+    for (int64_t p = 0; p < part && scene->volumes > 0; p++)
         if (scene->parts[p].volume) curves += scene->parts[p].volume->curve_count;
     return curves;
 }

@@ -31,6 +31,7 @@ struct skg_scene {
     /* Each of these grows with every change of its kind. A plan made for an older structure (a part added, or
      * put inside another) is stale. */
     int64_t structure, materials, poses;
+    int64_t volumes; /* parts that are volumes */
 };
 
 /* The number of parts that are volumes. */
