@@ -47,19 +47,7 @@ void skg_dose_part_init_sized(void *part, int32_t size) {
 
 /* --- places */
 
-/* Where a ray to a place begins: at the source, or, of a parallel beam, before all parts. Returns the distance to the place. */
-static double begin_ray(const skg_dose_beam *beam, const skg_forest *tree, const double place[3],
-                        const double way[3], double mm, double from[3]) {
-    double far = 0;
-    skg_scale_vector(1, beam->recipe->view.source, from);
-    if (!beam->parallel) return mm;
-    for (int k = 0; k < 3 && tree->node_count > 0; k++)
-        far += fmax(fabs(place[k] - tree->nodes[0].low[k]), fabs(place[k] - tree->nodes[0].high[k]));
-    skg_add_scaled(place, -far, way, from);
-    return far;
-}
-
-/* Where a ray from there first meets matter of a part, in mm, within `reach`; HUGE_VAL: nowhere. The rules of overlaps are those of images;
+/* Where a ray first meets matter of a part, in mm, within `reach`; HUGE_VAL: nowhere. The rules of overlaps are those of images;
  * a volume is matter in all of its box. */
 static skg_status first_matter(const skg_dose_beam *beam, const skg_forest *tree, const double from[3],
                                const double way[3], double reach, double *at) {
@@ -83,7 +71,7 @@ static skg_status find_entrance(const skg_dose_beam *beam, const skg_forest *tre
     double from[3], way[3], mm, at = HUGE_VAL;
     skg_scale_vector(1, beam->middle, place);
     if (skg_dose_beam_way(beam, beam->middle, way, &mm)) {
-        begin_ray(beam, tree, beam->middle, way, mm, from);
+        skg_dose_beam_begin(beam, tree, beam->middle, from);
         SKG_TRY(first_matter(beam, tree, from, way, HUGE_VAL, &at));
     }
     if (at < HUGE_VAL)
@@ -104,7 +92,7 @@ static skg_status is_bare(const skg_dose_beam *beam, const skg_forest *tree, con
     double from[3], way[3], mm, at = HUGE_VAL;
     *bare = skg_dose_beam_way(beam, place, way, &mm);
     if (!*bare) return SKG_OK;
-    const double distance = begin_ray(beam, tree, place, way, mm, from);
+    const double distance = skg_dose_beam_begin(beam, tree, place, from);
     SKG_TRY(first_matter(beam, tree, from, way, distance, &at));
     *bare = !(at < distance - on_surface);
     return SKG_OK;

@@ -80,19 +80,6 @@ static int64_t draw_bin(const skg_dose_hall *h, uint64_t *seed) {
     return low;
 }
 
-/* From before all parts, or from where the beam begins. */
-static void start_parallel(const skg_dose_hall *h, const double on[3], skg_dose_photon *photon) {
-    const skg_dose_beam *beam = h->walk->beam;
-    double back[3], far = 0;
-    skg_scale_vector(1, beam->direction, photon->direction);
-    skg_add_scaled(on, -1, beam->recipe->view.source, back);
-    if (beam->recipe->view.projection == SKG_PROJECTION_PARALLEL)
-        far = skg_dot(back, beam->direction);
-    else
-        for (int k = 0; k < 3; k++) far += fmax(fabs(on[k] - h->low[k]), fabs(on[k] - h->high[k]));
-    skg_add_scaled(on, -far, beam->direction, photon->at);
-}
-
 int skg_dose_emit(const skg_dose_hall *h, uint64_t *seed, skg_dose_photon *photon) {
     const skg_dose_beam *beam = h->walk->beam;
     const int64_t bin = draw_bin(h, seed);
@@ -103,7 +90,8 @@ int skg_dose_emit(const skg_dose_hall *h, uint64_t *seed, skg_dose_photon *photo
     skg_add_scaled(on, place[1], beam->field.row, on);
     photon->weight = beam->photons / density_at(h, place) / (double)h->walk->histories;
     if (beam->parallel) {
-        start_parallel(h, on, photon);
+        skg_scale_vector(1, beam->direction, photon->direction);
+        skg_dose_beam_begin(beam, h->walk->tree, on, photon->at);
         return 1;
     }
     skg_scale_vector(1, beam->recipe->view.source, photon->at);

@@ -107,6 +107,8 @@ int skg_dose_beam_way(const skg_dose_beam *b, const double place[3], double way[
     *mm = 0;
     if (b->parallel) {
         skg_scale_vector(1, b->direction, way);
+        skg_add_scaled(place, -1, b->recipe->view.source, from_middle);
+        if (b->recipe->view.projection == SKG_PROJECTION_PARALLEL && skg_dot(from_middle, way) < 0) return 0;
         skg_add_scaled(place, -1, b->field.centre, from_middle);
         skg_add_scaled(place, -skg_dot(from_middle, b->normal) / skg_dot(way, b->normal), way, on);
     } else {
@@ -120,6 +122,22 @@ int skg_dose_beam_way(const skg_dose_beam *b, const double place[3], double way[
     skg_add_scaled(on, -1, b->field.centre, from_middle);
     const double u = skg_dot(from_middle, b->field.column), v = skg_dot(from_middle, b->field.row);
     return u >= b->field.low[0] && u <= b->field.high[0] && v >= b->field.low[1] && v <= b->field.high[1];
+}
+
+double skg_dose_beam_begin(const skg_dose_beam *b, const skg_forest *tree, const double place[3],
+                           double from[3]) {
+    double way[3], far = 0;
+    skg_add_scaled(place, -1, b->recipe->view.source, way);
+    if (!b->parallel) {
+        skg_scale_vector(1, b->recipe->view.source, from);
+        return skg_length(way);
+    }
+    const int has_plane = b->recipe->view.projection == SKG_PROJECTION_PARALLEL;
+    if (has_plane) far = skg_dot(way, b->direction);
+    for (int k = 0; k < 3 && !has_plane && tree->node_count > 0; k++)
+        far += fmax(fabs(place[k] - tree->nodes[0].low[k]), fabs(place[k] - tree->nodes[0].high[k]));
+    skg_add_scaled(place, -far, b->direction, from);
+    return far;
 }
 
 /* What a photon of the spectrum gives on average along a direction, with the profile of the beam. of: [bins] what one of each energy gives, such as

@@ -47,6 +47,10 @@ void skg_dose_beam_free(skg_dose_beam *beam);
 /* The way from the source to a place: its direction, and how long it is; of a parallel beam 0. Returns 0 if the field does not reach it. */
 int skg_dose_beam_way(const skg_dose_beam *beam, const double place[3], double way[3], double *mm);
 
+/* Where the ray to a place begins: at the source, in its plane, or, of a beam from infinity, before all parts. Returns the distance. */
+double skg_dose_beam_begin(const skg_dose_beam *beam, const skg_forest *tree, const double place[3],
+                           double from[3]);
+
 /* Air kerma in uGy that the beam would have at a place without the parts; 0 outside the field. */
 skg_status skg_dose_beam_kerma(const skg_dose_beam *beam, const double place[3], double *kerma);
 

@@ -417,6 +417,21 @@ START_TEST(the_entrance_is_that_of_images) {
     ck_assert_double_eq_tol(point_of(dose, 0).at[2], -35, 500 * 16 * DBL_EPSILON);
     skg_dose_release(&dose);
     subject_close(&s);
+    /* A parallel beam that begins within the water: what is before its plane is not met, and has no kerma. */
+    const double behind[6] = {0, 0, -10, 0, 0, 15};
+    s = open_box(60, 60, 40, "Water, Liquid");
+    s.view.projection = SKG_PROJECTION_PARALLEL, s.view.source[2] = 5;
+    s.options.falloff = SKG_FALLOFF_OFF;
+    dose = dose_of(&s, &options);
+    ck_assert_double_eq_tol(point_of(dose, 0).at[2], 5, 500 * 16 * DBL_EPSILON);
+    skg_dose_release(&dose);
+    options.points = behind, options.point_count = 2;
+    dose = dose_of(&s, &options);
+    ck_assert(point_of(dose, 0).in_field == 0 && point_of(dose, 0).air_kerma_ugy <= 0);
+    ck_assert_double_gt(point_of(dose, 1).air_kerma_ugy, 0);
+    ck_assert(isnan(point_of(dose, 1).backscatter));
+    skg_dose_release(&dose);
+    subject_close(&s);
     /* A source in the water, 10 mm before the place. */
     const double place[3] = {0, 0, 0};
     s = open_box(400, 400, 100, "Water, Liquid");

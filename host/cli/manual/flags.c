@@ -106,9 +106,6 @@ const cli_flag cli_flag_meshes_filter = {
     "May be repeated. The default is 2.5 mm of aluminium.",
     NULL, CLI_NAMES_NOTHING};
 
-const cli_item cli_flag_meshes_from_names[] = {
-    {"front", "the source at -y"}, {"side", "the source at +x"}, {"top", "the source at +z"}, {NULL, NULL}};
-
 const cli_flag cli_flag_meshes_from = {
     "--from", "front|side|top|ANGLES|X,Y,Z",
     "With --material: the side on which the source stands: front is -y (the default), side is +x, top is +z; ANGLES of a C-arm such as "

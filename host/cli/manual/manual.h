@@ -69,8 +69,7 @@ extern const cli_flag cli_flag_device, cli_flag_precision, cli_flag_tolerance, c
 /* Flags of verbs that take meshes instead of a scene. */
 extern const cli_flag cli_flag_meshes_material, cli_flag_meshes_kvp, cli_flag_meshes_kev,
     cli_flag_meshes_filter, cli_flag_meshes_from;
-extern const cli_item cli_flag_meshes_from_names[]; /* the sides; a direction is possible as well */
-extern const char cli_text_meshes[];                /* a paragraph on them */
+extern const char cli_text_meshes[]; /* a paragraph on them */
 
 /* Flags of one verb. */
 extern const cli_flag cli_flag_image_quantity, cli_flag_image_display, cli_flag_image_bands,

@@ -171,9 +171,6 @@ skg_status skg_json_read_object(const skg_json_node *node, const skg_json_table 
         const skg_json_key *key = find_key(object, name);
         if (!key) SKG_TRY(unknown_key(object, &member));
         if (!key) continue;
-        if (key->kind == SKG_KEY_NOT_YET && !json_is_null(value) && !json_is_false(value))
-            return skg_json_fail(&member, SKG_ERR_UNSUPPORTED, "%s is not simulated yet; leave the key out",
-                                 key->as);
         if (key->kind != SKG_KEY_READ) continue;
         const char *other = NULL;
         json_t *ignored = NULL;

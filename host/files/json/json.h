@@ -30,14 +30,11 @@ void skg_json_place(const skg_json_node *node, char *place, size_t size);
 /* Keys that an object may have. */
 enum {
     SKG_KEY_READ = 0,
-    SKG_KEY_IGNORED = 1, /* concerns the display only, or is a comment */
-    SKG_KEY_NOT_YET = 2  /* of the schema, but not simulated: refused unless its value is null or false */
+    SKG_KEY_IGNORED = 1 /* concerns the display only, or is a comment */
 };
 typedef struct {
     const char *name;
-    const char *
-        as; /* of SKG_KEY_READ: the key of which this is another spelling; NULL: none. Of SKG_KEY_NOT_YET: what
-                     * it asks for */
+    const char *as; /* the key of which this is another spelling; NULL: none */
     int32_t kind;
     const char *form; /* of the value, in the words of setup/keys.h */
     const char *says; /* what it means; NULL: nothing */
@@ -58,8 +55,8 @@ typedef struct {
     const skg_json_table *table;
 } skg_json_object;
 
-/* The node has to be an object with these keys only, each once. An unknown key is a fault with the nearest known name;
- * one of SKG_KEY_NOT_YET is SKG_ERR_UNSUPPORTED. Every object may have a comment and a colour, which are ignored. */
+/* The node has to be an object with these keys only, each once. An unknown key is a fault with the nearest known name.
+ * Every object may have a comment and a colour, which are ignored. */
 skg_status skg_json_read_object(const skg_json_node *node, const skg_json_table *table,
                                 skg_json_object *object);
 

@@ -8,7 +8,8 @@
  *   numbers 3, numbers                so many numbers in an array; any number of them
  *   lengths 3                         so many numbers and a unit of length
  *   rows 2, rows                      arrays of so many numbers; of any
- *   list FORM, object NAME            an array; an object with the keys of that table
+ *   pair FORM, list FORM              an array of two, of any number of them; a list takes all that follows it
+ *   object NAME, map FORM             an object with the keys of that table; one with any keys
  *   length, unit, energy_unit, material, transformation, spot, filter, rectangle, ...: forms with a name of their own (schema.c) */
 #ifndef SKG_SETUP_KEYS_H
 #define SKG_SETUP_KEYS_H

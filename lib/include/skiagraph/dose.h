@@ -25,8 +25,8 @@ typedef struct {
     int64_t histories;
     /** Of these photons. The same seed gives the same figures, whatever the number of threads. */
     int64_t seed;
-    /** Number of places. 0: one, where the ray to the middle of the field enters the first part; of a field that meets none, its middle on
-     * the detector or, with jaws, on their plane. */
+    /** Number of places. 0: one, where the ray to the middle of the field enters the first part; where it meets none, that middle on
+     * the detector or, with jaws, on their plane, which a warning says. */
     int64_t point_count;
     /** [point_count][3] mm, world */
     const double *points;
@@ -63,7 +63,7 @@ SKG_API void skg_dose_release(skg_dose **dose);
 typedef struct {
     /** Set by skg_dose_report_init. */
     int32_t size;
-    /** 1: photons were followed. 0: none were asked for, or the scene does not let them: a mesh that is not closed, a material of unknown
+    /** 1: photons were followed. 0: none were asked for, or the scene does not let them: a volume, a mesh that is not closed, a material of unknown
      * composition or density, photons above 1,022 keV; a warning said which. */
     int32_t followed;
     /** Kerma-area product of the field, uGy cm2: air kerma over an area across the middle ray of the field. It is the same at each
@@ -114,7 +114,7 @@ SKG_API skg_status skg_dose_report_get(const skg_dose *dose, skg_dose_report *re
 typedef struct {
     /** Set by skg_dose_point_init. */
     int32_t size;
-    /** 1: the field reaches the place; 0: it does not, and kerma is 0. */
+    /** 1: the field reaches the place; 0: it does not, or the beam begins behind it, and kerma is 0. */
     int32_t in_field;
     /** mm, world */
     double at[3];
