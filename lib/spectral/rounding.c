@@ -37,11 +37,13 @@ typedef struct {
     double *mu;        /* [nodes] of one part less that of its parent, 1/mm */
     double *alone;     /* [2][nodes] exponents and errors of one part */
     double worst;
+    double greatest, greatest_alone; /* attenuation of a ray, and of a part by itself */
     skg_rounding *found;
 } rounding;
 
-/* The relative error of an intensity with these exponents and errors: [nodes] each. */
-static double error_of(const rounding *r, const double *exponents, const double *errors) {
+/* The relative error of an intensity with these exponents and errors: [nodes] each. greatest:
+ * raised to the attenuation. */
+static double error_of(const rounding *r, const double *exponents, const double *errors, double *greatest) {
     const skg_model *model = r->model;
     double worst = 0;
     for (int32_t c = 0; c < skg_model_sums(model); c++) {
@@ -53,7 +55,9 @@ static double error_of(const rounding *r, const double *exponents, const double 
             passed += intensity;
             wrong += intensity * expm1(errors[n] + fabs(exponents[n]) * r->by.exponent);
         }
-        if (flat > 0) worst = fmax(worst, (wrong + r->by.image) / fmax(passed, SKG_RELATIVE_FROM * flat));
+        if (!(flat > 0)) continue;
+        worst = fmax(worst, (wrong + r->by.image) / fmax(passed, SKG_RELATIVE_FROM * flat));
+        *greatest = fmax(*greatest, -log(fmax(passed / flat, SKG_RELATIVE_FROM)));
     }
     return worst + r->by.exponential;
 }
@@ -109,7 +113,7 @@ static void add_part(void *user, const skg_trace *trace) {
         r->alone[n] = fabs(r->mu[n]) * SKG_TRACED_MARGIN * trace->longest;
         r->alone[nodes + n] = fabs(r->mu[n]) * bar;
     }
-    r->worst = fmax(r->worst, error_of(r, r->alone, r->alone + nodes));
+    r->worst = fmax(r->worst, error_of(r, r->alone, r->alone + nodes, &r->greatest_alone));
 }
 
 static rounding begin(const skg_model *model, const skg_plan_options *options, skg_rounding *found) {
@@ -134,9 +138,12 @@ skg_status skg_rounding_find(const skg_scene *scene, const skg_view *view, const
     r.worst = r.by.exponential;
     SKG_TRY_CLEANUP(skg_ranges_trace(scene, view, model, NULL, add_part, &r));
     for (int64_t ray = 0; ray < RAYS; ray++)
-        r.worst =
-            fmax(r.worst, error_of(&r, r.exponents + ray * model->nodes, r.errors + ray * model->nodes));
+        r.worst = fmax(r.worst, error_of(&r, r.exponents + ray * model->nodes, r.errors + ray * model->nodes,
+                                         &r.greatest));
     found->bound = r.worst;
+    /* What intensities are off by relatively an attenuation is off by absolutely, which is a larger share of it where it is small. */
+    if (!(r.greatest > 0)) r.greatest = r.greatest_alone / SKG_TRACED_MARGIN;
+    if (options->quantity == SKG_QUANTITY_ATTENUATION && r.greatest > 0) found->bound /= fmin(r.greatest, 1);
 cleanup:
     skg_free(&r.exponents);
     skg_free(&r.errors);

@@ -92,7 +92,8 @@ skg_status skg_ranges_trace(const skg_scene *scene, const skg_view *view, const 
 
 typedef struct {
     /* Of the relative error of intensities: relative where more than 1e-6 of the flat field arrives, else in units of 1e-6 of
-     * the flat field. */
+     * the flat field. With the quantity attenuation, of its error in units of the greatest attenuation of these rays, or of 1 if
+     * that is less. */
     double bound;
     /* Parts whose lengths may be wrong by more than 1 % of the longest, and the one with the largest share. */
     int64_t thin_count, thin;

@@ -116,6 +116,29 @@ START_TEST(a_slab_has_the_bound_of_its_exponent) {
 }
 END_TEST
 
+/* A foil of .02: intensities are off by 1e-6 for the exponential and 1.25 * 3e-5 of the exponent, its attenuation by fifty times that
+ * share of itself. */
+START_TEST(a_foil_has_a_bound_of_its_attenuation) {
+    const skg_view view = run_view(PIXELS, 1);
+    const double of_intensity = 1e-6 + 1.25 * 3e-5 * 0.02;
+    skg_scene *scene = NULL;
+    skg_mesh *mesh = NULL;
+    ck_skg(skg_scene_create(run_context, &scene));
+    ck_skg(skg_mesh_create_cuboid(400, 400, 1, &mesh));
+    run_part(scene, "foil", mesh, 0.2, NULL, -1);
+    skg_mesh_release(&mesh);
+    const int32_t quantities[] = {SKG_QUANTITY_TRANSMISSION, SKG_QUANTITY_ATTENUATION};
+    for (int k = 0; k < 2; k++) {
+        double bound = 0, expected = k == 0 ? of_intensity : of_intensity / 0.02;
+        skg_plan *plan = run_plan(scene, &view, (run_choice){.quantity = quantities[k]});
+        ck_skg(skg_plan_precision_bound_get(plan, &bound));
+        ck_assert_double_eq_tol(bound, expected, 0.01 * expected); /* rays to the corners: .3 % */
+        skg_plan_release(&plan);
+    }
+    skg_scene_release(&scene);
+}
+END_TEST
+
 /* A pixel that detects no photon has the attenuation that the header names. */
 START_TEST(no_photons_are_126_doublings) {
     const skg_view view = run_view(PIXELS, 1);
@@ -232,6 +255,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_loop_test(tests, single_stays_within_the_bound_of_double, 0, 2);
     tcase_add_test(tests, a_slab_has_the_bound_of_its_exponent);
+    tcase_add_test(tests, a_foil_has_a_bound_of_its_attenuation);
     tcase_add_test(tests, a_plan_names_double_for_thin_parts);
     tcase_add_test(tests, half_warns_with_a_number_that_holds);
     tcase_add_test(tests, no_photons_are_126_doublings);

@@ -146,13 +146,13 @@ static void judge(const cut_block *b, uint64_t seed, int32_t precision, hard_out
         const double error = compare(image, truth);
         ck_skg(skg_plan_precision_bound_get(plan, &bound));
         o->worst[precision] = fmax(o->worst[precision], error / greatest);
-        if (!(error <= o->bar[precision] * greatest && error <= bound))
+        if (!(error <= o->bar[precision] * greatest && error <= bound * fmin(greatest, 1)))
             hard_fault(
                 o,
                 "SKG_CUTS_SEED=%llu: %.2g of the greatest value, bound %.2g; pixel %.2g, source %.3g, away "
                 "%.2g mm, tilt %.0e, precision %d",
-                (unsigned long long)seed, error / greatest, bound / greatest, b->pitch, b->source, b->away,
-                b->tilt, (int)precision);
+                (unsigned long long)seed, error / greatest, bound, b->pitch, b->source, b->away, b->tilt,
+                (int)precision);
         free(image);
         skg_plan_release(&plan);
     }

@@ -180,8 +180,9 @@ SKG_API skg_status skg_plan_scatter_predict(skg_plan *plan, skg_scatter_predicti
  * exponentials. It adds to skg_plan_report.bound, the error of fewer energies and planes.
  *
  *     bound    result: of intensities, in the sense of skg_plan_options.tolerance: relative where more than
- *              1e-6 of the flat field arrives, else in units of 1e-6 of the flat field. An attenuation,
- *              -ln(I/I0), is off by as much. The rounding of what is shown to float is not part of it.
+ *              1e-6 of the flat field arrives, else in units of 1e-6 of the flat field. With the quantity
+ *              attenuation, -ln(I/I0), of its error by itself and as a share of the greatest value, whichever
+ *              is larger. The rounding of what is shown to float is not part of it.
  *     method   rays from the plan's view to 64 x 64 points of its detector. Each part that a ray meets may
  *              be wrong by what docs/numerics.md states for the precision: a share of its longest path, or
  *              of its extent along the rays where that is more; with SKG_PRECISION_HALF by half a step of
