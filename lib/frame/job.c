@@ -60,6 +60,7 @@ void skg_job_empty(skg_job *done) {
     if (done->last) clReleaseEvent(done->last);
     skg_raster_pin_release(&done->main);
     if (done->state) done->kind->release(&done->state);
+    for (int64_t o = 0; o < done->output_count; o++) skg_frame_output_release(&done->outputs[o]);
     skg_staging_release(&done->staging);
     skg_recipe_release(&done->recipe);
     skg_plan_release(&done->plan);

@@ -99,6 +99,11 @@ static skg_status check_type(const skg_machine *machine, const skg_output *to) {
     return SKG_OK;
 }
 
+/* From the first element of a frame to its last. */
+static int64_t frame_elements(const skg_frame_output *o, const skg_view *view) {
+    return (o->channels - 1) * o->to.channel_stride + (view->rows - 1) * o->to.row_stride + view->columns;
+}
+
 /* Checks that all frames fit the caller's buffer, and finds where they begin. */
 static skg_status check_buffer(const char *call, const skg_view *view, const skg_machine *machine,
                                int64_t frames, skg_frame_output *o) {
@@ -111,8 +116,7 @@ static skg_status check_buffer(const char *call, const skg_view *view, const skg
                         "an offset of %" PRId64 " bytes is no multiple of an element's %" PRId64, to->offset,
                         element);
     o->first = to->offset / element;
-    const int64_t last = (frames - 1) * to->frame_stride + (o->channels - 1) * to->channel_stride +
-                         (view->rows - 1) * to->row_stride + view->columns;
+    const int64_t last = (frames - 1) * to->frame_stride + frame_elements(o, view);
     if ((o->first + last) * element > bytes)
         return skg_fail(SKG_ERR_ARGUMENT, "the images end at byte %" PRId64 ", the buffer at %" PRId64,
                         (o->first + last) * element, bytes);
@@ -131,6 +135,29 @@ skg_status skg_frame_output_read(const char *call, const skg_recipe *recipe, con
     return output->to.buffer ? check_buffer(call, &recipe->view, machine, frames, output) : SKG_OK;
 }
 
+/* --- memory that a CPU shares with the caller */
+
+/* Smaller images are copied sooner than a buffer is made of their memory. */
+static const int64_t SHARED_BYTES = 512 << 10;
+
+void skg_frame_output_share(skg_frame_output *output, const skg_view *view, const skg_machine *machine,
+                            int64_t frames) {
+    const skg_device *device = machine->context->device;
+    const int64_t element = element_bytes(output), one = frame_elements(output, view);
+    cl_int code = CL_SUCCESS;
+    if (output->to.buffer || !device->info.cpu || one * element < SHARED_BYTES) return;
+    if ((uintptr_t)output->to.data % (uintptr_t)element) return;
+    const size_t bytes = (size_t)(((frames - 1) * output->to.frame_stride + one) * element);
+    cl_mem made =
+        clCreateBuffer(device->cl, CL_MEM_READ_WRITE | CL_MEM_USE_HOST_PTR, bytes, output->to.data, &code);
+    if (code == CL_SUCCESS) output->direct = made;
+}
+
+void skg_frame_output_release(skg_frame_output *output) {
+    if (output->direct) clReleaseMemObject(output->direct);
+    output->direct = NULL;
+}
+
 /* --- enqueueing */
 
 skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view *view, skg_machine *machine,
@@ -141,7 +168,8 @@ skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view
                                .offset = output->first + frame * to->frame_stride,
                                .row_stride = to->row_stride,
                                .channel_stride = to->channel_stride};
-    if (to->buffer) return SKG_OK;
+    if (output->direct) place->memory = output->direct;
+    if (place->memory) return SKG_OK;
     const int64_t size = view->rows * view->columns;
     SKG_TRY(skg_buffer_reserve(machine->context, &machine->image,
                                output->channels * size * element_bytes(output), CL_MEM_READ_WRITE, "image"));
@@ -149,6 +177,19 @@ skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view
     place->offset = 0;
     place->row_stride = view->columns;
     place->channel_stride = size;
+    return SKG_OK;
+}
+
+/* Has what a CPU wrote into the caller's memory seen there: OpenCL promises it of a region that is mapped. */
+static skg_status settle(const skg_frame_output *output, const skg_view *view, const skg_machine *machine,
+                         int64_t frame) {
+    cl_command_queue queue = machine->context->device->queue;
+    const int64_t element = element_bytes(output), from = frame * output->to.frame_stride;
+    cl_int code = CL_SUCCESS;
+    void *mapped = clEnqueueMapBuffer(queue, output->direct, CL_FALSE, CL_MAP_READ, (size_t)(from * element),
+                                      (size_t)(frame_elements(output, view) * element), 0, NULL, NULL, &code);
+    SKG_CL_TRY(code);
+    SKG_CL_TRY(clEnqueueUnmapMemObject(queue, output->direct, mapped, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -170,6 +211,7 @@ skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_
                                       const skg_machine *machine, int64_t frame, skg_stage_log *log) {
     const skg_output *to = &output->to;
     if (to->buffer) return SKG_OK;
+    if (output->direct) return settle(output, view, machine, frame);
     const int64_t size = view->rows * view->columns, element = element_bytes(output);
     char *first = (char *)to->data + frame * to->frame_stride * element;
     if (to->row_stride != view->columns || (output->channels > 1 && to->channel_stride != size)) {

@@ -206,6 +206,9 @@ skg_status skg_frames_submit(skg_job **made, const skg_frame *frames, int at_onc
         SKG_TRY_CLEANUP(begin(job, frames));
     else if (!is_whole)
         SKG_TRY_CLEANUP(divide(job));
+    /* Of a frame in steps the caller would see sums of some. */
+    for (int64_t o = 0; o < job->output_count && !begins && !job->each; o++)
+        skg_frame_output_share(&job->outputs[o], &job->recipe->view, job->machine, job->count);
     const int64_t all = skg_job_steps(job), ahead = is_whole ? all : begins ? 0 : steps_ahead(job);
     SKG_TRY_CLEANUP(clear_counters(job->machine));
     SKG_TRY_CLEANUP(submit_steps(job, frames, ahead < all ? ahead : all));

@@ -30,12 +30,19 @@ typedef struct {
     skg_output to; /* checked; strides filled in */
     int64_t channels;
     int64_t first; /* element of to.buffer where the first frame begins */
+    cl_mem direct; /* the caller's host memory, which a CPU writes to itself; NULL: images are read back */
 } skg_frame_output;
 
 /* Checks output `index` of a list and fills in the rest. call: the name of the public function. frames: their number. */
 skg_status skg_frame_output_read(const char *call, const skg_recipe *recipe, const skg_machine *machine,
                                  int64_t frames, const skg_output *outputs, int64_t index,
                                  skg_frame_output *output);
+
+/* Lets a CPU write the images of all frames into the caller's host memory, if they are large: a copy less. They are read back where
+ * this is not possible. */
+void skg_frame_output_share(skg_frame_output *output, const skg_view *view, const skg_machine *machine,
+                            int64_t frames);
+void skg_frame_output_release(skg_frame_output *output);
 
 /* Whether a kind of output shows the scatter alone. */
 static inline int skg_output_is_scatter(int32_t kind) {
