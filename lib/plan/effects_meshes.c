@@ -101,8 +101,8 @@ static void find_priority(const skg_effect_facts *f, skg_effect_state *state) {
     else if (f->competing == 0)
         skg_effect_set(state, 0, "parts of different priority keep apart in the plan's view");
     else
-        skg_effect_set(state, 1, "hits of %" PRId64 " %s listed: they %s%s", f->competing,
-                       skg_plural(f->competing, "part is", "parts are"),
+        skg_effect_set(state, 1, "the hits of %" PRId64 " %s are listed: they %s%s", f->competing,
+                       skg_plural(f->competing, "part", "parts"),
                        f->recipe->options.unite ? "are united, and may compete" : "may compete",
                        f->recipe->options.clip ? ", or leave their parents" : "");
 }
