@@ -126,7 +126,8 @@ typedef struct {
     int32_t size;
     /** enum skg_type; SKG_TYPE_FLOAT64 needs a device with fp64 */
     int32_t type;
-    /** First element. The caller's memory; it must stay until the job was waited for. */
+    /** First element. The caller's memory; it must stay until the job was waited for. What it holds until then is not said: a CPU
+     * writes large images straight into it. */
     void *data;
     /** Elements from one row to the next; 0: dense. */
     int64_t row_stride;
