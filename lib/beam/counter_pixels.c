@@ -1,5 +1,5 @@
 /* What the pixels of a detector that counts make of the charge of one photon: shares of clouds, thresholds, anti-coincidence. */
-#include "beam/counter.h"
+#include "beam/counter_pixels.h"
 
 #include <math.h>
 #include <stdlib.h>

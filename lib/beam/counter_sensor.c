@@ -1,5 +1,5 @@
 /* Histories of photons in the sensor of a detector that counts: where each leaves how much energy. */
-#include "beam/counter.h"
+#include "beam/counter_sensor.h"
 #include "core/maths.h"
 #include "material/scattering.h"
 #include "material/shells.h"

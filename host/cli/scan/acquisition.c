@@ -154,12 +154,12 @@ static int check_chosen(const cli_acquisition *a) {
 
 /* Scene, scan, motion and plan: of every rank its own. */
 static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
-    int32_t quantity = SKG_QUANTITY_ENERGY;
+    int32_t quantity = -1;
     int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &a->session);
     if (exit_status != CLI_DONE) return exit_status;
     if (a->ranks.rank == 0) cli_note_no_noise(&a->session);
-    a->session.options.quantity = quantity;
+    if (quantity >= 0) a->session.options.quantity = quantity;
     if (a->session.options.scatter)
         a->options.batch = 1; /* each waits: so progress moves, and Ctrl-C is heard */
     a->options.type =
