@@ -88,7 +88,14 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     skg_scan_file_options_init(&options);
     skg_channel_init(&channel);
     skg_plan_report_init(&report);
-    skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
+    int64_t channels = 0;
+    skg_status status = skg_plan_channel_count(a->plan, &channels);
+    if (status == SKG_OK && channels > 1)
+        return cli_error(CLI_USAGE,
+                         "a file of projections has one channel, and these have %" PRId64
+                         "; give Counting one threshold for each scan",
+                         channels);
+    if (status == SKG_OK) status = skg_plan_channel_get(a->plan, 0, &channel);
     if (status == SKG_OK) status = skg_plan_report_get(a->plan, &report);
     options.type = grey_type(a);
     options.scan = a->record.known ? a->record.known : a->scan;
