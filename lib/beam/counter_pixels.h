@@ -8,7 +8,7 @@ enum { SKG_COUNTING_PIXELS = SKG_COUNTING_SIDE * SKG_COUNTING_SIDE };
 
 /* The standard deviation of the cloud of charge that was set free at a depth when it reaches the pixels, mm: it drifts for
  * t = d thickness / (mobility bias), and its variance grows by 2 D t with D = mobility kT/e (H. Spieler, Semiconductor Detector Systems,
- * 2005, section 2.3). */
+ * 2005). */
 double skg_cloud_width(const skg_counting *counting, double z);
 
 /* Adds the counts of one history to those of a row. */

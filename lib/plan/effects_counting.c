@@ -82,10 +82,11 @@ static void find_counting(const skg_effect_facts *f, skg_effect_state *state) {
                    counted / photons);
 }
 
-/* Both images of each window, with squares whose size is not known before the machine is made: of nine pixels, mostly. */
+/* Both images of each window, with squares whose size is not known before the machine is made: lines fly far, clouds do not. */
 static double cost_counting(const skg_effect_facts *f) {
-    const double n = f->recipe->model.channels;
-    return 9 * n * (1 + n * f->recipe->options.noise);
+    const double n = f->recipe->model.channels,
+                 pixels = counting_of(&f->recipe->options)->fluorescence ? SKG_COUNTING_PIXELS : 9;
+    return pixels * n * (1 + n * f->recipe->options.noise);
 }
 
 static void find_cloud(const skg_effect_facts *f, skg_effect_state *state) {
