@@ -18,8 +18,8 @@
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
 #include <skiagraph/collimation.h>
-#include <skiagraph/counting.h>
 #include <skiagraph/context.h>
+#include <skiagraph/counting.h>
 #include <skiagraph/distance.h>
 #include <skiagraph/dose.h>
 #include <skiagraph/error.h>
