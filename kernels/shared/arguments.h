@@ -157,6 +157,11 @@
 #define SKG_ARGUMENTS_BLUR_VARIANCE(X) \
     X(BLUR_VARIANCE, args) X(BLUR_VARIANCE, from) X(BLUR_VARIANCE, weights) X(BLUR_VARIANCE, to)
 
+#define SKG_ARGUMENTS_PULSES(X) X(PULSES, args) X(PULSES, from) X(PULSES, weights) X(PULSES, to)
+
+#define SKG_ARGUMENTS_PULSES_VARIANCE(X) \
+    X(PULSES_VARIANCE, args) X(PULSES_VARIANCE, from) X(PULSES_VARIANCE, weights) X(PULSES_VARIANCE, to)
+
 #define SKG_ARGUMENTS_DETECT(X) X(DETECT, args) X(DETECT, factor) X(DETECT, flat_field) X(DETECT, image)
 
 #define SKG_ARGUMENTS_DETECT_VARIANCE(X) \
@@ -194,7 +199,8 @@
     X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \
     X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(WEIGHTS, skg_weights) X(LOGARITHM, skg_logarithm) \
-    X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(BLUR_VARIANCE, skg_blur_variance) X(DETECT, skg_detect) \
+    X(BLUR_DOWN, skg_blur_down) X(BLUR_ACROSS, skg_blur_across) X(BLUR_VARIANCE, skg_blur_variance) \
+    X(PULSES, skg_pulses) X(PULSES_VARIANCE, skg_pulses_variance) X(DETECT, skg_detect) \
     X(DETECT_VARIANCE, skg_detect_variance) X(SCATTER, skg_scatter) X(SCATTERED, skg_scattered) \
     X(SHOW_COUNT, skg_show_count) X(SHOW_FILL, skg_show_fill) X(SHOW_DRAW, skg_show_draw)
 /* clang-format on */

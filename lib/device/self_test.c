@@ -39,6 +39,7 @@ const char *skg_self_test_name(skg_self_test number) {
         [SKG_SELF_TEST_VARIANCE] = "variance",
         [SKG_SELF_TEST_DENSITIES] = "density gradients",
         [SKG_SELF_TEST_VOLUME] = "volumes",
+        [SKG_SELF_TEST_PULSES] = "photon counting",
     };
     return names[number];
 }

@@ -40,6 +40,7 @@ typedef enum {
     SKG_SELF_TEST_VARIANCE,  /* of noise, behind a blur and a logarithm */
     SKG_SELF_TEST_DENSITIES, /* derivatives of an image by the densities of parts inside each other */
     SKG_SELF_TEST_VOLUME,    /* volumes of cells */
+    SKG_SELF_TEST_PULSES,    /* a detector that counts */
     SKG_SELF_TESTS
 } skg_self_test;
 

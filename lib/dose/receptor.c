@@ -184,8 +184,9 @@ static skg_status find_index(const skg_plan *plan, picture *p, float *values, do
     const skg_plan_options options =
         options_of(plan->recipe, plan->recipe->options.response, plan->recipe->options.oblique);
     double per_ugy = 0;
-    SKG_TRY(draw(plan, &options, p));
     *index = (double)NAN;
+    if (plan->recipe->options.counter) return SKG_OK; /* it is defined for detectors of energy */
+    SKG_TRY(draw(plan, &options, p));
     if (signal_per_ugy(options.response, &per_ugy) != SKG_OK)
         return SKG_OK; /* it does not know these energies */
     *index =

@@ -1,4 +1,5 @@
 /* Makes the machine of a recipe: buffers, kernels, and what does not move. */
+#include "beam/counter_kernels.h"
 #include "core/maths.h"
 #include "frame/plans.h"
 #include "plan/decisions.h"
@@ -42,6 +43,17 @@ static skg_status make_geometry(const skg_recipe *recipe, skg_machine *machine) 
     return status;
 }
 
+static skg_status make_pulses(const skg_recipe *recipe, skg_machine *machine) {
+    const skg_counting *counting = &recipe->options.counter->counting;
+    const double dead = counting->pile_up ? counting->dead_time_ns * 1e-9 / counting->exposure_s : 0;
+    skg_counter_kernels kernels;
+    SKG_TRY(skg_counter_kernels_make(recipe->options.counter, recipe->spectrum, &kernels));
+    const skg_status status =
+        skg_pulses_create(machine->context, &kernels, counting->pile_up, dead, &machine->pulses);
+    skg_counter_kernels_release(&kernels);
+    return status;
+}
+
 static skg_status make_detector(const skg_recipe *recipe, const skg_plan_options *options,
                                 skg_machine *machine) {
     const double pixel_mm[2] = {skg_length(recipe->view.column_step), skg_length(recipe->view.row_step)};
@@ -52,6 +64,7 @@ static skg_status make_detector(const skg_recipe *recipe, const skg_plan_options
     SKG_TRY(skg_layers_create(machine->context, options->blur, options->depth_blur, layers));
     if (recipe->options.dqe && recipe->options.noise)
         SKG_TRY(skg_layers_add_noise(machine->context, options->blur, recipe->options.dqe, pixel_mm, layers));
+    if (options->counter) SKG_TRY(make_pulses(recipe, machine));
     SKG_TRY(skg_decide_detection(recipe, &detection, factors, &wanted));
     return wanted ? skg_detector_create(machine->context, &detection, factors, &machine->detector) : SKG_OK;
 }

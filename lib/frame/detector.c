@@ -29,6 +29,7 @@ static skg_status find_flat_field(skg_job *job, const skg_frame_work *work) {
                                       .attenuator = machine->attenuator,
                                       .attenuation = &machine->images,
                                       .layers = &machine->layers,
+                                      .pulses = machine->pulses,
                                       .negative = machine->negative.memory,
                                       .exposure = skg_frame_exposure(recipe, work->view)};
     return skg_flat_field_find(&machine->flat_field, &flat, work->view, work->place.output_double,
@@ -36,6 +37,7 @@ static skg_status find_flat_field(skg_job *job, const skg_frame_work *work) {
 }
 
 int32_t skg_frame_layers(const skg_job *job, const skg_frame_work *work) {
+    if (job->machine->pulses) return SKG_PULSES_LAYERS;
     const int32_t count = job->machine->layers.count, least = job->recipe->model.layers;
     return skg_frame_is_expected(job->recipe, work) && least < count ? least : count;
 }
@@ -59,8 +61,12 @@ skg_status skg_frame_detect(skg_job *job, const skg_frame_work *work, const skg_
     const int64_t columns = recipe->view.columns, rows = recipe->view.rows;
     skg_stage_log *log = &job->staging.log;
     double factor = 1;
-    SKG_TRY(skg_layers_blur(&machine->layers, skg_frame_layers(job, work), layers, &work->place, columns,
-                            rows, recipe->model.channels, log));
+    if (machine->pulses)
+        SKG_TRY(skg_pulses_run(machine->pulses, recipe->options.noise && !skg_frame_is_expected(recipe, work),
+                               layers, &work->place, columns, rows, log));
+    else
+        SKG_TRY(skg_layers_blur(&machine->layers, skg_frame_layers(job, work), layers, &work->place, columns,
+                                rows, recipe->model.channels, log));
     if (!machine->detector || recipe->linear) return SKG_OK;
     SKG_TRY(find_factor(job, work, &factor));
     return skg_detector_run(machine->detector, &work->noise, work->shows == SKG_OUTPUT_MEAN, factor,
@@ -74,8 +80,11 @@ skg_status skg_frame_detect_variance(skg_job *job, const skg_frame_work *work, c
     const int64_t columns = recipe->view.columns, rows = recipe->view.rows;
     skg_stage_log *log = &job->staging.log;
     double factor = 1;
-    SKG_TRY(skg_layers_blur_variance(&machine->layers, skg_frame_layers(job, work), machine->images.apart,
-                                     layers, &work->place, columns, rows, recipe->model.channels, log));
+    if (machine->pulses)
+        SKG_TRY(skg_pulses_run_variance(machine->pulses, layers, &work->place, columns, rows, log));
+    else
+        SKG_TRY(skg_layers_blur_variance(&machine->layers, skg_frame_layers(job, work), machine->images.apart,
+                                         layers, &work->place, columns, rows, recipe->model.channels, log));
     if (!machine->detector) return SKG_OK;
     SKG_TRY(find_factor(job, work, &factor));
     return skg_detector_run_variance(machine->detector, &work->noise, factor,

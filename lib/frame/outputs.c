@@ -1,6 +1,7 @@
 /* The outputs of a submission: checked, placed, read back. */
 #include "frame/work.h"
 
+#include "beam/counter.h"
 #include "frame/given.h"
 #include "spectral/model.h"
 
@@ -62,6 +63,13 @@ static skg_status check_scatter(const char *call, const skg_recipe *recipe, cons
 
 /* Images without noise are made with weights of energies that say nothing of the number of photons. */
 static skg_status check_variance(const char *call, const skg_recipe *recipe) {
+    const skg_counter *counter = recipe->options.counter;
+    if (recipe->options.noise && counter && counter->counting.pile_up)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s: the variance is not computed behind the dead time of a detector that counts; draw "
+            "frames of other seeds, or leave the pile-up out (PileUp)",
+            call);
     if (skg_quantity_has_noise(&recipe->options)) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT,
                     "%s: the variance of the noise is asked for, but the plan has none; set "

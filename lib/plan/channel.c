@@ -1,4 +1,5 @@
 /* The names, units and flat fields of an image's channels. */
+#include "beam/counter.h"
 #include "geometry/optics.h"
 #include "plan/inputs.h"
 
@@ -9,12 +10,24 @@ static const char *const quantity_names[] = {"energy", "fluence", "photons", "tr
 static const char *const quantity_units[] = {"keV per pixel", "keV/mm2", "photons per pixel", "I/I0",
                                              "-ln(I/I0)"};
 
+static void name_window(const skg_counting *counting, const char *quantity, int32_t c,
+                        skg_channel_name *name) {
+    const double from = counting->threshold_kev[c];
+    if (c + 1 < counting->count)
+        snprintf(name->text, sizeof name->text, "%s counted from %g to %g keV", quantity, from,
+                 counting->threshold_kev[c + 1]);
+    else
+        snprintf(name->text, sizeof name->text, "%s counted above %g keV", quantity, from);
+}
+
 skg_status skg_channel_names_create(const skg_plan_options *options, int32_t channels,
                                     skg_channel_name **names) {
     SKG_TRY(skg_alloc(channels, sizeof **names, "channels", names));
     for (int32_t c = 0; c < channels; c++) {
         skg_channel_name *name = &(*names)[c];
-        if (options->bands == 0)
+        if (options->counter)
+            name_window(&options->counter->counting, quantity_names[options->quantity], c, name);
+        else if (options->bands == 0)
             snprintf(name->text, sizeof name->text, "%s", quantity_names[options->quantity]);
         else
             snprintf(name->text, sizeof name->text, "%s from %g to %g keV", quantity_names[options->quantity],
@@ -40,6 +53,16 @@ const char *skg_channel_unit(int32_t quantity) {
     return quantity_units[quantity];
 }
 
+/* The share of the pulses of the flat field that count. */
+static double left_of(const skg_plan_options *options, const skg_model *model, double exposure) {
+    const skg_counting *c = options->counter ? &options->counter->counting : NULL;
+    double pulses = 0, counted = 0;
+    if (!c || !c->pile_up) return 1;
+    for (int32_t k = 0; k < model->channels; k++) pulses += exposure * model->flat_field[k];
+    pulses *= c->dead_time_ns * 1e-9 / c->exposure_s;
+    return pulses > 0 && skg_pile_up_get(c->pile_up, pulses, &counted, NULL) == SKG_OK ? counted / pulses : 1;
+}
+
 double skg_channel_flat_field(const skg_plan_options *options, const skg_model *model, const skg_view *view,
                               double exposure, int64_t channel) {
     skg_camera camera;
@@ -52,6 +75,6 @@ double skg_channel_flat_field(const skg_plan_options *options, const skg_model *
         if (skg_camera_make(view, NULL, 0, 0, &camera) != SKG_OK) return 0;
         return exposure * model->flat_field[channel] / skg_camera_pixel_area(&camera);
     default:
-        return exposure * model->flat_field[channel];
+        return exposure * model->flat_field[channel] * left_of(options, model, exposure);
     }
 }

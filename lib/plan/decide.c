@@ -1,4 +1,5 @@
 /* What follows from a recipe: how intensities become what is shown, and which views it is for. */
+#include "beam/counter.h"
 #include "geometry/optics.h"
 #include "plan/decisions.h"
 #include "spectral/model.h"
@@ -44,7 +45,7 @@ void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape) {
                                .falloff = options->falloff && !is_ratio,
                                .collimated = skg_collimation_limits(options->collimation),
                                .noise = options->noise,
-                               .apart = options->noise && options->dqe,
+                               .apart = options->noise && (options->dqe || options->counter),
                                .energies = options->quantity == SKG_QUANTITY_ENERGY};
 }
 
@@ -57,7 +58,8 @@ skg_status skg_decide_detection(const skg_recipe *recipe, skg_detection *detecti
         .electronic = options->electronic_kev,
         .step = options->quantum_step_kev,
         .channels = model->channels,
-        .over_flat_field = ratio && (options->world || options->falloff || model->shades.count > 0)};
+        .over_flat_field = ratio && (options->world || options->falloff || model->shades.count > 0 ||
+                                     (options->counter && options->counter->counting.pile_up))};
     *wanted = skg_quantity_is_absolute(options) &&
               (ratio || areas || detection->electronic > 0 || detection->step > 0);
     for (int32_t c = 0; *wanted && c < model->channels; c++) {

@@ -52,6 +52,12 @@ static double cost_noise(const skg_effect_facts *f) {
 
 static skg_status check_kev(const skg_plan_options *options, const char *what, double kev) {
     if (!(kev >= 0 && isfinite(kev))) return skg_fail(SKG_ERR_ARGUMENT, "%s is %g keV; 0 or more", what, kev);
+    if (kev > 0 && options->counter)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s of %g keV is that of a detector of energy; of one that counts (Counting), give the "
+            "noise of its pulses (ElectronicNoise)",
+            what, kev);
     if (kev > 0 && skg_quantity_counts(options))
         return skg_fail(
             SKG_ERR_ARGUMENT,

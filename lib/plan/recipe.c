@@ -43,6 +43,7 @@ static void release_own(skg_recipe *recipe) {
     skg_free(&recipe->leaky);
     skg_copies_release(&recipe->copies);
     skg_response_release(&recipe->options.response);
+    skg_counter_release(&recipe->options.counter);
     skg_material_release(&recipe->options.world);
     skg_spectrum_release(&recipe->spectrum);
     skg_scene_release(&recipe->scene);

@@ -38,6 +38,7 @@ static skg_status copy_options(skg_recipe *recipe, const skg_plan_options *given
     options->spot = NULL;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
+    if (options->counter) skg_counter_retain(options->counter);
     SKG_TRY(skg_effects_copy(recipe));
     if (options->blur) options->blur = &there_is_one;
     return copy_views(recipe);
@@ -164,6 +165,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     const int parallel = recipe->view.projection != SKG_PROJECTION_POINT;
     SKG_TRY(skg_plan_options_check(options, device));
     SKG_TRY(skg_effects_check(options));
+    SKG_TRY(skg_counting_check(recipe));
     if (options->falloff == SKG_FALLOFF_AUTO) recipe->options.falloff = recipe->exposure > 0;
     recipe->volume_count = skg_scene_volumes(recipe->scene);
     SKG_TRY(skg_plan_meshes_create(recipe->scene, &recipe->meshes));

@@ -95,7 +95,8 @@ typedef struct {
     X(energies) X(source) X(supersampling) X(world) X(response) X(falloff) X(compression) \
     X(nesting) X(leaky) X(repair) X(source_plane) X(overlaps) \
     X(noise) X(blur) X(electronic) X(quantisation) X(priority) X(volumes) \
-    X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(grid) X(oblique) X(escape) X(deposition) X(depths) X(dqe)
+    X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(grid) X(oblique) X(escape) X(deposition) X(depths) X(dqe) \
+    X(counting) X(cloud) X(pixel_lines) X(anti_coincidence) X(pile_up)
 /* clang-format on */
 
 #define SKG_EFFECT_DECLARE(row) extern const skg_effect_row skg_effect_##row;
@@ -108,6 +109,9 @@ enum { SKG_EFFECTS = SKG_EFFECT_ROWS(SKG_EFFECT_ONE) };
 
 /* Fails if the scatter that the options ask for cannot be computed of the scene. */
 skg_status skg_scatter_check(const skg_recipe *recipe);
+
+/* Fails if the pixels of the view are not those of the detector that counts. */
+skg_status skg_counting_check(const skg_recipe *recipe);
 
 /* Fails if volumes of cells stand beside what is not computed with them. */
 skg_status skg_volumes_check(const skg_recipe *recipe);

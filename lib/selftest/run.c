@@ -13,6 +13,8 @@ static skg_status run(skg_context *context, skg_self_test number, skg_verdict *v
         return skg_self_test_gradient(context, verdict);
     case SKG_SELF_TEST_DENSITIES:
         return skg_self_test_densities(context, verdict);
+    case SKG_SELF_TEST_PULSES:
+        return skg_self_test_pulses(context, verdict);
     default:
         return skg_self_test_image(context, number, verdict);
     }

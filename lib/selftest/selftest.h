@@ -169,4 +169,7 @@ skg_status skg_self_test_gradient(skg_context *context, skg_verdict *verdict);
  * (gradient.c). */
 skg_status skg_self_test_densities(skg_context *context, skg_verdict *verdict);
 
+/* Compares images of counts, and variances, of a detector that counts with the formulas (pulses.c). */
+skg_status skg_self_test_pulses(skg_context *context, skg_verdict *verdict);
+
 #endif

@@ -1,6 +1,7 @@
 /* Makes the model of a plan: planes, nodes, weights. */
 #include "spectral/model.h"
 
+#include "beam/counter.h"
 #include "beam/spectrum.h"
 #include "material/material.h"
 #include "spectral/compression.h"
@@ -227,11 +228,56 @@ static int shows_ratio(const making *m) {
     return skg_quantity_is_ratio(m->options) && !skg_quantity_is_absolute(m->options);
 }
 
+/* Sets the weights of a node: of photons that count in each window. Each adds 1, so that the variance is the mean. */
+static void weigh_counts(const making *m, const skg_counter_row *row, int32_t n, skg_model *model) {
+    for (int32_t c = 0; c < model->channels; c++) {
+        const double counts = m->spectrum->photons[m->bins[n]] * row->counts[c];
+        model->weights[n * model->channels + c] = counts;
+        if (m->options->noise) model->variances[n * model->channels + c] = counts;
+        model->flat_field[c] += counts;
+    }
+}
+
+static skg_status weigh_all_counts(const making *m, skg_model *model) {
+    const skg_counter_row **rows = NULL;
+    SKG_TRY(skg_alloc(model->nodes, sizeof *rows, "nodes", &rows));
+    const skg_status status = skg_counter_rows_get(m->options->counter, model->nodes, model->node_kev, rows);
+    for (int32_t n = 0; status == SKG_OK && n < model->nodes; n++) weigh_counts(m, rows[n], n, model);
+    skg_free(&rows);
+    return status;
+}
+
+/* Sets the weights of a node: what each band records of the photons in each depth. */
+static skg_status weigh_node(const making *m, int32_t n, skg_model *model) {
+    const int noise = m->options->noise;
+    const int32_t channels = model->channels;
+    const int64_t bin = m->bins[n];
+    const double energy = m->spectrum->energy_kev[bin];
+    double worth = 0, variance = 0, shares[SKG_DEPTHS_MAX];
+    SKG_TRY(skg_signal_get(m->options, energy, &worth));
+    SKG_TRY(share_out(m, energy, model->layers, shares));
+    if (noise) SKG_TRY(skg_signal_variance_get(m->options, energy, worth, &variance));
+    for (int32_t c = 0; c < channels; c++)
+        for (int32_t l = 0; in_band(m, c, energy) && l < model->layers; l++) {
+            const int32_t at = n * skg_model_sums(model) + l * channels + c;
+            const double photons = m->spectrum->photons[bin] * shares[l];
+            model->weights[at] = photons * worth;
+            model->flat_field[c] += photons * worth;
+            if (noise) model->variances[at] = photons * variance;
+        }
+    return SKG_OK;
+}
+
+static int32_t channels_of(const skg_plan_options *options) {
+    if (options->counter) return (int32_t)options->counter->counting.count;
+    return options->bands > 0 ? (int32_t)options->bands : 1;
+}
+
 static skg_status weigh(const making *m, skg_model *model) {
     const int noise = m->options->noise;
     const int is_ratio = shows_ratio(m);
     SKG_TRY(check_bands(m));
-    model->channels = m->options->bands > 0 ? (int32_t)m->options->bands : 1;
+    model->channels = channels_of(m->options);
     model->layers = m->options->depth_blur ? (int32_t)m->options->depth_blur->count : 1;
     const int32_t channels = model->channels, sums = skg_model_sums(model);
     SKG_TRY(skg_alloc((int64_t)model->nodes * sums, sizeof *model->weights, "nodes", &model->weights));
@@ -239,22 +285,8 @@ static skg_status weigh(const making *m, skg_model *model) {
     if (noise)
         SKG_TRY(
             skg_alloc((int64_t)model->nodes * sums, sizeof *model->variances, "nodes", &model->variances));
-    for (int32_t n = 0; n < model->nodes; n++) {
-        const int64_t bin = m->bins[n];
-        const double energy = m->spectrum->energy_kev[bin];
-        double worth = 0, variance = 0, shares[SKG_DEPTHS_MAX];
-        SKG_TRY(skg_signal_get(m->options, energy, &worth));
-        SKG_TRY(share_out(m, energy, model->layers, shares));
-        if (noise) SKG_TRY(skg_signal_variance_get(m->options, energy, worth, &variance));
-        for (int32_t c = 0; c < channels; c++)
-            for (int32_t l = 0; in_band(m, c, energy) && l < model->layers; l++) {
-                const int32_t at = n * sums + l * channels + c;
-                const double photons = m->spectrum->photons[bin] * shares[l];
-                model->weights[at] = photons * worth;
-                model->flat_field[c] += photons * worth;
-                if (noise) model->variances[at] = photons * variance;
-            }
-    }
+    if (m->options->counter) return weigh_all_counts(m, model);
+    for (int32_t n = 0; n < model->nodes; n++) SKG_TRY(weigh_node(m, n, model));
     SKG_TRY(scale_noise(m, model));
     for (int32_t c = 0; c < channels && is_ratio; c++) {
         if (!(model->flat_field[c] > 0))

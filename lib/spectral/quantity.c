@@ -10,6 +10,7 @@ int skg_quantity_has_noise(const skg_plan_options *options) {
 int skg_quantity_is_absolute(const skg_plan_options *options) {
     const int is_blurred = options->blur || options->depth_blur;
     const int is_uneven = options->heel || options->bowtie || options->grid || options->oblique;
+    if (options->counter) return 1; /* neighbours share counts, and dead time is of their number */
     return skg_quantity_has_noise(options) || (skg_quantity_is_ratio(options) && is_blurred && is_uneven);
 }
 
@@ -18,7 +19,7 @@ int skg_quantity_is_ratio(const skg_plan_options *options) {
 }
 
 int skg_quantity_counts(const skg_plan_options *options) {
-    if (options->quantity == SKG_QUANTITY_PHOTONS) return 1;
+    if (options->quantity == SKG_QUANTITY_PHOTONS || options->counter) return 1;
     return skg_quantity_is_ratio(options) && options->bands > 0 &&
            options->band_weight == SKG_BAND_WEIGHT_PHOTONS;
 }

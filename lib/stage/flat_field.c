@@ -8,8 +8,9 @@ static skg_status enqueue(const skg_flat_field_work *work, const skg_view *view,
     const skg_attenuation *attenuation = work->attenuation;
     const int64_t channels = attenuation->channels / attenuation->layers;
     /* There is no layer of noise. */
-    const int32_t used =
-        work->layers->count < attenuation->layers ? work->layers->count : attenuation->layers;
+    const int32_t used = work->pulses                                ? SKG_PULSES_LAYERS
+                         : work->layers->count < attenuation->layers ? work->layers->count
+                                                                     : attenuation->layers;
     const int64_t passes = work->samples ? skg_samples_passes(work->samples) : 1;
     const int64_t rays = work->samples ? skg_samples_count(work->samples) : 1;
     skg_image_place place;
@@ -26,6 +27,8 @@ static skg_status enqueue(const skg_flat_field_work *work, const skg_view *view,
                                          work->exposure / (double)rays, work->negative, &place,
                                          &staging->log));
     }
+    if (work->pulses)
+        return skg_pulses_run(work->pulses, 0, &place, image, view->columns, view->rows, &staging->log);
     return skg_layers_blur(work->layers, used, &place, image, view->columns, view->rows, channels,
                            &staging->log);
 }

@@ -9,6 +9,7 @@ void skg_machine_release(skg_machine *machine) {
     skg_attenuation_release(&machine->lengths);
     skg_attenuator_release(&machine->attenuator);
     skg_layers_release(&machine->layers);
+    skg_pulses_release(&machine->pulses);
     skg_detector_release(&machine->detector);
     skg_buffer_release(&machine->flat_field.image);
     skg_mix_lists_release(&machine->mix_lists);
@@ -30,6 +31,7 @@ int64_t skg_machine_bytes(const skg_machine *machine) {
                     skg_attenuation_bytes(&machine->lengths) + skg_raster_cache_bytes(&machine->rasters) +
                     skg_layers_bytes(&machine->layers) + skg_volumes_bytes(&machine->volumes);
     if (machine->attached.memory) bytes += machine->attached.bytes(machine->attached.memory);
+    if (machine->pulses) bytes += skg_pulses_bytes(machine->pulses);
     if (machine->detector) bytes += skg_detector_bytes(machine->detector);
     return bytes;
 }

@@ -27,6 +27,7 @@ typedef struct {
     skg_attenuation lengths; /* one plane to path lengths: the plane itself */
     skg_attenuator *attenuator;
     skg_layers layers;      /* and their blurs */
+    skg_pulses *pulses;     /* in their place; NULL: the detector does not count */
     skg_detector *detector; /* NULL: what is attenuated and blurred is shown */
     skg_flat_field flat_field;
     skg_mix_lists mix_lists;

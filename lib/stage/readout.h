@@ -2,6 +2,7 @@
 #ifndef SKG_READOUT_H
 #define SKG_READOUT_H
 
+#include "beam/counter_kernels.h"
 #include "geometry/optics.h"
 #include "stage/attenuate.h"
 
@@ -80,6 +81,30 @@ skg_status skg_layers_blur_variance(skg_layers *layers, int32_t used, int32_t ap
 
 /* Bytes on the device. */
 int64_t skg_layers_bytes(const skg_layers *layers);
+
+/* --- Stage `pulses`: what a detector that counts makes of independent counts, in place of a blur. */
+
+typedef struct skg_pulses skg_pulses;
+
+/* Layers of its images (skg_layers_place): means and deviations. */
+enum { SKG_PULSES_LAYERS = 2 };
+
+/* kernels: copied. pile_up: enum skg_pile_up; dead: the share of the exposure that a dead time is */
+skg_status skg_pulses_create(skg_context *context, const skg_counter_kernels *kernels, int32_t pile_up,
+                             double dead, skg_pulses **pulses);
+void skg_pulses_release(skg_pulses **pulses);
+
+/* Enqueues the stage: from images of means, with deviations behind them if noise is 1, to images of counts. They may not overlap. */
+skg_status skg_pulses_run(skg_pulses *pulses, int32_t noise, const skg_image_place *from,
+                          const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log);
+
+/* Likewise for variances of independent counts, without dead time. */
+skg_status skg_pulses_run_variance(skg_pulses *pulses, const skg_image_place *from,
+                                   const skg_image_place *image, int64_t columns, int64_t rows,
+                                   skg_stage_log *log);
+
+/* Bytes on the device. */
+int64_t skg_pulses_bytes(const skg_pulses *pulses);
 
 /* --- Stage `scattered`: adds scattered photons to an image, with their noise. */
 
@@ -161,6 +186,7 @@ typedef struct {
     skg_attenuator *attenuator;
     const skg_attenuation *attenuation;
     skg_layers *layers; /* and their blurs */
+    skg_pulses *pulses; /* in their place; NULL: the detector does not count */
     cl_mem negative;    /* counters, which it leaves as they are */
     double exposure;    /* what intensities are multiplied by for the view */
 } skg_flat_field_work;

@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from .beam import Beam, Response
+from .counter import Counter
 from .material import Material
 from .mesh import Mesh
 
@@ -80,6 +81,10 @@ def _add(made: Any, value: Any, kev: Any) -> None:
         made.update(value.energies.tobytes() + value.photons.tobytes() + b"absolute" * value.absolute)
     elif isinstance(value, Response):
         made.update(np.array([value.at(float(e)) for e in kev]).tobytes())
+    elif isinstance(value, Counter):
+        for e in kev:
+            made.update(value.counts(float(e)).tobytes())
+            made.update(b"".join(value.spread(float(e), w).tobytes() for w in range(len(value))))
     elif isinstance(value, np.ndarray):
         made.update(f"{value.shape} {value.dtype} ".encode() + value.tobytes())
     else:

@@ -61,6 +61,16 @@ def batch_of(state: State, poses: Mapping[str, Any] | None, views: Sequence[View
     return Batch(count, 0, parts, together, seen)
 
 
+def channels_of(state: State, options: Mapping[str, Any]) -> int | None:
+    """The channels of images: bands, or windows of a detector that counts. None: images have no axis of channels."""
+    bands, counter = options.get("bands"), options.get("counter")
+    if bands is not None:
+        return len(bands) - 1
+    with state.calls():
+        handle = counter._handle if counter is not None else state.plans.options(state.options_setup, {}, []).counter
+        return None if handle == ffi.NULL else integer("skg_counter_thresholds_get", handle)
+
+
 def render(state: State, batch: Batch, out: Any, progress: Progress, one: bool, unit: str | None,
            **options: Any) -> NDArray[Any]:
     """Images. one: of a single frame, without the axis of frames."""
@@ -71,8 +81,9 @@ def render(state: State, batch: Batch, out: Any, progress: Progress, one: bool, 
     def submit(plan: Any) -> Any:
         return lambda count, frames, output, job: lib.skg_plan_submit(plan, count, frames, output, job)
 
+    banded = channels_of(state, options) is not None
     with state.calls():
-        image = compute(state, submit, batch, out, progress, one, options.get("bands") is not None, options)
+        image = compute(state, submit, batch, out, progress, one, banded, options)
     if unit is not None and unit != "keV":
         image /= image.dtype.type(_KEV[unit])
     return image
@@ -109,10 +120,10 @@ def lengths(state: State, labels: Sequence[str], kind: str, poses: Mapping[str, 
 
 def expected(state: State, batch: Batch, one: bool, progress: Progress, options: dict[str, Any]) -> dict[str, NDArray[Any]]:
     """The mean of images and the variance of their noise."""
-    bands, kinds = options.get("bands"), ("mean", "variance")
+    found, kinds = channels_of(state, options), ("mean", "variance")
     with state.calls():
         view = batch.views[0] if batch.views else state.require_view()
-    channels = () if bands is None else (len(bands) - 1,)
+    channels = () if found is None else (found,)
     dtype = np.float64 if options.get("precision") == "double" else np.float32
     targets = [np.empty((*(() if one else (batch.count,)), *channels, *view.shape), dtype) for _ in kinds]
 

@@ -20,6 +20,7 @@ from . import _arrays
 from ._device import Device, RangeWarning, warn
 from ._digest import digest
 from ._frames import Stale
+from ._images import channels_of
 from ._interface import ENUMS, RANGE, STALE, ArgumentError, SceneError
 from ._library import call, check, encode, ffi, filled, integer, lib, make, owned, release, struct, text
 from ._progress import Meter, Progress
@@ -105,7 +106,7 @@ class _ToArray(_Job):
     def __init__(self, state: State, scan: Scan, wanted: Wanted, out: Any, anew: bool) -> None:
         super().__init__(state, scan, wanted, 0, anew)
         count = len(scan) if wanted.only is None else int(self.run.only_count)
-        banded = wanted.options.get("bands") is not None
+        banded = channels_of(state, wanted.options) is not None
         shape = (count, *((self.channels,) if banded else ()), *self.view.shape)
         self.target = np.empty(shape, self.dtype) if out is None else _arrays.output(out, shape)
         self.run.type = ENUMS["type"][self.target.dtype.name]
@@ -276,8 +277,8 @@ def write(state: State, scan: Scan, wanted: Wanted, path: str | os.PathLike[str]
     """Projections to a file, which is continued if it has some of this scan already."""
     name = encode(path, "out")
     call("skg_scan_file_path_check", name)
-    if wanted.options.get("bands") is not None:
-        raise ArgumentError("bands: a file of projections has one channel; compute an array, or band by band")
+    if wanted.options.get("bands") is not None or (channels_of(state, wanted.options) or 1) > 1:
+        raise ArgumentError("a file of projections has one channel; compute an array, or bands and thresholds one by one")
     for again in (False, True):
         job = _ToFile(state, scan, wanted, name, fields, overwrite, again)
         work = _Work(job, _restorer(state, wanted))

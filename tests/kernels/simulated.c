@@ -38,7 +38,7 @@ typedef struct {
     int32_t placed;   /* the positions of the ball are taken from device memory */
     int32_t variance; /* of the noise, instead of the image */
     int32_t volume;   /* cells instead of the box, which the octahedron displaces */
-    int32_t reserved;
+    int32_t counting; /* the detector counts, with this pile-up beyond 1 */
 } group;
 
 enum { BLUR_LINES = 1, BLUR_POINT = 2 };
@@ -102,6 +102,14 @@ static const group groups[] = {
      .blur = BLUR_LINES,
      .scatter = 32,
      .variance = 1},
+    {.name = "counting", .counting = 1 + SKG_PILE_UP_PARALYSABLE, .noise = 1, .colours = 1},
+    {.name = "double_counting",
+     .precision = SKG_PRECISION_DOUBLE,
+     .quantity = SKG_QUANTITY_ATTENUATION,
+     .counting = 1 + SKG_PILE_UP_NONPARALYSABLE,
+     .noise = 1,
+     .colours = 1},
+    {.name = "counting_variance", .counting = 1, .noise = 1, .variance = 1},
     {.name = "show", .picture = 1},
     {.name = "place", .placed = 1},
     {.name = "double_place", .precision = SKG_PRECISION_DOUBLE, .placed = 1}};
@@ -207,6 +215,22 @@ static void add_shades(shades *s, skg_plan_options *options) {
     options->collimation = &s->jaws;
 }
 
+static void add_counter(const group *g, const skg_view *view, skg_plan_options *options) {
+    static const double thresholds[2] = {20, 50};
+    skg_counting counting;
+    skg_counting_init(&counting);
+    counting.thickness_mm = 1, counting.cloud_mm = 0.1, counting.count = 2;
+    counting.threshold_kev = thresholds;
+    counting.pixel_mm[0] = view->column_step[0];
+    counting.pixel_mm[1] = view->row_step[1];
+    counting.pile_up = g->counting - 1;
+    if (counting.pile_up) counting.dead_time_ns = 100, counting.exposure_s = 1e-4;
+    TRY(skg_material_create_named("CdTe", &counting.material));
+    TRY(skg_counter_create(&counting, &options->counter));
+    skg_material_release(&counting.material);
+    if (g->quantity == SKG_QUANTITY_ENERGY) options->quantity = SKG_QUANTITY_PHOTONS;
+}
+
 static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_view *view, const group *g) {
     static const double energies[3] = {40, 60, 90}, photons[3] = {50, 80, 30}, edges[3] = {10, 55, 100};
     static const double line[3] = {0.2, 1, 0.3}, point[9] = {0, 1, 0, 1, 4, 2, 0, 1, 0};
@@ -238,6 +262,7 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     if (g->strategy == SKG_STRATEGY_COPIES) spot.samples = g->spot * context->device->info.compute_units;
     if (g->spot) options.spot = &spot;
     if (g->shades) add_shades(&more, &options);
+    if (g->counting) add_counter(g, view, &options);
     skg_scatter_init(&scatter);
     scatter.histories = g->scatter;
     if (g->scatter) options.scatter = &scatter;
@@ -247,6 +272,7 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     skg_material_release(&options.world);
     skg_material_release(&more.bowtie.material);
     skg_response_release(&options.response);
+    skg_counter_release(&options.counter);
     return plan;
 }
 

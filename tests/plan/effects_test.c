@@ -75,12 +75,13 @@ START_TEST(half_names_every_row_that_refuses_it) {
     static const skg_grid grid;
     static const skg_scatter scatter;
     static skg_material *const world = (skg_material *)1; /* is not looked at */
+    static skg_counter *const counter = (skg_counter *)1; /* nor is this */
     skg_recipe recipe = {.leaky_count = 0};
     char names[512];
     skg_plan_options *options = &recipe.options;
     ck_assert_int_eq(skg_effects_refuse_half(&recipe, sizeof names, names), 0);
     recipe.is_blurred = recipe.priority_possible = 1, recipe.leaky_count = recipe.volume_count = 1;
-    options->world = world;
+    options->world = world, options->counter = counter;
     options->heel = &heel, options->bowtie = &bowtie, options->grid = &grid, options->scatter = &scatter;
     options->noise = options->oblique = 1;
     options->electronic_kev = options->quantum_step_kev = 1;

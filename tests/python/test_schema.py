@@ -31,6 +31,7 @@ BASES = [
     scene(Source=dict(SOURCE, Beam=TUBE, Heel={"Direction": [1, 0, 0]}, Bowtie={"Material": "Al", "Profile": [[-20, 9], [0, 1], [20, 9]]})),
     scene(Detector=dict(DETECTOR, Grid={"Ratio": 8, "LinesPerCm": 40, "StripThickness": [0.05, "mm"]},
                         Scintillator={"Material": "CsI", "Thickness": 600, "Unit": "um", "Depths": [{"To": 1, "LSF": [0.1, 0.8, 0.1]}]})),
+    scene(Detector=dict(DETECTOR, Counting={"Material": "CdTe", "Thickness": [1, "mm"], "Thresholds": [20, 50]})),
     scene(Detector=dict(DETECTOR, EnergyResponse={"PulseHeights": {"Heights": [10, 40], "Rows": [[40, 0.2, 0.5], [80, 0, 1]]}})),
     scene(Detector=dict(DETECTOR, GreyValues={"Full": 50000, "BadPixels": {"Path": "bad.raw", "Format": "uint8"}})),
     scene(Samples=[{"Label": "steps", "StepWedge": {"NumberOfSteps": 5, "TotalLength": 50, "Width": 20, "FirstStepHeight": 5,

@@ -222,6 +222,7 @@ static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) 
     const char *outline = cli_value(arguments, &cli_flag_breathe_outline);
     double period = 0;
     int exit_status = cli_open_session(arguments, 0, &f->session);
+    if (exit_status == CLI_DONE) exit_status = cli_refuse_counting(&f->session, "breathe");
     if (exit_status != CLI_DONE) return exit_status;
     f->session.options.quantity = SKG_QUANTITY_ATTENUATION;
     skg_status status = skg_motion_create(f->session.context, f->session.setup, &f->motion);

@@ -64,6 +64,7 @@ static int look_at_breath(cost_study *study) {
 
 int cost_open(cost_study *study) {
     int exit_status = cli_open_session(study->arguments, 0, &study->session);
+    if (exit_status == CLI_DONE) exit_status = cli_refuse_counting(&study->session, "cost");
     cost_choose_clock(study);
     study->own_scatter = study->session.options.scatter;
     study->session.options.scatter = NULL; /* its noise would hide the errors of the primary */

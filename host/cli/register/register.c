@@ -83,6 +83,7 @@ int cli_register(const cli_arguments *arguments) {
     int exit_status = check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = register_read_options(&work);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &work.session);
+    if (exit_status == CLI_DONE) exit_status = cli_refuse_counting(&work.session, "register");
     if (exit_status == CLI_DONE) exit_status = register_read_images(&work);
     if (exit_status == CLI_DONE) exit_status = register_run(&work);
     if (exit_status == CLI_DONE) exit_status = write_outputs(&work);

@@ -88,7 +88,14 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     skg_scan_file_options_init(&options);
     skg_channel_init(&channel);
     skg_plan_report_init(&report);
-    skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
+    int64_t channels = 0;
+    skg_status status = skg_plan_channel_count(a->plan, &channels);
+    if (status == SKG_OK && channels > 1)
+        return cli_error(CLI_USAGE,
+                         "a file of projections has one channel, and these have %" PRId64
+                         "; give Counting one threshold for each scan",
+                         channels);
+    if (status == SKG_OK) status = skg_plan_channel_get(a->plan, 0, &channel);
     if (status == SKG_OK) status = skg_plan_report_get(a->plan, &report);
     options.type = grey_type(a);
     options.scan = a->record.known ? a->record.known : a->scan;
@@ -154,12 +161,12 @@ static int check_chosen(const cli_acquisition *a) {
 
 /* Scene, scan, motion and plan: of every rank its own. */
 static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
-    int32_t quantity = SKG_QUANTITY_ENERGY;
+    int32_t quantity = -1;
     int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &a->session);
     if (exit_status != CLI_DONE) return exit_status;
     if (a->ranks.rank == 0) cli_note_no_noise(&a->session);
-    a->session.options.quantity = quantity;
+    if (quantity >= 0) a->session.options.quantity = quantity;
     if (a->session.options.scatter)
         a->options.batch = 1; /* each waits: so progress moves, and Ctrl-C is heard */
     a->options.type =

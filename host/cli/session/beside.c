@@ -24,7 +24,8 @@ void cli_beside_read(const cli_arguments *arguments, cli_beside *beside) {
 }
 
 int cli_beside_allocate(const cli_session *session, int32_t type, cli_beside *beside) {
-    const int64_t channels = session->options.bands > 0 ? session->options.bands : 1;
+    int64_t channels = session->options.bands > 0 ? session->options.bands : 1;
+    if (session->options.counter) skg_counter_thresholds_get(session->options.counter, &channels);
     const size_t pixels = (size_t)(session->view.columns * session->view.rows * channels);
     for (int i = 0; i < CLI_BESIDE_COUNT; i++) {
         if (!beside->paths[i]) continue;

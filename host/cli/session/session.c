@@ -58,6 +58,13 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, int
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
+int cli_refuse_counting(const cli_session *session, const char *what) {
+    if (!session->options.counter) return CLI_DONE;
+    return cli_error(CLI_USAGE,
+                     "%s: %s is for detectors that integrate energy; leave Counting out of the Detector",
+                     session->path ? session->path : "scene", what);
+}
+
 /* What was loaded, for --verbose. */
 static void tell_scene(const cli_session *session) {
     int64_t parts = 0, bins = 0;

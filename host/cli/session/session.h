@@ -22,6 +22,9 @@ typedef struct {
  * applied. lengths_only: 1 if a scene without beam or materials will do. The caller closes the session, also after a failure.
  * Returns an exit status and prints the error. */
 int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_session *session);
+
+/* Fails if the scene's detector counts photons, which gives images of several windows. what: "breathe", a verb that shows one image */
+int cli_refuse_counting(const cli_session *session, const char *what);
 void cli_close_session(cli_session *session);
 
 /* Says that photons are counted absolutely and nevertheless have no noise: of verbs whose pixels are the result, so that it stands

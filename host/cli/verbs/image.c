@@ -40,7 +40,7 @@ int cli_image(const cli_arguments *arguments) {
                                .frame_user = &beside,
                                .scattering = &scattering,
                                .beside = &beside};
-    int32_t quantity = SKG_QUANTITY_ENERGY, display = SKG_DISPLAY_RADIOGRAPH, weight = -1;
+    int32_t quantity = -1, display = SKG_DISPLAY_RADIOGRAPH, weight = -1;
     double edges[SKG_CHANNELS_MAX + 1];
     int64_t bands = 0;
     int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
@@ -57,12 +57,12 @@ int cli_image(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = cli_choose_parts(arguments, &rendering.session);
     if (exit_status == CLI_DONE) {
         cli_scattering_ask(&scattering, &rendering.session);
-        rendering.session.options.quantity = quantity;
+        if (quantity >= 0) rendering.session.options.quantity = quantity;
         rendering.session.options.bands = bands;
         rendering.session.options.band_kev = edges;
         if (weight >= 0) rendering.session.options.band_weight = weight;
         skg_picture_init(&rendering.picture);
-        rendering.picture.quantity = quantity;
+        rendering.picture.quantity = rendering.session.options.quantity;
         rendering.picture.display = display;
         exit_status = cli_render(&rendering);
     }

@@ -177,6 +177,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
     else
         SKG_TRY(place(&detector, &position, view));
     SKG_TRY(read_oversampling(&detector, &reader->setup->supersampling));
+    SKG_TRY(skg_setup_read_counting(reader, &detector));
     SKG_TRY(skg_setup_read_response(reader, &detector));
     SKG_TRY(skg_setup_read_grid(reader, &detector));
     SKG_TRY(skg_setup_read_blur(reader, &detector));

@@ -18,6 +18,7 @@ static const skg_json_key detector[] = {
     SKG_KEY("Oversampling", "integer 1..16", "n x n rays for each pixel; 1 by default"),
     SKG_KEY("EnergyResponse", "object EnergyResponse", "mean recorded energy by photon energy"),
     SKG_KEY("Scintillator", "object Scintillator", "a layer that photons interact in"),
+    SKG_KEY("Counting", "object Counting", "a sensor that counts photons by thresholds"),
     BLUR_KEYS,
     SKG_KEY("GreyValues", "object GreyValues", "what scan writes instead of energies"),
     SKG_KEY("Grid", "object Grid", "an anti-scatter grid on the detector"),
@@ -73,6 +74,23 @@ static const skg_json_key scintillator[] = {
             "transport, the default: scattered photons carry energy out of the layer"),
 };
 SKG_TABLE(skg_keys_scintillator, "Scintillator", scintillator);
+
+static const skg_json_key counting[] = {
+    SKG_KEY("Material", "material", "of the sensor"),
+    SKG_KEY("Density", "number 0<..", "g/cm3, instead of the tables'"),
+    SKG_KEY("Thickness", "length", "of the sensor"),
+    SKG_KEY("Thresholds", "numbers", "keV, rising; each begins a window, which is a channel of the image"),
+    SKG_KEY("ElectronicNoise", "number 0..", "keV, standard deviation of a pixel's pulse; 0 by default"),
+    SKG_KEY("Bias", "number 0..",
+            "V over the sensor: charge spreads by diffusion on its way; 0, the default: not at all"),
+    SKG_KEY("Cloud", "length", "standard deviation of the charge where it is set free; 0 by default"),
+    SKG_KEY("Fluorescence", "flag", "true: K fluorescence leaves the place of absorption"),
+    SKG_KEY("AntiCoincidence", "flag", "true: 2 x 2 pixels are summed for each photon, which counts once"),
+    SKG_KEY("PileUp", "words none, nonparalysable, paralysable", "what ends a dead time; none by default"),
+    SKG_KEY("DeadTime", "number 0<..", "ns, of a pixel after a pulse"),
+    SKG_KEY("ExposureTime", "number 0<..", "s, in which the photons of an image arrive"),
+};
+SKG_TABLE(skg_keys_counting, "Counting", counting);
 
 static const skg_json_key depth[] = {
     SKG_KEY("To", "number", "where the depth ends: a share of the layer's thickness; the last is 1"),

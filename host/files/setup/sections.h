@@ -72,6 +72,9 @@ skg_status skg_setup_read_scatter(skg_setup_reader *reader, const skg_json_node 
 /* EnergyResponse or Scintillator of a detector. */
 skg_status skg_setup_read_response(skg_setup_reader *reader, const skg_json_object *detector);
 
+/* Counting of a detector that has its place. */
+skg_status skg_setup_read_counting(skg_setup_reader *reader, const skg_json_object *detector);
+
 /* GreyValues of a detector. */
 skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_object *detector);
 void skg_grey_section_free(skg_grey_section *section);

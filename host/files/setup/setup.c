@@ -276,6 +276,7 @@ void skg_setup_release(skg_setup **setup) {
     skg_scene_release(&(*setup)->scene);
     skg_spectrum_release(&(*setup)->spectrum);
     skg_response_release(&(*setup)->response);
+    skg_counter_release(&(*setup)->counter);
     skg_material_release(&(*setup)->world);
     skg_setup_in_beam_free(*setup);
     skg_setup_blur_free(*setup);
@@ -351,6 +352,7 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     if (setup->oblique) ours.oblique = 1;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;
+    if (setup->counter) ours.counter = setup->counter, ours.quantity = SKG_QUANTITY_PHOTONS;
     if (setup->world) ours.world = setup->world;
     if (setup->scan.view_count) ours.view_count = setup->scan.view_count, ours.views = setup->scan.views;
     if (setup->blur.shape.columns > 0) ours.blur = &setup->blur.shape;

@@ -103,6 +103,7 @@ struct skg_setup {
     int32_t absolute;       /* 1: photons come from mAs */
     int32_t falloff;        /* enum skg_falloff */
     skg_response *response; /* NULL: ideal */
+    skg_counter *counter;   /* NULL: the detector integrates energy */
     skg_material *world;    /* around the parts; NULL: vacuum */
     skg_setup_blur blur;    /* columns 0: none */
     skg_depth_blur depths;  /* of the scintillator; count 0: none */

@@ -19,6 +19,7 @@
 #include <skiagraph/breath.h>
 #include <skiagraph/collimation.h>
 #include <skiagraph/context.h>
+#include <skiagraph/counting.h>
 #include <skiagraph/distance.h>
 #include <skiagraph/dose.h>
 #include <skiagraph/error.h>

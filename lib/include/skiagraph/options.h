@@ -5,6 +5,7 @@
 
 #include <skiagraph/beam.h>
 #include <skiagraph/collimation.h>
+#include <skiagraph/counting.h>
 #include <skiagraph/types.h>
 
 #ifdef __cplusplus
@@ -436,6 +437,9 @@ typedef struct {
     /** 1: the photons of `scatter` do not meet the world at all; the primary does. 0 (default): the world scatters and stops them,
      * everywhere between source and detector. */
     int32_t world_scatter_off;
+    /** A detector that counts; NULL: one that integrates energy. Each window is a channel, of photons, transmission or attenuation. In place
+     * of response, bands, blurs and DQE; not with scatter, half precision or derivatives. Its pixels are those of the view. */
+    skg_counter *counter;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.

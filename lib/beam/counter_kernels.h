@@ -1,0 +1,21 @@
+/* What neighbours share of the counts of a beam. Private. */
+#ifndef SKG_COUNTER_KERNELS_H
+#define SKG_COUNTER_KERNELS_H
+
+#include "beam/counter.h"
+#include "beam/spectrum.h"
+
+/* Weights by which images of counts are convolved. Photons that count in several pixels make the noise of these alike: the weights of the
+ * noise, over all windows, are the root of the covariance at each spatial frequency, of the beam without parts. */
+typedef struct {
+    int32_t windows;
+    int32_t reach; /* tables are squares of 2 reach + 1 pixels */
+    double *means; /* [windows][square], each with the sum 1 */
+    double *noise; /* [to][from][square]: of deviations that are independent, with the means as variances */
+} skg_counter_kernels;
+
+skg_status skg_counter_kernels_make(skg_counter *counter, const skg_spectrum *spectrum,
+                                    skg_counter_kernels *kernels);
+void skg_counter_kernels_release(skg_counter_kernels *kernels);
+
+#endif

@@ -1,0 +1,61 @@
+"""Detectors that count photons."""
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._library import call, ffi, fill, integer, make, owned, struct
+from .material import Material, as_material
+
+_SIDE = 11
+
+
+class Counter:
+    """A sensor whose pixels count photons by thresholds; the option `counter` of an image, whose channels are its windows.
+
+    A window begins at each threshold and ends at the next one.
+
+    >>> counter = Counter("CdTe", 1, 0.1, [20, 50], bias_v=400, electronic_kev=2, fluorescence=True)
+    >>> low, high = counter.counts(80)
+    >>> 0.5 < low < 1.5
+    True
+    >>> counter.spread(80, 1).shape
+    (11, 11)
+    """
+
+    def __init__(self, material: Material | str, thickness_mm: float, pixel_mm: float | ArrayLike, thresholds: ArrayLike,
+                 **fields: Any) -> None:
+        """pixel_mm: along rows and along columns, or one number for both. thresholds: keV, rising. fields: those of
+        skg_counting, such as electronic_kev, bias_v, cloud_mm, fluorescence=True, anti_coincidence=True, and
+        pile_up="paralysable" with dead_time_ns and exposure_s."""
+        kept = as_material(material)
+        edges = np.atleast_1d(np.asarray(thresholds, dtype=float))
+        keep: list[Any] = [kept]
+        given = {"material": kept, "thickness_mm": float(thickness_mm), "pixel_mm": np.broadcast_to(pixel_mm, 2),
+                 "threshold_kev": edges, "count": len(edges), **fields}
+        made = fill(struct("skg_counting"), "skg_counting", given, keep, "the field of a counter")
+        self._handle = owned("skg_counter", make("skg_counter_create", "skg_counter", made))
+
+    def __len__(self) -> int:
+        """The number of windows."""
+        return integer("skg_counter_thresholds_get", self._handle)
+
+    def counts(self, kev: float) -> NDArray[np.float64]:
+        """Mean counts in each window of one photon of this energy, in all pixels together and before pile-up."""
+        return self._table("skg_counter_counts_get", len(self), float(kev))
+
+    def spread(self, kev: float, window: int) -> NDArray[np.float64]:
+        """Where the counts of a window are: [row, column], in the middle the pixel that the photon enters."""
+        return self._table("skg_counter_spread_get", _SIDE * _SIDE, float(kev), window).reshape(_SIDE, _SIDE)
+
+    def pairs(self, kev: float, window: int, other: int) -> NDArray[np.float64]:
+        """How often a photon counts in two pixels, of the windows `window` and `other`: [row, column] of the second as seen
+        from the first."""
+        return self._table("skg_counter_pairs_get", _SIDE * _SIDE, float(kev), window, other).reshape(_SIDE, _SIDE)
+
+    def _table(self, name: str, count: int, *arguments: Any) -> NDArray[np.float64]:
+        values = np.zeros(count)
+        call(name, self._handle, *arguments, ffi.cast("double *", values.ctypes.data))
+        return values
