@@ -53,8 +53,24 @@ static size_t read_bytes(source *s, void *to, size_t count) {
     return done;
 }
 
+static int is_scaled(const skg_grid_file *file) {
+    return file->slope != 0 && !(file->slope == 1 && file->shift == 0);
+}
+
+/* Passes over what stands before the cells. */
+static skg_status pass_over(source *s, int64_t bytes) {
+    unsigned char none[4096];
+    for (size_t some; bytes > 0; bytes -= (int64_t)some) {
+        some = bytes < (int64_t)sizeof none ? (size_t)bytes : sizeof none;
+        if (read_bytes(s, none, some) != some)
+            return skg_fail(SKG_ERR_FORMAT, "%s: ends before its values", s->path);
+    }
+    return SKG_OK;
+}
+
 /* The type in which the cells of a file are kept. */
 static int32_t cell_type(const skg_grid_file *file) {
+    if (is_scaled(file)) return file->bytes <= 2 ? SKG_VOLUME_FLOAT32 : SKG_VOLUME_FLOAT64;
     if (file->kind == 'f') return file->bytes == 4 ? SKG_VOLUME_FLOAT32 : SKG_VOLUME_FLOAT64;
     if (file->bytes == 1) return SKG_VOLUME_INT16;
     if (file->bytes == 2) return file->kind == 'u' ? SKG_VOLUME_UINT16 : SKG_VOLUME_INT16;
@@ -64,8 +80,9 @@ static int32_t cell_type(const skg_grid_file *file) {
 static void take_slice(const unsigned char *slice, const skg_grid_file *file, int64_t first, int64_t count,
                        skg_grid *grid) {
     for (int64_t k = 0; k < count; k++) {
-        const double value =
+        const double number =
             skg_number_of_bytes(slice + k * file->bytes, file->bytes, file->kind, file->swapped);
+        const double value = is_scaled(file) ? number * file->slope + file->shift : number;
         const int64_t at = first + k;
         if (grid->type == SKG_VOLUME_INT16) ((int16_t *)grid->cells)[at] = (int16_t)value;
         if (grid->type == SKG_VOLUME_UINT16) ((uint16_t *)grid->cells)[at] = (uint16_t)value;
@@ -84,6 +101,7 @@ skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_fi
     SKG_TRY_CLEANUP(skg_alloc(1, sizeof *s, "volume", &s));
     s->path = path, s->stream = stream;
     SKG_TRY_CLEANUP(open_source(s, file));
+    SKG_TRY_CLEANUP(pass_over(s, file->first));
     SKG_TRY_CLEANUP(skg_alloc(plane * grid->size[2], sizes[grid->type], "cells of a volume", &grid->cells));
     SKG_TRY_CLEANUP(skg_alloc(plane, (size_t)file->bytes, "slice of a volume", &slice));
     for (int64_t z = 0; z < grid->size[2] && status == SKG_OK; z++) {

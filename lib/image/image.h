@@ -71,6 +71,8 @@ typedef struct {
 typedef struct {
     int bytes, swapped, compressed; /* compressed: 1: by zlib or gzip */
     char kind;
+    int64_t first;       /* byte of the expanded file at which they begin, from where the stream stands */
+    double slope, shift; /* a value is the number in the file times slope plus shift; slope 0: the number */
 } skg_grid_file;
 
 /* Reads the cells of a grid of known size, of which *stream is at the first. */
@@ -79,6 +81,7 @@ skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_fi
 /* Each reads a volume with its place. */
 skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid);
 skg_status skg_nrrd_read_grid(const char *path, skg_grid *grid);
+skg_status skg_nifti_read_grid(const char *path, skg_grid *grid);
 
 /* The value of a number of `bytes` bytes of a file. kind: 'u' unsigned, 'i' signed, 'f' float; swapped: 1: of the other byte order. */
 double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped);

@@ -205,7 +205,8 @@ skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
     }
     grid->affine[15] = 1;
     SKG_TRY_CLEANUP(open_data(path, &image, &stream));
-    const skg_grid_file file = {image.bytes, image.swapped, image.compressed, image.kind};
+    const skg_grid_file file = {
+        .bytes = image.bytes, .swapped = image.swapped, .compressed = image.compressed, .kind = image.kind};
     status = skg_grid_read_cells(path, stream, &file, grid);
 cleanup:
     if (stream) fclose(stream);

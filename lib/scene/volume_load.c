@@ -11,18 +11,20 @@ typedef skg_status (*reader)(const char *path, skg_grid *grid);
 static const struct {
     const char *extension;
     reader read;
-} readers[] = {{".mha", skg_metaimage_read_grid},
-               {".mhd", skg_metaimage_read_grid},
-               {".nrrd", skg_nrrd_read_grid},
-               {".nhdr", skg_nrrd_read_grid}};
+} readers[] = {{".mha", skg_metaimage_read_grid}, {".mhd", skg_metaimage_read_grid},
+               {".nrrd", skg_nrrd_read_grid},     {".nhdr", skg_nrrd_read_grid},
+               {".nii", skg_nifti_read_grid},     {".nii.gz", skg_nifti_read_grid}};
 
 static skg_status find_reader(const char *path, reader *found) {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
-    for (size_t i = 0; dot && i < sizeof readers / sizeof *readers; i++)
-        if (skg_same_name(dot, readers[i].extension)) {
+    const size_t length = strlen(path);
+    for (size_t i = 0; i < sizeof readers / sizeof *readers; i++) {
+        const size_t of = strlen(readers[i].extension);
+        if (length > of && skg_same_name(path + length - of, readers[i].extension)) {
             *found = readers[i].read;
             return SKG_OK;
         }
+    }
     return skg_fail(
         SKG_ERR_UNSUPPORTED,
         "%s: the extension %s%s is none of a volume that can be read; convert it to .mha, for example by "

@@ -154,6 +154,114 @@ START_TEST(nrrd_files_are_read) {
 }
 END_TEST
 
+/* A header of NIfTI-1 or -2 in memory. big: of the other byte order than x86's */
+typedef struct {
+    unsigned char bytes[544];
+    int version, big;
+} nifti_header;
+
+static void put(nifti_header *h, int at, const void *value, int bytes) {
+    for (int k = 0; k < bytes; k++)
+        h->bytes[at + k] = ((const unsigned char *)value)[h->big ? bytes - 1 - k : k];
+}
+static void put_int(nifti_header *h, int at, long value, int bytes) {
+    const int16_t two = (int16_t)value;
+    const int32_t four = (int32_t)value;
+    const int64_t eight = value;
+    put(h, at, bytes == 2 ? (const void *)&two : bytes == 4 ? (const void *)&four : &eight, bytes);
+}
+static void put_reals(nifti_header *h, int at, const double *values, int count) {
+    for (int k = 0; k < count; k++) {
+        const float single = (float)values[k];
+        if (h->version == 1)
+            put(h, at + 4 * k, &single, 4);
+        else
+            put(h, at + 8 * k, &values[k], 8);
+    }
+}
+
+/* 3 x 2 x 4 cells of 16 bits, 2 x 3 x 4 mm. ways: 0: of no place; 1: a quaternion of a quarter turn about z; 2: a matrix, too, in cm */
+static nifti_header nifti_of(int version, int big, int ways) {
+    static const double spacing[4] = {1, 2, 3, 4}, quaternion[6] = {0, 0, 0.70710678118654752440, 5, 6, 7};
+    static const double rows[12] = {.2, 0, 0, .5, 0, 0, .4, .6, 0, -.3, 0, .7}, scale[2] = {2, -10};
+    static const int dim[8] = {3, 3, 2, 4, 1, 1, 1, 1};
+    nifti_header h = {.version = version, .big = big};
+    const int second = version == 2;
+    put_int(&h, 0, second ? 540 : 348, 4);
+    memcpy(h.bytes + (second ? 4 : 344), "n+2", 3);
+    if (!second) h.bytes[346] = '1';
+    for (int k = 0; k < 8; k++) put_int(&h, second ? 16 + 8 * k : 40 + 2 * k, dim[k], second ? 8 : 2);
+    put_int(&h, second ? 12 : 70, 4, 2);
+    put_reals(&h, second ? 104 : 76, spacing, 4);
+    if (second)
+        put_int(&h, 168, 544, 8);
+    else
+        put_reals(&h, 108, (const double[]){352}, 1);
+    put_reals(&h, second ? 176 : 112, scale, 2);
+    put_int(&h, second ? 344 : 252, ways > 0, second ? 4 : 2);
+    put_int(&h, second ? 348 : 254, ways > 1, second ? 4 : 2);
+    put_reals(&h, second ? 352 : 256, quaternion, 6);
+    put_reals(&h, second ? 400 : 280, rows, 12);
+    if (second)
+        put_int(&h, 500, ways > 1 ? 0 : 2, 4);
+    else
+        h.bytes[123] = ways > 1 ? 0 : 2;
+    return h;
+}
+
+static skg_status load_nifti(const nifti_header *h, int cells, skg_volume **volume) {
+    char path[128];
+    snprintf(path, sizeof path, "volume-%d.nii", (int)getpid());
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    fwrite(h->bytes, 1, h->version == 2 ? 544 : 352, file);
+    for (int k = 0; k < cells; k++) {
+        const int low = numbers[k] & 255, high = numbers[k] >> 8 & 255;
+        fputc(h->big ? high : low, file), fputc(h->big ? low : high, file);
+    }
+    fclose(file);
+    const skg_status status = skg_volume_load(path, 1, NULL, volume);
+    remove(path);
+    return status;
+}
+
+/* x and y of NIfTI point to the right and front. A quarter turn takes its columns to y and its rows to -x. */
+START_TEST(nifti_files_are_read) {
+    static const double turned[16] = {0, 3, 0, -5, -2, 0, 0, -6, 0, 0, 4, 7, 0, 0, 0, 1};
+    static const double matrix[16] = {-.2, 0, 0, -.5, 0, 0, -.4, -.6, 0, -.3, 0, .7, 0, 0, 0, 1};
+    skg_volume *volume = NULL;
+    skg_volume_contents contents;
+    for (int k = 0; k < 8; k++) {
+        const int version = 1 + k % 2, big = k / 2 % 2, ways = 1 + k / 4;
+        nifti_header h = nifti_of(version, big, ways);
+        const double *expected = ways > 1 ? matrix : turned;
+        ck_skg(load_nifti(&h, CELLS, &volume));
+        skg_volume_contents_init(&contents);
+        ck_skg(skg_volume_contents_get(volume, &contents));
+        ck_assert_int_eq(contents.slices, 4);
+        ck_assert_double_eq(contents.low, -2010); /* of -1000: times 2, less 10 */
+        ck_assert_double_eq(contents.high, 3070);
+        /* Places are floats in NIfTI-1: half of 2^-23 of 7. */
+        for (int i = 0; i < 16; i++) ck_assert_double_eq_tol(contents.affine[i], expected[i], 7 * 0x1p-24);
+        skg_volume_release(&volume);
+    }
+    nifti_header h = nifti_of(1, 0, 0);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_UNSUPPORTED, "does not say where its axes point");
+    h = nifti_of(1, 0, 1);
+    ck_skg_fails(load_nifti(&h, CELLS - 1, &volume), SKG_ERR_FORMAT, "ends in slice 3 of 4");
+    h.bytes[344 + 1] = 'i';
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_UNSUPPORTED, "in a file of their own");
+    h = nifti_of(1, 0, 1), put_int(&h, 40, 4, 2), put_int(&h, 48, 5, 2);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "has 4 dimensions");
+    h = nifti_of(2, 0, 1), put_int(&h, 12, 128, 2);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_UNSUPPORTED, "its type, 128");
+    h = nifti_of(2, 0, 1), put_int(&h, 168, 100, 8);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "begin at byte 100");
+    h = nifti_of(2, 0, 1), h.bytes[0] = 0;
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "is no NIfTI file");
+}
+END_TEST
+
 /* Of headers that say more than places and sizes: what is read, and what is refused. The values are 24 zeros. */
 static skg_status load_header(const char *name, const char *header, skg_volume **volume) {
     static const char values[2 * CELLS] = {0};
@@ -249,6 +357,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, files_say_where_cells_are);
     tcase_add_test(tests, values_beyond_tissue_are_counted);
     tcase_add_test(tests, nrrd_files_are_read);
+    tcase_add_test(tests, nifti_files_are_read);
     tcase_add_test(tests, headers_are_not_passed_over);
 }
 

@@ -14,7 +14,8 @@ enum { TEXT = 64 };
 
 int cli_is_volume(const char *path) {
     return cli_has_extension(path, ".mha") || cli_has_extension(path, ".mhd") ||
-           cli_has_extension(path, ".nrrd") || cli_has_extension(path, ".nhdr");
+           cli_has_extension(path, ".nrrd") || cli_has_extension(path, ".nhdr") ||
+           cli_has_extension(path, ".nii") || cli_has_extension(path, ".nii.gz");
 }
 
 /* Values that may be negative are Hounsfield numbers; what others are, the file does not say. */

@@ -86,7 +86,7 @@ SKG_API skg_status skg_volume_create(const skg_volume_source *source, skg_volume
 
 /** Reads a volume from a file.
  *
- *     path      .mha, .mhd: MetaImage; .nrrd, .nhdr: NRRD, raw or gzip. Three dimensions, one number a cell, compressed or not; positions
+ *     path      .mha, .mhd: MetaImage; .nrrd, .nhdr: NRRD, raw or gzip; .nii, .nii.gz: NIfTI-1 and -2. Three dimensions, one number a cell, compressed or not; positions
  *               are those of the file, mm
  *     unit_mm   mm per unit of the file: 1 for mm
  *     source    values, material, classes and name; sizes, type, cells and affine are those of the file. NULL: Hounsfield numbers
