@@ -330,6 +330,8 @@ typedef struct {
 #define SKG_CELL_PLACE(word) ((word)&0x3fffffffu)
 #define SKG_CELL_MEDIUM_OF(word) ((word)&0xffffffu)
 #define SKG_CELL_LEAP_MAX 63
+#define SKG_CELL_ROUGH 4   /* cells along each side of a rough one */
+#define SKG_ROUGH_STEPS 12 /* through rough cells */
 #define SKG_LIST_HEAD                                                                                        \
     5 /* of a list of faces: a medium, how many faces, a place with this medium; then their numbers */
 #define SKG_CELL_NUDGE 2e-5f  /* coarse cells: a line is looked up so far behind a boundary */
@@ -366,6 +368,7 @@ typedef struct {
     SKG_INT grid, noise;  /* 1: there is an anti-scatter grid; the variance of the signal is added up, too */
     SKG_INT world_around; /* 1: the cells stand in a material */
     SKG_INT shells;       /* that emit fluorescence */
+    SKG_INT rough;        /* the first medium of rough cells; 0: there are none */
     SKG_INT first, end, each; /* histories of a batch; of a work-item */
     SKG_INT seed[2];          /* low word first */
 } skg_scatter_args;
@@ -437,7 +440,7 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 25 * 4 && sizeof(skg_scattered_args) == 80,
+_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 26 * 4 && sizeof(skg_scattered_args) == 80,
                "layout of scatter");
 #endif
 #endif

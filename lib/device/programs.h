@@ -20,7 +20,7 @@ extern const char skg_kernel_sources_digest[]; /* SHA-256 of names and contents,
 
 /* --- what a program is compiled from (program_text.c) --- */
 
-enum { SKG_PROGRAM_FILES = 20, SKG_PROGRAM_OPTIONS = 2048 };
+enum { SKG_PROGRAM_FILES = 24, SKG_PROGRAM_OPTIONS = 2048 };
 
 /* Kernel files in their order, from the folder for kernels or built in. */
 typedef struct {

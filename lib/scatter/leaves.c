@@ -171,6 +171,7 @@ static skg_status plant(skg_planting *p) {
         SKG_TRY(make_word(p, c, &word));
         p->tree.of[c] = word;
     }
+    SKG_TRY(skg_plant_rough(p));
     return skg_cells_leap(p->cells, p->tree.of);
 }
 

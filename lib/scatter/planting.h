@@ -40,4 +40,7 @@ skg_status skg_plant_list(skg_planting *p, uint32_t medium, const double at[3], 
 skg_status skg_plant_brick(skg_planting *p, int64_t cell, int64_t count, const uint32_t *faces,
                            uint32_t *word);
 
+/* Adds the media of rough cells, of SKG_CELL_ROUGH^3 others each; none are needed if each of them has one medium. The tree has the words of the coarse cells. */
+skg_status skg_plant_rough(skg_planting *p);
+
 #endif

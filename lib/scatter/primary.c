@@ -12,7 +12,7 @@
 enum { RAYS = 96, BLOCK = 8, BLOCKS = RAYS / BLOCK };
 
 /* Ways through the parts. */
-enum { CELLS, SURFACES, MATERIALS, WAYS };
+enum { CELLS, SURFACES, MATERIALS, ROUGH, WAYS };
 
 typedef struct {
     const skg_cell_parts *parts;
@@ -153,6 +153,8 @@ static skg_status judge_row(void *user, int64_t row) {
         }
         skg_cells_along(j->cells, ends[0], ends[1], mm);
         sent[CELLS] = sent_by_mixed(j, mm);
+        skg_cells_roughly(j->cells, ends[0], ends[1], mm);
+        sent[ROUGH] = sent_by_mixed(j, mm);
     }
 cleanup:
     skg_columns_free(&grid);
@@ -191,6 +193,16 @@ static double verdict(const judge *j, int way) {
         off += fabs(difference);
     }
     return all > 0 ? off / all : 0;
+}
+
+/* How far rays through rough cells are from those through the cells, in the root mean square. */
+static double spread(const judge *j) {
+    double off = 0, all = 0;
+    for (int i = 0; i < RAYS * RAYS; i++) {
+        off += pow(j->sent[i][ROUGH] - j->sent[i][CELLS], 2);
+        all += pow(j->sent[i][CELLS], 2);
+    }
+    return all > 0 ? sqrt(off / all) : 0;
 }
 
 /* The solids in columns, rows and depths. *in_front: 0 if one reaches behind the source. */
@@ -258,6 +270,7 @@ skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physic
     SKG_TRY_CLEANUP(skg_parallel(RAYS, judge_row, &j));
     judged->cells = verdict(&j, SURFACES);
     judged->all = verdict(&j, MATERIALS);
+    judged->rough = spread(&j);
 cleanup:
     skg_free(&solids);
     skg_free(&positions);

@@ -174,6 +174,7 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
     fill_tables(&object->physics, tables, &t->args);
     fill_profile(&tables->profile, t);
     fill_images(work->recipe, tables, t);
+    t->args.rough = (SKG_INT)object->cells.rough;
     t->args.world_around = skg_scatter_world(work->recipe) != NULL;
     SKG_TRY(send_tables(context, object, tables, t));
     SKG_TRY(send_spots(context, work, &object->cells, t));
@@ -184,7 +185,8 @@ skg_status skg_trace_begin(skg_context *context, const skg_scatter_work *work,
 static skg_status get_program(skg_context *context, const skg_tracing *t, cl_program *program) {
     static const char *const files[] = {"exponential.clh", "random.clh",       "noise.clh", "scatter.clh",
                                         "walk.clh",        "fluorescence.clh", "sight.clh", "strips.clh",
-                                        "arrive.clh",      "profile.clh",      "scatter.cl"};
+                                        "arrive.clh",      "profile.clh",      "emit.clh",  "tally.clh",
+                                        "next_event.clh",  "scatter.cl"};
     const skg_kernel_options options = {
         .precision = SKG_PRECISION_SINGLE, .bits = 32, .parallel = t->parallel};
     const skg_define fours[] = {{"SKG_FOURS", t->fours}};

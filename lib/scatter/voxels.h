@@ -48,6 +48,7 @@ typedef struct {
     uint32_t *tree;     /* [tree_count] words of the cells; bricks of finer cells; lists of faces */
     float (*faces)[16];
     int64_t media_count, tree_count, face_count;
+    uint32_t rough; /* the first medium of rough cells, of which each has one, [z][y][x]; 0: there are none */
     int64_t smeared,
         traced; /* cells that hold the mixture of media which differ little, and those whose faces are met */
 } skg_cells;
@@ -90,6 +91,9 @@ skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCAT
 /* The sum of the coefficients times mm from one place to another, in mm from the lowest corner, as photons read the cells. */
 void skg_cells_along(const skg_cells *cells, const double from[3], const double to[3],
                      double mm[SKG_SCATTER_RANK]);
+/* The same through rough cells, as photons take them. */
+void skg_cells_roughly(const skg_cells *cells, const double from[3], const double to[3],
+                       double mm[SKG_SCATTER_RANK]);
 void skg_cells_free(skg_cells *cells);
 
 /* A beam as few lines, as many as there are coefficients at most, so that parts are walked as with these. */
@@ -114,6 +118,7 @@ void skg_beam_lines_attenuated(const skg_beam_lines *lines, int64_t count, skg_m
 typedef struct {
     double cells; /* if the coefficients stand for the materials on both ways */
     double all;   /* with the materials themselves through the surfaces */
+    double rough; /* what rough cells are off by on single rays, root mean square over that of the cells */
 } skg_judged;
 skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physics *physics,
                            const skg_beam_lines *lines, const skg_view *view, const skg_cells *cells,

@@ -107,3 +107,22 @@ void skg_cells_along(const skg_cells *cells, const double from[3], const double 
         across_faces(cells, cells->tree + SKG_CELL_PLACE(word), a, b, (next - t) * length, mm);
     }
 }
+
+void skg_cells_roughly(const skg_cells *cells, const double from[3], const double to[3],
+                       double mm[SKG_SCATTER_RANK]) {
+    double way[3];
+    for (int k = 0; k < 3; k++) way[k] = to[k] - from[k];
+    const double step = skg_length(way) / SKG_ROUGH_STEPS;
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) mm[k] = 0;
+    for (int i = 0; i < SKG_ROUGH_STEPS && cells->rough; i++) {
+        int64_t cell[3], count[3];
+        for (int k = 0; k < 3; k++) {
+            const double at = from[k] + (i + 0.5) / SKG_ROUGH_STEPS * way[k];
+            count[k] = (cells->count[k] + SKG_CELL_ROUGH - 1) / SKG_CELL_ROUGH;
+            cell[k] = (int64_t)fmin(fmax(at / cells->size[k] * (double)cells->count[k] / SKG_CELL_ROUGH, 0),
+                                    (double)(count[k] - 1));
+        }
+        add(cells->media[cells->rough + (uint32_t)((cell[2] * count[1] + cell[1]) * count[0] + cell[0])],
+            step, mm);
+    }
+}

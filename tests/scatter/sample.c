@@ -43,13 +43,14 @@ static const char sampling_kernel[] =
     "    for (int l = 0; l < SKG_WIDE; l++) out[first + l] = (float4)(weight[l], cosine[l], left[l], changed[l] ? 1.0f : 0.0f);\n"
     "}\n";
 
-enum { TEXTS = 19 };
+enum { TEXTS = 22 };
 
 static skg_status build(skg_context *context, cl_program *program) {
     static const char *const names[TEXTS - 1] = {
         "config.clh",       "types.clh",       "skg_shared.h", "scalar.clh", "triangle.clh", "wide.clh",
         "triangle.clh",     "exponential.clh", "random.clh",   "noise.clh",  "scatter.clh",  "walk.clh",
-        "fluorescence.clh", "sight.clh",       "strips.clh",   "arrive.clh", "profile.clh",  "scatter.cl"};
+        "fluorescence.clh", "sight.clh",       "strips.clh",   "arrive.clh", "profile.clh",  "emit.clh",
+        "tally.clh",        "next_event.clh",  "scatter.cl"};
     const char *texts[TEXTS] = {0};
     char options[256];
     cl_int code = CL_SUCCESS;

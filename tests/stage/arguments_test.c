@@ -6,7 +6,7 @@
 
 #include <string.h>
 
-enum { FILES_MAX = 11, ARGUMENTS_MAX = 32 };
+enum { FILES_MAX = 14, ARGUMENTS_MAX = 32 };
 
 static skg_context *context;
 
@@ -65,7 +65,8 @@ static const struct {
     {{"exponential.clh", "random.clh", "pulses.cl"}, NAMES, 0},
     {{"blur_variance.cl", "detect_variance.cl"}, "-D SKG_FLAT_FIELD=1 -D SKG_OF_LOGARITHM=1 " NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "walk.clh", "fluorescence.clh",
-      "sight.clh", "strips.clh", "arrive.clh", "profile.clh", "scatter.cl"},
+      "sight.clh", "strips.clh", "arrive.clh", "profile.clh", "emit.clh", "tally.clh", "next_event.clh",
+      "scatter.cl"},
      NAMES,
      0},
     {{"exponential.clh", "random.clh", "noise.clh", "scattered.cl"}, NAMES, 0},
