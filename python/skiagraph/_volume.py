@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _arrays
+from . import _arrays, _dicom_series
 from ._device import warn
 from ._interface import ENUMS, ArgumentError
 from ._library import call, encode, ffi, filled, make, struct, text
@@ -60,6 +60,9 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     if isinstance(array, (str, os.PathLike)):
         if affine is not None:
             raise ArgumentError("affine is given beside a file, which says where its cells are; leave it out, or give pose")
+        if pathlib.Path(array).is_dir():
+            array, affine = _dicom_series.read(pathlib.Path(array))
+    if isinstance(array, (str, os.PathLike)):
         return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 1.0, source),
                 [values, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])
     if hasattr(array, "GetDirection") and affine is None:

@@ -101,7 +101,8 @@ class Scene(_gradient.Differentiable):
                    pose: Any = None, priority: int = 0) -> Part:
         """Adds a volume of cells, such as a CT image.
 
-        array: cells [z, y, x], copied, an image of SimpleITK, or the path of a file (.mha). affine: 4 x 4 from the indices (x, y, z) of a cell to its centre, mm;
+        array: cells [z, y, x], copied, an image of SimpleITK, or the path of a file (.mha, .nrrd, .nii) or of a folder of DICOM
+        slices of one series (pydicom). affine: 4 x 4 from the indices (x, y, z) of a cell to its centre, mm;
         None: that of the image. values: "HU", "density" (g/cm3) or "mu" (1/cm). material: the composition of all cells;
         classes: [(-1000, "Air"), (-400, "Lung")], from which value on a cell is of which; neither: Schneider's table (HU).
         inside, pose and priority are as in add(). Parts inside it displace its cells.
