@@ -1,7 +1,7 @@
 /* Histories of scattered photons. Each work-item follows SKG_WIDE photons side by side, and begins another where one has ended.
  *
  * A photon is made to interact in the object (its weight carries the probability) and to survive. From each interaction it
- * contributes to SKG_SCATTER_SIDE^2 places of the detector, and by where it flies on, if that is the detector. Either way could
+ * contributes to skg_side^2 places of the detector, and by where it flies on, if that is the detector. Either way could
  * do alone: they are combined by the balance heuristic (Veach and Guibas, Optimally combining sampling techniques for Monte
  * Carlo rendering, SIGGRAPH 1995), so that contributions stay finite however near the detector is. */
 
@@ -38,7 +38,7 @@ static void skg_fly_on(const skg_scattering *s, __global const float *angles, sk
     const skg_fv per_sr = skg_sight_per_sr(s->args, sight, u, v);
     p->x = (u - sight->x0) / s->args->side_u;
     p->y = (v - sight->y0) / s->args->side_v;
-    p->share = meets ? own / fma(per_sr, (skg_fv)((float)(SKG_SCATTER_SIDE * SKG_SCATTER_SIDE)), own) : (skg_fv)(0.0f);
+    p->share = meets ? own / fma(per_sr, (skg_fv)((float)(skg_side(s) * skg_side(s))), own) : (skg_fv)(0.0f);
     p->reach = meets ? skg_root_v(fma(u, u, fma(v, v, sight->z * sight->z))) : (skg_fv)(SKG_SCATTER_FAR);
 }
 

@@ -308,8 +308,9 @@ typedef struct {
     skg_image_args image;
 
 /* Scattered photons (scatter.cl). */
-#define SKG_SCATTER_SIDE                                                                                     \
-    2 /* an interaction contributes to a place in each of side x side pieces of the detector */
+/* An interaction contributes to a place in each of side x side pieces of the detector. Lines through rough cells take less time, so
+ * that more of them pay. */
+#define SKG_SCATTER_SIDE(is_rough) ((is_rough) ? 3 : 2)
 #define SKG_SCATTER_ANGLES 256    /* equally likely ranges of the angle of scattering */
 #define SKG_SCATTER_DIMENSIONS 16 /* of a history's point of the lattice */
 #define SKG_SCATTER_KINDS                                                                                    \

@@ -162,7 +162,7 @@ static skg_status trace_to(const skg_scatter_work *work, const skg_cell_parts *p
     return skg_cells_judge(parts, &object->physics, lines, work->view, &object->cells, &object->judged);
 }
 
-/* Above this, every line to the detector is followed through the object. Below, rough cells stand for four of five, which pays: .63 for a
+/* Above this, every line to the detector is followed through the object. Below, rough cells stand for eight or nine of ten, which pays: .63 for a
  * thorax, whose scatter costs two thirds of what it did. At 2.6 (an iron cube before a table) the noise was ten times as large. */
 static const double ROUGH_MOST = 0.8;
 
