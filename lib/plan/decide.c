@@ -2,7 +2,9 @@
 #include "beam/counter.h"
 #include "geometry/optics.h"
 #include "plan/decisions.h"
+#include "plan/rules.h"
 #include "spectral/model.h"
+#include "spectral/shading.h"
 
 #include <inttypes.h>
 
@@ -62,6 +64,7 @@ skg_status skg_decide_detection(const skg_recipe *recipe, skg_detection *detecti
                                      (options->counter && options->counter->counting.pile_up))};
     *wanted = skg_quantity_is_absolute(options) &&
               (ratio || areas || detection->electronic > 0 || detection->step > 0);
+    if (*wanted && ratio) SKG_TRY(skg_counting_check_flat(recipe));
     for (int32_t c = 0; *wanted && c < model->channels; c++) {
         if (ratio && !(model->flat_field[c] > 0))
             return skg_fail(SKG_ERR_BEAM,
@@ -98,10 +101,13 @@ static skg_status check_distance(const skg_recipe *recipe, const skg_view *view)
 
 skg_status skg_decide_view(const skg_recipe *recipe, const skg_view *view) {
     SKG_TRY(skg_decide_world(recipe, view));
-    if (view->columns == recipe->view.columns && view->rows == recipe->view.rows)
-        return check_distance(recipe, view);
-    return skg_fail(SKG_STALE,
-                    "the plan is for %" PRId64 " x %" PRId64 " pixels, the view has %" PRId64 " x %" PRId64
-                    "; make a plan for it",
-                    recipe->view.columns, recipe->view.rows, view->columns, view->rows);
+    if (view->columns != recipe->view.columns || view->rows != recipe->view.rows)
+        return skg_fail(SKG_STALE,
+                        "the plan is for %" PRId64 " x %" PRId64 " pixels, the view has %" PRId64
+                        " x %" PRId64 "; make a plan for it",
+                        recipe->view.columns, recipe->view.rows, view->columns, view->rows);
+    SKG_TRY(check_distance(recipe, view));
+    SKG_TRY(skg_counting_check_pixels(recipe, view, SKG_STALE));
+    SKG_TRY(skg_grid_covers(&recipe->model.shades, view, &recipe->options));
+    return skg_oblique_covers(&recipe->model.shades, view, &recipe->options);
 }

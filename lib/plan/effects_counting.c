@@ -38,17 +38,30 @@ static skg_status check_counting(const skg_plan_options *o) {
                     "quantity photons, transmission or attenuation");
 }
 
-skg_status skg_counting_check(const skg_recipe *recipe) {
+skg_status skg_counting_check_pixels(const skg_recipe *recipe, const skg_view *view, skg_status status) {
     const skg_counting *c = counting_of(&recipe->options);
-    const double alike = 1e-4; /* exporters write six digits */
-    const double view_mm[2] = {skg_length(recipe->view.column_step), skg_length(recipe->view.row_step)};
+    const double alike =
+        1e-4; /* exporters write six digits; of the cosine between sides 1e-4 is nothing, too */
+    const double columns = skg_length(view->column_step), rows = skg_length(view->row_step);
     if (!c) return SKG_OK;
-    if (fabs(view_mm[0] / c->pixel_mm[0] - 1) > alike || fabs(view_mm[1] / c->pixel_mm[1] - 1) > alike)
+    if (fabs(columns / c->pixel_mm[0] - 1) > alike || fabs(rows / c->pixel_mm[1] - 1) > alike)
         return skg_fail(
-            SKG_ERR_SCENE,
+            status,
             "the detector that counts has pixels of %g x %g mm, those of the view are %g x %g mm; "
             "give both the same",
-            c->pixel_mm[0], c->pixel_mm[1], view_mm[0], view_mm[1]);
+            c->pixel_mm[0], c->pixel_mm[1], columns, rows);
+    if (fabs(skg_dot(view->column_step, view->row_step)) > alike * columns * rows)
+        return skg_fail(SKG_ERR_SCENE,
+                        "the pixels of a detector that counts are rectangles, and those of the view lean");
+    return SKG_OK;
+}
+
+skg_status skg_counting_check(const skg_recipe *recipe) {
+    const skg_counting *c = counting_of(&recipe->options);
+    if (!c) return SKG_OK;
+    SKG_TRY(skg_counting_check_pixels(recipe, &recipe->view, SKG_ERR_SCENE));
+    for (int64_t v = 0; v < recipe->options.view_count; v++)
+        SKG_TRY(skg_counting_check_pixels(recipe, &recipe->options.views[v], SKG_ERR_SCENE));
     if (c->pile_up && recipe->absolute && recipe->view.projection != SKG_PROJECTION_POINT)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "pile-up needs the number of photons in a pixel, which mAs does not give for a "
@@ -80,6 +93,13 @@ static void find_counting(const skg_effect_facts *f, skg_effect_state *state) {
     skg_effect_set(state, 1, "%d %s from %g keV on; a photon of the open beam makes %.3g counts",
                    (int)c->count, c->count == 1 ? "threshold" : "thresholds", c->threshold_kev[0],
                    counted / photons);
+    for (int32_t k = 0; k < model->channels; k++)
+        if (!(model->flat_field[k] > 0))
+            skg_log(
+                f->context, SKG_LOG_WARNING,
+                "the window from %g keV on counts nothing of the beam: its image is black; is its threshold above the energies of the "
+                "beam, or does the sensor stop nothing?",
+                c->threshold_kev[k]);
 }
 
 /* Both images of each window, with squares whose size is not known before the machine is made: lines fly far, clouds do not. */
@@ -123,15 +143,36 @@ static void find_anti_coincidence(const skg_effect_facts *f, skg_effect_state *s
                        c ? "not asked for: every pixel counts by itself" : "the detector does not count");
 }
 
+/* Pulses of the open beam in a dead time. */
+static double open_pulses(const skg_recipe *recipe, const skg_counting *c) {
+    double pulses = 0;
+    for (int32_t k = 0; k < recipe->model.channels; k++) pulses += recipe->model.flat_field[k];
+    return pulses * c->dead_time_ns * 1e-9 / c->exposure_s;
+}
+
+skg_status skg_counting_check_flat(const skg_recipe *recipe) {
+    static const double least = 1e-30; /* floats end at 1e-38, and a ratio divides by it */
+    const skg_counting *c = counting_of(&recipe->options);
+    double left = 0;
+    if (!c || !c->pile_up) return SKG_OK;
+    const double pulses = open_pulses(recipe, c);
+    SKG_TRY(skg_pile_up_get(c->pile_up, pulses, &left, NULL));
+    if (left > least || !(pulses > 0)) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_BEAM,
+        "the open beam makes %.3g pulses in a dead time, of which a paralysable detector counts none, so there is no ratio to "
+        "its flat field; give fewer photons, a longer ExposureTime or a shorter DeadTime",
+        pulses);
+}
+
 static void find_pile_up(const skg_effect_facts *f, skg_effect_state *state) {
     const skg_counting *c = counting_of(&f->recipe->options);
-    double pulses = 0, left = 0;
+    double left = 0;
     if (!c || !c->pile_up) {
         skg_effect_set(state, 0, c ? "not asked for: every pulse counts" : "the detector does not count");
         return;
     }
-    for (int32_t k = 0; k < f->recipe->model.channels; k++) pulses += f->recipe->model.flat_field[k];
-    pulses *= c->dead_time_ns * 1e-9 / c->exposure_s;
+    const double pulses = open_pulses(f->recipe, c);
     if (skg_pile_up_get(c->pile_up, pulses, &left, NULL) != SKG_OK) return;
     skg_effect_set(state, 1,
                    "%.3g pulses in a dead time of the open beam, of which %.3g count; pulses that add up are "

@@ -113,6 +113,12 @@ skg_status skg_scatter_check(const skg_recipe *recipe);
 /* Fails if the pixels of the view are not those of the detector that counts. */
 skg_status skg_counting_check(const skg_recipe *recipe);
 
+/* Fails if dead times leave nothing of the flat field. */
+skg_status skg_counting_check_flat(const skg_recipe *recipe);
+
+/* Whether a view has the pixels that the table of counts was made for; status: what is said otherwise. */
+skg_status skg_counting_check_pixels(const skg_recipe *recipe, const skg_view *view, skg_status status);
+
 /* Fails if volumes of cells stand beside what is not computed with them. */
 skg_status skg_volumes_check(const skg_recipe *recipe);
 

@@ -66,6 +66,19 @@ static skg_status find_extent(const skg_shading *shading, skg_shades *shades) {
     return SKG_OK;
 }
 
+skg_status skg_grid_covers(const skg_shades *shades, const skg_view *view, const skg_plan_options *options) {
+    extent e = {shades, 0, HUGE_VAL, 1};
+    if (shades->grid == 0) return SKG_OK;
+    SKG_TRY(skg_shade_rays_of(view, options, see, &e));
+    if (e.tilt <= shades->grid_tilt && e.low >= shades->grid_path[0] && e.high <= shades->grid_path[1])
+        return SKG_OK;
+    return skg_fail(
+        SKG_STALE,
+        "rays of this view lean by up to %.3g across the strips of the grid and take %.4g to %.4g times its height, the plan "
+        "knows up to %.3g, and %.4g to %.4g times; make a plan for it",
+        e.tilt, e.low, e.high, shades->grid_tilt, shades->grid_path[0], shades->grid_path[1]);
+}
+
 /* Losses by the strips, for each state of the tables. interspace: [bins] 1/mm, result. */
 static skg_status find_losses(const skg_shading *shading, const skg_shades *shades, double *interspace,
                               skg_directions *d) {

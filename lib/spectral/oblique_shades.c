@@ -18,6 +18,20 @@ static skg_status see(void *user, const skg_camera *camera, const double ray[3],
     return SKG_OK;
 }
 
+skg_status skg_oblique_covers(const skg_shades *shades, const skg_view *view,
+                              const skg_plan_options *options) {
+    const skg_shade_extent *known = &shades->oblique_extent;
+    extent e = {1, 0};
+    if (shades->oblique == 0) return SKG_OK;
+    SKG_TRY(skg_shade_rays_of(view, options, see, &e));
+    if (e.low >= known->middle - known->half && fmin(e.high, 1) <= known->middle + known->half + 1e-6)
+        return SKG_OK;
+    return skg_fail(
+        SKG_STALE,
+        "rays of this view cross the scintillator with cosines from %.4g to %.4g, the plan knows %.4g to %.4g; make a plan for it",
+        e.low, e.high, known->middle - known->half, known->middle + known->half);
+}
+
 skg_status skg_oblique_shades(const skg_shading *shading, skg_shades *shades) {
     const skg_spectrum *spectrum = shading->spectrum;
     skg_directions directions = {0};

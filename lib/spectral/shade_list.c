@@ -7,7 +7,7 @@
 #include <string.h>
 
 /* Points of a detector's side at which rays are. */
-enum { SIDE = 17 };
+enum { SIDE = 17, FEW = 9 };
 
 /* --- geometry --- */
 
@@ -65,12 +65,14 @@ static double source_reach(const skg_plan_options *options) {
     return spot->shape == SKG_SPOT_GAUSSIAN ? 2 * most : 0.5 * most;
 }
 
-static skg_status see_view(const skg_view *view, const double *source, skg_shade_ray *seen, void *user) {
+/* side: rays along each side of the detector */
+static skg_status see_view(const skg_view *view, const double *source, int side, skg_shade_ray *seen,
+                           void *user) {
     skg_camera camera;
     SKG_TRY(skg_camera_make(view, source, 0, 0, &camera));
-    for (int k = 0; k < SIDE * SIDE; k++) {
-        const double column = (k % SIDE) / (SIDE - 1.0) * (double)(view->columns - 1);
-        const double row = (k / SIDE) / (SIDE - 1.0) * (double)(view->rows - 1);
+    for (int k = 0; k < side * side; k++) {
+        const double column = (k % side) / (side - 1.0) * (double)(view->columns - 1);
+        const double row = (k / side) / (side - 1.0) * (double)(view->rows - 1);
         double ray[3];
         memcpy(ray, camera.first, sizeof ray);
         if (!camera.parallel) {
@@ -82,19 +84,30 @@ static skg_status see_view(const skg_view *view, const double *source, skg_shade
     return SKG_OK;
 }
 
-skg_status skg_shade_rays(const skg_shading *shading, skg_shade_ray *seen, void *user) {
-    const double reach = source_reach(shading->options);
-    for (int64_t v = -1; v < shading->options->view_count; v++) {
-        const skg_view *view = v < 0 ? shading->view : &shading->options->views[v];
-        SKG_TRY(see_view(view, NULL, seen, user));
-        for (int k = 0; k < 6 && reach > 0; k++) { /* both ways along the axes */
-            double source[3];
-            memcpy(source, view->source, sizeof source);
-            source[k / 2] += k % 2 ? reach : -reach;
-            SKG_TRY(see_view(view, source, seen, user));
-        }
+/* The same from the middle of the source and from its ends. */
+static skg_status see_from_source(const skg_view *view, double reach, int side, skg_shade_ray *seen,
+                                  void *user) {
+    SKG_TRY(see_view(view, NULL, side, seen, user));
+    for (int k = 0; k < 6 && reach > 0; k++) { /* both ways along the axes */
+        double source[3];
+        memcpy(source, view->source, sizeof source);
+        source[k / 2] += k % 2 ? reach : -reach;
+        SKG_TRY(see_view(view, source, side, seen, user));
     }
     return SKG_OK;
+}
+
+skg_status skg_shade_rays(const skg_shading *shading, skg_shade_ray *seen, void *user) {
+    const double reach = source_reach(shading->options);
+    for (int64_t v = -1; v < shading->options->view_count; v++)
+        SKG_TRY(
+            see_from_source(v < 0 ? shading->view : &shading->options->views[v], reach, SIDE, seen, user));
+    return SKG_OK;
+}
+
+skg_status skg_shade_rays_of(const skg_view *view, const skg_plan_options *options, skg_shade_ray *seen,
+                             void *user) {
+    return see_from_source(view, source_reach(options), FEW, seen, user);
 }
 
 skg_shade_extent skg_shade_extent_of(double low, double high) {

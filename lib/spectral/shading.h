@@ -105,6 +105,15 @@ typedef skg_status skg_shade_ray(void *user, const skg_camera *camera, const dou
 /* Calls seen for rays over the detectors of all views, from the middle of the source and from its ends. */
 skg_status skg_shade_rays(const skg_shading *shading, skg_shade_ray *seen, void *user);
 
+/* The same for few rays of one view, to its corners among them. */
+skg_status skg_shade_rays_of(const skg_view *view, const skg_plan_options *options, skg_shade_ray *seen,
+                             void *user);
+
+/* Fails with SKG_STALE if rays of another view than those that the shades were made from lie beyond their tables. */
+skg_status skg_grid_covers(const skg_shades *shades, const skg_view *view, const skg_plan_options *options);
+skg_status skg_oblique_covers(const skg_shades *shades, const skg_view *view,
+                              const skg_plan_options *options);
+
 /* Makes the extent of q between low and high, with a margin. */
 skg_shade_extent skg_shade_extent_of(double low, double high);
 

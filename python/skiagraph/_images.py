@@ -66,6 +66,8 @@ def channels_of(state: State, options: Mapping[str, Any]) -> int | None:
     bands, counter = options.get("bands"), options.get("counter")
     if bands is not None:
         return len(bands) - 1
+    if counter is not None and not hasattr(counter, "_handle"):
+        raise ArgumentError(f"counter is {counter!r}; give a Counter")
     with state.calls():
         handle = counter._handle if counter is not None else state.plans.options(state.options_setup, {}, []).counter
         return None if handle == ffi.NULL else integer("skg_counter_thresholds_get", handle)

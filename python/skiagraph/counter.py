@@ -19,7 +19,7 @@ class Counter:
 
     >>> counter = Counter("CdTe", 1, 0.1, [20, 50], bias_v=400, electronic_kev=2, fluorescence=True)
     >>> low, high = counter.counts(80)
-    >>> 0.5 < low < 1.5
+    >>> bool(0.5 < low < 1.5)
     True
     >>> counter.spread(80, 1).shape
     (11, 11)
