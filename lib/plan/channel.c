@@ -2,6 +2,7 @@
 #include "beam/counter.h"
 #include "geometry/optics.h"
 #include "plan/inputs.h"
+#include "plan/rules.h"
 
 #include <inttypes.h>
 #include <stdio.h>
@@ -53,13 +54,19 @@ const char *skg_channel_unit(int32_t quantity) {
     return quantity_units[quantity];
 }
 
+double skg_open_pulses(const skg_plan_options *options, const skg_model *model, double exposure) {
+    const skg_counting *c = &options->counter->counting;
+    double pulses = 0;
+    for (int32_t k = 0; k < model->channels; k++) pulses += exposure * model->flat_field[k];
+    return pulses * c->dead_time_ns * 1e-9 / c->exposure_s;
+}
+
 /* The share of the pulses of the flat field that count. */
 static double left_of(const skg_plan_options *options, const skg_model *model, double exposure) {
     const skg_counting *c = options->counter ? &options->counter->counting : NULL;
-    double pulses = 0, counted = 0;
+    double counted = 0;
     if (!c || !c->pile_up) return 1;
-    for (int32_t k = 0; k < model->channels; k++) pulses += exposure * model->flat_field[k];
-    pulses *= c->dead_time_ns * 1e-9 / c->exposure_s;
+    const double pulses = skg_open_pulses(options, model, exposure);
     return pulses > 0 && skg_pile_up_get(c->pile_up, pulses, &counted, NULL) == SKG_OK ? counted / pulses : 1;
 }
 

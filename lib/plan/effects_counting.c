@@ -143,19 +143,12 @@ static void find_anti_coincidence(const skg_effect_facts *f, skg_effect_state *s
                        c ? "not asked for: every pixel counts by itself" : "the detector does not count");
 }
 
-/* Pulses of the open beam in a dead time. */
-static double open_pulses(const skg_recipe *recipe, const skg_counting *c) {
-    double pulses = 0;
-    for (int32_t k = 0; k < recipe->model.channels; k++) pulses += recipe->model.flat_field[k];
-    return pulses * c->dead_time_ns * 1e-9 / c->exposure_s;
-}
-
 skg_status skg_counting_check_flat(const skg_recipe *recipe) {
     static const double least = 1e-30; /* floats end at 1e-38, and a ratio divides by it */
     const skg_counting *c = counting_of(&recipe->options);
     double left = 0;
     if (!c || !c->pile_up) return SKG_OK;
-    const double pulses = open_pulses(recipe, c);
+    const double pulses = skg_open_pulses(&recipe->options, &recipe->model, 1);
     SKG_TRY(skg_pile_up_get(c->pile_up, pulses, &left, NULL));
     if (left > least || !(pulses > 0)) return SKG_OK;
     return skg_fail(
@@ -172,7 +165,7 @@ static void find_pile_up(const skg_effect_facts *f, skg_effect_state *state) {
         skg_effect_set(state, 0, c ? "not asked for: every pulse counts" : "the detector does not count");
         return;
     }
-    const double pulses = open_pulses(f->recipe, c);
+    const double pulses = skg_open_pulses(&f->recipe->options, &f->recipe->model, 1);
     if (skg_pile_up_get(c->pile_up, pulses, &left, NULL) != SKG_OK) return;
     skg_effect_set(state, 1,
                    "%.3g pulses in a dead time of the open beam, of which %.3g count; pulses that add up are "

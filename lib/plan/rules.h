@@ -113,6 +113,9 @@ skg_status skg_scatter_check(const skg_recipe *recipe);
 /* Fails if the pixels of the view are not those of the detector that counts. */
 skg_status skg_counting_check(const skg_recipe *recipe);
 
+/* Pulses of the flat field in a dead time. The detector counts, with pile-up. */
+double skg_open_pulses(const skg_plan_options *options, const skg_model *model, double exposure);
+
 /* Fails if dead times leave nothing of the flat field. */
 skg_status skg_counting_check_flat(const skg_recipe *recipe);
 

@@ -163,7 +163,7 @@ SKG_INIT(skg_output)
  *     errors   SKG_ERR_MESH with part and vertex if a vertex is not finite; SKG_ERR_SCENE, SKG_ERR_ARGUMENT
  *     stale    SKG_STALE, and nothing is started, if the scene changed in a way that the plan cannot absorb:
  *              a part was added or put elsewhere, a mesh has other triangles, a material lies outside what
- *              was verified */
+ *              was verified; or if a frame's view is one that skg_plan_view_set refuses so */
 SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    const skg_output *output, skg_job **job);
 
