@@ -35,10 +35,15 @@ static skg_status choose(skg_joint *j) {
     const double places = (double)(size * j->along.places);
     double variance = 0;
     int64_t *orders = NULL;
+    double *shares = NULL;
     skg_choice choice;
     SKG_TRY(skg_alloc(all, sizeof *orders, "series", &orders));
+    SKG_TRY(skg_alloc(all, sizeof *shares, "series", &shares));
     for (int64_t i = 0; i < all; i++) orders[i] = order_of(j, i / size, i % size);
-    const skg_status status = skg_choose_order(all, orders, j->value, j->of_each, &choice);
+    const skg_status status = skg_choose_order(all, orders, j->value, j->of_each, shares, &choice);
+    for (int64_t i = 0; status == SKG_OK && i < all; i++)
+        j->value[i] *= shares[i], j->of_each[i] *= shares[i] * shares[i];
+    skg_free(&shares);
     skg_free(&orders);
     if (status != SKG_OK) return status;
     j->order = choice.order;

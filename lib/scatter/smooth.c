@@ -166,16 +166,21 @@ static skg_status fit(const skg_arrivals *a, const double *across, const double 
     const double places = (double)size;
     skg_choice choice;
     int64_t *orders = NULL;
+    double *shares = work;
     for (int64_t b = 0; b < a->batches; b++)
         transform(c, across, down, a->values + b * size, work, all + b * size);
     average(a, all, c);
     SKG_TRY(skg_alloc(size, sizeof *orders, "smoothing", &orders));
     for (int64_t k = 0; k < size; k++) orders[k] = order_of(c, k);
-    const skg_status status = skg_choose_order(size, orders, c->value, c->variance, &choice);
+    const skg_status status = skg_choose_order(size, orders, c->value, c->variance, shares, &choice);
     skg_free(&orders);
     if (status != SKG_OK) return status;
     c->bias = choice.bias / places;
     c->doubt = choice.doubt / places;
+    for (int64_t k = 0; k < size; k++) {
+        c->value[k] *= shares[k], c->variance[k] *= shares[k] * shares[k];
+        for (int64_t b = 0; b < a->batches; b++) all[b * size + k] *= shares[k];
+    }
     sharpen(a->batches, all, c);
     keep(c, choice.order);
     find_spread(a, across, down, all, work, c);

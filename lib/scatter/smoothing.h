@@ -9,19 +9,21 @@
 /* --- How many coefficients of a smooth function are kept. */
 
 typedef struct {
-    int64_t order; /* coefficients up to this order are kept */
-    double bias;   /* sum of the squares of those that are left out */
+    int64_t order; /* nothing is kept of coefficients beyond this order */
+    double bias;   /* expected sum of the squares of what is left out */
     double doubt;  /* standard error of it */
 } skg_choice;
 
-/* Chooses the order that makes the expected square of the error smallest. A coefficient that is kept costs its variance, one that is
- * left out the square of its mean less its variance (C. L. Mallows, Some comments on C_p, Technometrics 15 (1973) 661-675). Some may
- * be far noisier than others, because lattices of points have waves that they miss: they hardly count among those that are
- * left out.
+/* Chooses the share of each coefficient that makes the expected square of the error smallest. In blocks of orders, of which all
+ * coefficients are taken for about as large, it is signal / (signal + variance): W. James and C. Stein, Estimation with quadratic
+ * loss, Proc. 4th Berkeley Symposium 1 (1961) 361-379; in blocks: L. Cavalier and A. B. Tsybakov, Penalized blockwise Stein's method,
+ * Mathematical Methods of Statistics 10 (2001) 247-282. Some coefficients may be far noisier than others, because lattices of
+ * points have waves that they miss: they hardly count in the signal of a block, and little is kept of them.
  *
- * orders, value, variance   [count] of orthonormal functions; orders >= 1; variance of the value */
+ * orders, value, variance   [count] of orthonormal functions; orders >= 1; variance of the value
+ * shares                    [count] from 0 to 1 */
 skg_status skg_choose_order(int64_t count, const int64_t *orders, const double *value, const double *variance,
-                            skg_choice *choice);
+                            double *shares, skg_choice *choice);
 
 /* --- Smoothing by cosines: what arrived on a coarse grid, as an image. */
 
@@ -49,7 +51,7 @@ typedef struct {
     double mean, sigma; /* over the detector: of a place; root mean square of its error, bias included */
 } skg_cosines;
 
-/* Keeps as many cosines as make the error smallest. */
+/* Keeps of each cosine what makes the error smallest. */
 skg_status skg_cosines_fit(const skg_arrivals *arrivals, skg_cosines *cosines);
 
 /* The coefficients of `count` grids. values, coefficients: [count][rows][columns] */
