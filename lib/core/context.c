@@ -39,6 +39,13 @@ skg_status skg_context_error_set(skg_context *context, skg_error_function error,
     return SKG_OK;
 }
 
+/* Not skg_context_enter: another thread is in a call, whose log it is, and a signal handler may not lock. */
+skg_status skg_context_interrupt(skg_context *context) {
+    SKG_NEEDS(context);
+    atomic_store(&context->interrupted, 1);
+    return SKG_OK;
+}
+
 static _Thread_local int depth; /* of public calls */
 
 skg_error_handler skg_call_begin(const skg_context *context) {

@@ -7,6 +7,8 @@
 
 #include <skiagraph/context.h>
 
+#include <stdatomic.h>
+
 struct skg_device; /* defined in lib/device */
 
 /* The function that receives failures (skg_context_error_set). All zero: none. */
@@ -22,7 +24,8 @@ struct skg_context {
     skg_error_handler error;
     skg_mailbox *driver; /* messages of the OpenCL driver's threads */
     struct skg_device *device;
-    struct skg_job *held; /* the job some of whose frames are not enqueued yet (lib/frame); NULL: none */
+    atomic_int interrupted; /* 1: what a plan computes while it is made is to end */
+    struct skg_job *held;   /* the job some of whose frames are not enqueued yet (lib/frame); NULL: none */
 };
 
 /* To be called first by every public call that uses a context: SKG_ERR_ARGUMENT for NULL, SKG_ERR_FORK in a child

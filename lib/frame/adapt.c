@@ -43,8 +43,13 @@ static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_out
     linear->samples.shifts = linear->samples.fine = 1;
     SKG_TRY_CLEANUP(
         skg_job_create("skg_plan_create", &skg_job_images, linear, machine, outcome, 1, 1, &output, &job));
-    SKG_TRY_CLEANUP(skg_frames_submit(&job, NULL, 1));
+    job->of_plan = 1;
+    SKG_TRY_CLEANUP(skg_frames_submit(&job, NULL, 0));
     status = skg_job_complete(&job);
+    if (status == SKG_ERR_CANCELLED)
+        status = skg_fail(
+            status, "interrupted while the number of samples of the source was found: %d did not suffice yet",
+            (int)samples / 2);
     if (status == SKG_RANGE) status = SKG_OK; /* the change does not depend on the verified range */
 cleanup:
     skg_recipe_release(&linear);
@@ -93,6 +98,7 @@ skg_status skg_samples_adapt(const skg_recipe *recipe, skg_machine *machine, skg
     const skg_spot *spot = &recipe->samples.spot;
     int64_t found = recipe->samples.spot_count;
     *adapted = NULL;
+    atomic_store(&machine->context->interrupted, 0);
     if (spot->shape == SKG_SPOT_POINT || spot->samples != 0 || spot->grid != 0) {
         *adapted = skg_recipe_retain(recipe);
     } else {

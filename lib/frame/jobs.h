@@ -55,6 +55,7 @@ struct skg_job {
     skg_results results; /* staged */
     cl_event last;       /* of the last command; NULL until all that will be enqueued was */
     int32_t finished;    /* 1: everything enqueued is done */
+    int32_t of_plan;     /* 1: a plan that is made waits for it: skg_context_interrupt ends it */
     atomic_int cancelled, references;
     atomic_int over;    /* 1: the job was waited for, and nothing of it is left but this and the two above */
     skg_status failure; /* of a frame that was to be enqueued after the submission */
@@ -68,6 +69,10 @@ skg_status skg_job_create(const char *call, const skg_job_kind *kind, const skg_
 
 /* Has each frame given in so many steps. Before any is enqueued. */
 skg_status skg_job_divide(skg_job *job, int64_t steps);
+
+static inline int skg_job_is_cancelled(const skg_job *job) {
+    return atomic_load(&job->cancelled) || (job->of_plan && atomic_load(&job->machine->context->interrupted));
+}
 
 /* Steps of all frames. */
 static inline int64_t skg_job_steps(const skg_job *job) {

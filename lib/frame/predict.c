@@ -124,6 +124,11 @@ static skg_status predict(skg_plan *plan, skg_scatter_prediction *prediction) {
     float *images = NULL;
     skg_scatter scatter;
     skg_status status = SKG_OK;
+    if (recipe->options.counter)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "a detector that counts (Counting) takes no scatter; leave Counting out to see how much "
+            "arrives");
     skg_scatter_init(&scatter);
     scatter.histories = HISTORIES, scatter.tolerance = CELLS;
     skg_plan_options options = coarse_options(recipe, &scatter);

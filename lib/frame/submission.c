@@ -79,7 +79,7 @@ static skg_status submit_steps(skg_job *job, const skg_frame *frames, int64_t en
                         "parts of the scene were added or put elsewhere before all frames of a job "
                         "were given to the device; wait for the job first");
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
-    while (status == SKG_OK && job->enqueued < end && !atomic_load(&job->cancelled))
+    while (status == SKG_OK && job->enqueued < end && !skg_job_is_cancelled(job))
         status = submit_step(job, frames, poses);
     skg_free(&poses);
     return status;
@@ -233,7 +233,7 @@ static skg_status submit_held(skg_job *job, int64_t end) {
 
 /* Enqueues steps that were held back, up to number `end`. Their failure is that of the job. */
 static void hand_over(skg_job *job, int64_t end) {
-    if (job->last || job->failure != SKG_OK || atomic_load(&job->cancelled)) return;
+    if (job->last || job->failure != SKG_OK || skg_job_is_cancelled(job)) return;
     job->failure = submit_held(job, end);
     if (job->failure != SKG_OK) (void)skg_copy_text(skg_last_error(), &job->sentence);
 }

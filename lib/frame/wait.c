@@ -9,7 +9,7 @@ static cl_int wait_for_frames(skg_job *job) {
     cl_int code = CL_SUCCESS;
     while (code == CL_SUCCESS && !job->last) {
         skg_submission_continue(job);
-        if (job->last || job->failure != SKG_OK || atomic_load(&job->cancelled)) break;
+        if (job->last || job->failure != SKG_OK || skg_job_is_cancelled(job)) break;
         code = skg_event_wait(job->ends[job->done]);
         job->done++;
     }
@@ -82,7 +82,7 @@ static skg_status test(skg_job *job, int32_t *done) {
     *done = 1;
     if (atomic_load(&job->over)) return SKG_OK;
     SKG_TRY(look(job));
-    const int ends_early = job->failure != SKG_OK || atomic_load(&job->cancelled);
+    const int ends_early = job->failure != SKG_OK || skg_job_is_cancelled(job);
     if (job->last) SKG_TRY(is_over(job->last, &over));
     *done = job->last ? over : ends_early && job->done == job->enqueued;
     return SKG_OK;

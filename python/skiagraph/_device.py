@@ -153,6 +153,33 @@ class Device:
         self._unfinished.append((job, lambda: self._wait(job), keep))
         return job
 
+    def interruptible(self, work: Callable[[], Any]) -> Any:
+        """What a call gives that may compute for long before it returns. A thread of its own makes it, so that the main thread answers an
+        interrupt, which ends the call."""
+        if threading.current_thread() is not threading.main_thread():
+            return work()
+        done: list[Any] = []
+
+        def call_it() -> None:
+            try:
+                done.append(work())
+            except BaseException as error:
+                done.append(error)
+
+        thread = threading.Thread(target=call_it, name="skiagraph-plan", daemon=True)
+        try:
+            thread.start()
+            thread.join()
+        except BaseException:
+            while thread.is_alive():
+                lib.skg_context_interrupt(self._handle)
+                with contextlib.suppress(KeyboardInterrupt):
+                    thread.join(0.05)
+            raise
+        if isinstance(done[0], BaseException):
+            raise done[0]
+        return done[0]
+
     def abandon(self, finish: Callable[[], object], keep: Any) -> None:
         """Takes work that was not waited for: a function that waits, and what has to stay as long as it runs."""
         self._unfinished.append((None, finish, keep))

@@ -47,8 +47,8 @@ class Plans:
     def _make(self, setup: Any, scene: Any, view: View, beam: Beam, given: dict[str, Any]) -> Any:
         keep: list[Any] = []
         options = self.options(setup, given, keep, view)
-        return make("skg_plan_create", "skg_plan", self._device.handle, scene, view._write(struct("skg_view")),
-                    beam._handle, options)
+        return self._device.interruptible(lambda: make(
+            "skg_plan_create", "skg_plan", self._device.handle, scene, view._write(struct("skg_view")), beam._handle, options))
 
     @staticmethod
     def options(setup: Any, given: Mapping[str, Any], keep: list[Any], view: View | None = None) -> Any:

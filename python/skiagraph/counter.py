@@ -6,6 +6,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from ._interface import ArgumentError
 from ._library import call, ffi, fill, integer, make, owned, struct
 from .material import Material, as_material
 
@@ -33,7 +34,10 @@ class Counter:
         kept = as_material(material)
         edges = np.atleast_1d(np.asarray(thresholds, dtype=float))
         keep: list[Any] = [kept]
-        given = {"material": kept, "thickness_mm": float(thickness_mm), "pixel_mm": np.broadcast_to(pixel_mm, 2),
+        sides = np.atleast_1d(np.asarray(pixel_mm, dtype=float))
+        if sides.shape not in ((1,), (2,)):
+            raise ArgumentError(f"pixel_mm is {pixel_mm!r}; give one number, or two: along rows and along columns")
+        given = {"material": kept, "thickness_mm": float(thickness_mm), "pixel_mm": np.broadcast_to(sides, 2),
                  "threshold_kev": edges, "count": len(edges), **fields}
         made = fill(struct("skg_counting"), "skg_counting", given, keep, "the field of a counter")
         self._handle = owned("skg_counter", make("skg_counter_create", "skg_counter", made))
@@ -42,9 +46,12 @@ class Counter:
         """The number of windows."""
         return integer("skg_counter_thresholds_get", self._handle)
 
-    def counts(self, kev: float) -> NDArray[np.float64]:
-        """Mean counts in each window of one photon of this energy, in all pixels together and before pile-up."""
-        return self._table("skg_counter_counts_get", len(self), float(kev))
+    def counts(self, kev: ArrayLike) -> NDArray[np.float64]:
+        """Mean counts in each window of one photon of this energy, in all pixels together and before pile-up; of several energies
+        [energy, window]."""
+        given = np.asarray(kev, dtype=float)
+        rows = [self._table("skg_counter_counts_get", len(self), float(one)) for one in given.reshape(-1)]
+        return np.reshape(rows, (*given.shape, len(self)))
 
     def spread(self, kev: float, window: int) -> NDArray[np.float64]:
         """Where the counts of a window are: [row, column], in the middle the pixel that the photon enters."""

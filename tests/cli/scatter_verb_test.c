@@ -236,7 +236,7 @@ START_TEST(other_verbs_meet_the_key) {
     static const char with[] = "--set 'Scatter={\"Histories\": 2000}'";
     static float plain[PIXELS], scattered[PIXELS];
     ck_run(0, "lbuffer scene.json --part slab -o a.mha %s --set World=water", with);
-    ck_run_fails(4, "scatter: a World of", "image scene.json -o a.mha %s --set World=water", with);
+    ck_run_fails(3, "scatter: a World of", "image scene.json -o a.mha %s --set World=water", with);
     ck_run(0, "image scene.json -o a.mha %s --set World=air", with);
     ck_run(0, "plan scene.json %s", with);
     ck_assert_msg(strstr(said, "those that parts and world scatter"), "%s", said);

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <stdatomic.h>
 #include <string.h>
 
 /* Of 24 x 24 pixels with 16 x 16 rays each a core is given some 170 frames at once (lib/frame/submission.c). */
@@ -404,6 +405,43 @@ START_TEST(steps_of_a_variance) {
 }
 END_TEST
 
+static atomic_int is_back;
+
+static void *interrupt(void *unused) {
+    (void)unused;
+    while (!atomic_load(&is_back)) ck_skg(skg_context_interrupt(run_context));
+    return NULL;
+}
+
+/* Samples that never suffice are looked for until another thread ends it; the next plan is not ended. */
+START_TEST(a_plan_that_is_made_is_interrupted) {
+    skg_plan *made = NULL;
+    skg_plan_options options;
+    skg_spot spot;
+    skg_spectrum *beam = NULL;
+    pthread_t thread;
+    skg_plan_options_init(&options);
+    skg_spot_init(&spot);
+    spot.shape = SKG_SPOT_DISC, spot.extent[0] = 5;
+    spot.tolerance = 1e-12, spot.samples_max = 1 << 16;
+    options.spot = &spot;
+    ck_skg(skg_spectrum_create_mono(60, 1000, &beam));
+    atomic_store(&is_back, 0);
+    ck_assert_int_eq(pthread_create(&thread, NULL, interrupt, NULL), 0);
+    const skg_status status = skg_plan_create(run_context, scene, &view, beam, &options, &made);
+    atomic_store(&is_back, 1);
+    pthread_join(thread, NULL);
+    ck_skg_fails(status, SKG_ERR_CANCELLED,
+                 "interrupted while the number of samples of the source was found");
+    ck_assert_ptr_null(made);
+    spot.tolerance = 0.01;
+    ck_skg(skg_plan_create(run_context, scene, &view, beam, &options, &made));
+    ck_skg_fails(skg_context_interrupt(NULL), SKG_ERR_ARGUMENT, "context");
+    skg_plan_release(&made);
+    skg_spectrum_release(&beam);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_plan, close_plan);
     tcase_add_test(tests, cancelled_at_once);
@@ -417,6 +455,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, cancelled_within_a_frame, 0, 2);
     tcase_add_loop_test(tests, steps_do_not_change_bits, 0, 2);
     tcase_add_test(tests, steps_of_a_variance);
+    tcase_add_test(tests, a_plan_that_is_made_is_interrupted);
 }
 
 SKG_SUITE_MAIN("cancel", add_tests)

@@ -9,6 +9,15 @@ SCENE = {"Source": {"Position": [0, -1000, 0, "mm"], "Shape": "PointSource", "Be
          "Samples": [{"Label": "aside", "Cuboid": [0.1, 0.1, 0.1, "mm"], "Material": "water", "Transform": [["Translation", 0.7, -1, 0, "mm"]]}]}
 
 
+def test_energies_and_pixels_of_several_shapes():
+    counter = sk.Counter("CdTe", 1, 0.1, [20, 50])
+    several = counter.counts([60, 70])
+    assert several.shape == (2, 2)
+    np.testing.assert_array_equal(several[1], counter.counts(70))
+    with pytest.raises(sk.ArgumentError, match="give one number, or two"):
+        sk.Counter("CdTe", 1, [0.1, 0.2, 0.3], [20])
+
+
 def make(**fields):
     return sk.Counter("CdTe", 1, 0.1, [15, 50], electronic_kev=1, bias_v=400, fluorescence=True, **fields)
 

@@ -252,3 +252,22 @@ class Turned:
             self.scene.beam = sk.Beam.mono(60, 1000)
         self.scene["cube"].pose = sk.rotate("y", 20 * index)
         return self.scene.image()
+
+
+def test_an_interrupt_ends_the_making_of_a_plan(scene):
+    """SIGINT comes while samples of the source are looked for that never suffice; the next image is not touched."""
+    before, over = scene.image(), threading.Event()
+
+    def interrupt():
+        while not over.is_set():
+            if any(thread.name == "skiagraph-plan" for thread in threading.enumerate()):
+                signal.pthread_kill(threading.main_thread().ident, signal.SIGINT)
+                return
+
+    thread = threading.Thread(target=interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        thread.start()
+        scene.image(spot={"shape": "disc", "extent": 5.0, "tolerance": 1e-12, "samples_max": 65536})
+    over.set()
+    thread.join()
+    assert (scene.image() == before).all()

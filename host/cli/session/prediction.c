@@ -22,7 +22,7 @@ static void find_reason(double tolerance, cli_prediction *p) {
         snprintf(beside, sizeof beside, "%s than the tolerance of %g", found->called_for ? "more" : "less",
                  tolerance);
     else
-        snprintf(beside, sizeof beside, "more than the tolerance of 0 allows");
+        snprintf(beside, sizeof beside, "no tolerance says that so much may be left out");
     snprintf(p->reason, sizeof p->reason, "predicted: scatter is %s, and up to %.2g %% of the open beam: %s",
              ratio, 100 * found->max, beside);
 }

@@ -122,6 +122,12 @@ typedef void (*skg_log_function)(int32_t level, const char *sentence, void *user
 /** Sets where the lines of a context's log go. NULL, the default, drops them. */
 SKG_API skg_status skg_context_log_set(skg_context *context, skg_log_function log, void *user);
 
+/** Ends what skg_plan_create, skg_plan_update and calls that make a plan anew compute with this context while they find the number of
+ * samples of an extended source: such a call returns SKG_ERR_CANCELLED within half a second. For any other thread and for a signal
+ * handler; jobs have skg_job_cancel. Where nothing is looked for it does nothing, and what begins later is not ended: call it
+ * until the other call is back. Errors: SKG_ERR_ARGUMENT for NULL. */
+SKG_API skg_status skg_context_interrupt(skg_context *context);
+
 /** Receives a failure. The library calls it once for each call that fails, just before that call returns, in the thread of that
  * call. It must not call the library with the same context.
  *
