@@ -1,8 +1,6 @@
-# awk -f manual.awk -v folder=man3 context.h.3: writes the page of a header that Doxygen has made as skiagraph_context.h.3, and a page for
-# each of its functions.
+# awk -f manual.awk -v folder=man3 -v base=context.h.3 <context.h.3: writes the page of a header that Doxygen has made as
+# skiagraph_context.h.3, and a page for each of its functions.
 BEGIN {
-    base = ARGV[1]
-    sub(/.*\//, "", base)
     header = substr(base, 1, length(base) - 2)
     page = folder "/skiagraph_" base
 }

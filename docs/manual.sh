@@ -2,7 +2,8 @@
 # manual.sh DOXYGEN DOXYFILE FOLDER: writes section 3 of the manual into FOLDER/man3: a page for each header, struct and function.
 set -eu
 doxygen=$1 doxyfile=$2 folder=$3
-here=$(dirname "$0")
+here=$(cd "$(dirname "$0")" && pwd)
+quote=DoubleQuote
 rm -rf "$folder"
 mkdir -p "$folder/man3"
 {
@@ -12,12 +13,14 @@ mkdir -p "$folder/man3"
     echo "ALWAYS_DETAILED_SEC = YES"
     echo "OUTPUT_DIRECTORY = \"$folder\""
     echo "MAN_OUTPUT = made"
+    # Doxygen would make single quotes of double ones.
+    echo "INPUT_FILTER = \"awk -v quote=$quote -f $here/fields.awk\""
 } | "$doxygen" -
 for page in "$folder"/made/man3/*.3; do
     case $page in
-    *.h.3) awk -f "$here/manual.awk" -v folder="$folder/man3" "$page" ;;
+    *.h.3) sed "s/$quote/\\\\(dq/g" "$page" | awk -f "$here/manual.awk" -v folder="$folder/man3" -v base="${page##*/}" ;;
     *)
-        sed -e '/^\.SH "Author"/,$d' -e "s/^'/\\\\\&'/" -e 's/^\(\.TH "[^"]*" 3\).*/\1 "" "Skiagraph" "Skiagraph"/' \
+        sed -e "s/$quote/\\\\(dq/g" -e '/^\.SH "Author"/,$d' -e "s/^'/\\\\\&'/" -e 's/^\(\.TH "[^"]*" 3\).*/\1 "" "Skiagraph" "Skiagraph"/' \
             "$page" >"$folder/man3/${page##*/}"
         ;;
     esac

@@ -19,5 +19,7 @@ if [ -n "$said" ]; then
     echo "$said"
     bad=1
 fi
+if grep -rl DoubleQuote "$folder"; then bad=1; fi
+grep -q 'driver=\\(dq/' "$folder/skg_context_create.3" || bad=1
 [ "$(find "$folder" -name 'skiagraph_*.h.3' | wc -l)" -gt 30 ] || bad=1
 exit $bad
