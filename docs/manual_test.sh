@@ -7,7 +7,8 @@ command -v groff >/dev/null 2>&1 || {
     exit 77
 }
 bad=0
-for name in $(sed -n '/"functions": \[/,$s/.*{"name": "\(skg_[a-z0-9_]*\)".*/\1/p' "$2"); do
+names=$(sed -n '/"functions": \[/,$s/.*{"name": "\(skg_[a-z0-9_]*\)".*/\1/p' "$2")
+for name in $names; do
     page=$folder/$name.3
     if ! grep -q "^$name "'\\- .' "$page" 2>/dev/null || ! grep -q "$name (" "$page" || ! grep -q 'skiagraph_[a-z_]*\.h.*(3)' "$page"; then
         echo "$name has no page with its name, what it does, its call and its header"
