@@ -27,8 +27,8 @@ extern "C" {
 /** The result of a call: one of enum skg_status_code. */
 typedef int32_t skg_status;
 
-/** Whether a status is a failure. SKG_STALE and SKG_RANGE are none: after SKG_RANGE the result is there, after SKG_STALE the
- * call has done nothing. A program that adds parts or swaps them after it planned compares with SKG_STALE as well. */
+/** Whether a status is a failure. SKG_STALE and SKG_RANGE are none: after SKG_RANGE the result is there, after SKG_STALE it
+ * is not, or not all of it. A program that adds parts or swaps them after it planned compares with SKG_STALE as well. */
 #define SKG_FAILED(status) ((status) < 0)
 
 /** All status codes: X(name, value, text) for each. */
