@@ -1,15 +1,28 @@
 # Doxygen's input filter. Gives each field of `double a, b;` the comment above the line, which Doxygen gives to a only, and
-# writes out what SKG_INIT declares.
+# writes out what SKG_INIT declares. -v quote=TEXT: instead of double quotes.
 /^ *\/\*\*/ { comment = ""; inside = 1 }
 inside {
+    if (quote) gsub(/\\?"/, quote)
     # Rows of a table, `    name    what it is`, become a list: Doxygen would run them together, or show them as code.
     if (match($0, /^ \*     [^ ]+( [^ ]+)*  +/)) {
         name = substr($0, 8, RLENGTH - 7)
         sub(/ +$/, "", name)
         $0 = " * - **" name "**: " substr($0, RLENGTH + 1)
         row = 1
-    } else if (row && match($0, /^ \*       +/)) $0 = " *   " substr($0, RLENGTH + 1)
-    else row = 0
+        nested = 0
+    } else if (row && match($0, /^ \*       +/)) {
+        # Words of a row have a row each: `device=cpu   what it is`.
+        text = substr($0, RLENGTH + 1)
+        if (text ~ /^[a-z]+=[A-Za-z]/) {
+            nested = RLENGTH
+            sub(/  +/, ": ", text)
+            $0 = " *   - " text
+        } else if (nested && RLENGTH > nested) $0 = " *     " text
+        else {
+            $0 = (nested ? " *\n" : "") " *   " text
+            nested = 0
+        }
+    } else row = 0
     comment = comment $0 "\n"
     if (/\*\//) inside = row = 0
     print

@@ -13,7 +13,7 @@ enum { SIDE = 128, POSES = 100, BATCH = 10 };
 static int failed(skg_status status) {
     if (status == SKG_OK) return 0;
     fprintf(stderr, "%s: %s\n", skg_status_name(status), skg_last_error());
-    return 1;
+    return SKG_FAILED(status) || status == SKG_STALE; /* after SKG_RANGE the image is there */
 }
 
 /* Turned about y by angle (radians), row by row. */

@@ -15,7 +15,7 @@ static const double pi = 3.14159265358979323846;
 static int failed(skg_status status) {
     if (status == SKG_OK) return 0;
     fprintf(stderr, "%s: %s\n", skg_status_name(status), skg_last_error());
-    return 1;
+    return SKG_FAILED(status) || status == SKG_STALE; /* after SKG_RANGE the image is there */
 }
 
 /* Turns a vector about the z axis. */

@@ -36,7 +36,7 @@ typedef struct {
 static int failed(skg_status status) {
     if (status == SKG_OK) return 0;
     fprintf(stderr, "%s: %s\n", skg_status_name(status), skg_last_error());
-    return 1;
+    return SKG_FAILED(status) || status == SKG_STALE; /* after SKG_RANGE the image is there */
 }
 
 static int opencl_failed(cl_int code, const char *call) {

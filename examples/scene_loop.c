@@ -13,7 +13,7 @@ static const double STEP = 10; /* mm along x */
 static int failed(skg_status status) {
     if (status == SKG_OK) return 0;
     fprintf(stderr, "%s: %s\n", skg_status_name(status), skg_last_error());
-    return 1;
+    return SKG_FAILED(status) || status == SKG_STALE; /* after SKG_RANGE the image is there */
 }
 
 /* The longest way of a ray through the part, in mm, and the column about which its shadow lies. */

@@ -28,7 +28,7 @@ void bench_die(const char *format, ...) {
 }
 
 void bench_try(skg_status status, const char *what) {
-    if (status < 0) bench_die("%s: %s: %s", what, skg_status_name(status), skg_last_error());
+    if (SKG_FAILED(status)) bench_die("%s: %s: %s", what, skg_status_name(status), skg_last_error());
 }
 
 static void warn(int32_t level, const char *sentence, void *user) {

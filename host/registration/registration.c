@@ -2,6 +2,7 @@
 #include "registration/types.h"
 
 #include "core/clock.h"
+#include "core/context.h"
 #include "core/log.h"
 #include "core/text.h"
 
@@ -41,15 +42,15 @@ static skg_status check_options(const skg_registration_options *o) {
     return SKG_OK;
 }
 
-skg_status skg_registration_create(skg_context *context, skg_scene *scene, skg_spectrum *spectrum,
-                                   const skg_plan_options *plan, const skg_registration_options *options,
-                                   skg_registration **registration) {
+static skg_status create(skg_context *context, skg_scene *scene, skg_spectrum *spectrum,
+                         const skg_plan_options *plan, const skg_registration_options *options,
+                         skg_registration **registration) {
     SKG_PLAIN;
     skg_registration *r = NULL;
-    SKG_NEEDS(context);
-    SKG_NEEDS(scene);
-    SKG_NEEDS(spectrum);
-    SKG_NEEDS(registration);
+    SKG_NEEDS_OF("skg_registration_create", context);
+    SKG_NEEDS_OF("skg_registration_create", scene);
+    SKG_NEEDS_OF("skg_registration_create", spectrum);
+    SKG_NEEDS_OF("skg_registration_create", registration);
     *registration = NULL;
     SKG_TRY(skg_alloc(1, sizeof *r, "registration", &r));
     skg_plan_options_init(&r->plan);
@@ -72,6 +73,13 @@ skg_status skg_registration_create(skg_context *context, skg_scene *scene, skg_s
     if (r->plan.response) skg_response_retain(r->plan.response);
     *registration = r;
     return SKG_OK;
+}
+
+skg_status skg_registration_create(skg_context *context, skg_scene *scene, skg_spectrum *spectrum,
+                                   const skg_plan_options *plan, const skg_registration_options *options,
+                                   skg_registration **registration) {
+    const skg_error_handler handler = skg_call_begin(context);
+    return skg_call_end(handler, create(context, scene, spectrum, plan, options, registration));
 }
 
 static void forget_run(skg_registration *r) {

@@ -54,6 +54,11 @@ def header_of(member):
     return os.path.basename(member.find("location").get("file"))
 
 
+def since_of(element):
+    """The version that a comment names with @since; "" if it names none."""
+    return next((text_of(s) for s in element.findall("detaileddescription//simplesect") if s.get("kind") == "since"), "")
+
+
 def is_exported(member):
     """Static functions are inline: they leave no symbol."""
     return member.get("static") == "no"
@@ -72,7 +77,9 @@ def read_function(member):
     plain = name.endswith("_init_sized") or name.endswith("_release")
     if returns != "skg_status" and not plain and name not in NO_STATUS:
         fail(f"{name} returns {returns}; a function returns skg_status unless error.h lists it")
-    return {"name": name, "header": header_of(member), "returns": returns, "parameters": parameters}
+    function = {"name": name, "header": header_of(member), "returns": returns, "parameters": parameters}
+    since = since_of(member)
+    return {**function, "since": since} if since else function
 
 
 def read_callback(member):
@@ -95,7 +102,7 @@ def read_struct(folder, identifier):
 
 
 def read_xml(folder):
-    found = {"macros": [], "enums": [], "handles": [], "callbacks": [], "structs": [], "functions": []}
+    found = {"since": {}, "macros": [], "enums": [], "handles": [], "callbacks": [], "structs": [], "functions": []}
     for entry in xml.parse(f"{folder}/index.xml").getroot():
         identifier = entry.get("refid")
         if entry.get("kind") == "struct" and entry.findtext("name").startswith("skg_"):
@@ -105,6 +112,10 @@ def read_xml(folder):
         if entry.get("kind") != "file":
             continue
         root = xml.parse(f"{folder}/{identifier}.xml").getroot()
+        header, since = entry.findtext("name"), since_of(root.find("compounddef"))
+        if not since:
+            fail(f"{header}: the comment at its head does not say since which version it is there: @since 0.1.0")
+        found["since"][header] = since
         found["macros"] += [m.findtext("name") for m in members(root, "define")
                             if m.findtext("name").startswith("SKG_")]
         found["enums"] += [{"name": m.findtext("name"), "header": header_of(m),
@@ -161,8 +172,10 @@ def write_json(found):
     """One line for each function, field and enumerator, so that a change shows as a line."""
     parts = ['  "about": ' + json.dumps("All of the interface, for bindings: made by interface.py from the headers. "
                                         "Sizes and offsets are bytes of a 64-bit platform. A type of a parameter or "
-                                        "field is as C has it; count: elements of an array.")]
+                                        "field is as C has it; count: elements of an array. since: the first version with "
+                                        "a header's names, and with a function that is younger than its header.")]
     parts.append('  "no_status": ' + json.dumps(NO_STATUS))
+    parts.append('  "since": ' + json.dumps(dict(sorted(found["since"].items()))))
     parts.append('  "macros": ' + json.dumps(found["macros"]))
     parts.append('  "handles": ' + json.dumps(found["handles"]))
     enums = [f'    {{"name": "{e["name"]}", "header": "{e["header"]}", "values": [\n'

@@ -54,7 +54,8 @@ skg_error_handler skg_call_begin(const skg_context *context) {
 }
 
 skg_status skg_call_end(skg_error_handler handler, skg_status status) {
-    if (--depth == 0 && status < SKG_OK && handler.call) handler.call(status, skg_last_error(), handler.user);
+    if (--depth == 0 && SKG_FAILED(status) && handler.call)
+        handler.call(status, skg_last_error(), handler.user);
     return status;
 }
 

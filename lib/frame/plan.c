@@ -70,6 +70,10 @@ skg_status skg_plan_renew(skg_plan *plan) {
     return SKG_OK;
 }
 
+skg_error_handler skg_plan_call_begin(const skg_plan *plan) {
+    return skg_call_begin(plan ? plan->context : NULL);
+}
+
 int32_t skg_plan_warned_unseen_set(skg_plan *plan, int32_t warned) {
     const int32_t before = plan->outcome.warned_unseen;
     plan->outcome.warned_unseen = warned;

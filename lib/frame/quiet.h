@@ -1,8 +1,13 @@
-/* For callers who know that nothing falls on the detector: flat and dark fields. Private. */
+/* What runs of scans, and flat and dark fields, need of a plan beside its interface. Private. */
 #ifndef SKG_QUIET_H
 #define SKG_QUIET_H
 
+#include "core/context.h"
+
 #include <skiagraph/types.h>
+
+/* skg_call_begin for a plan's context. plan: NULL has no handler. */
+skg_error_handler skg_plan_call_begin(const skg_plan *plan);
 
 /* Sets whether the plan has already warned that nothing falls on the detector, and returns whether it had. */
 int32_t skg_plan_warned_unseen_set(skg_plan *plan, int32_t warned);

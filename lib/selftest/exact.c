@@ -84,7 +84,7 @@ static skg_status render(skg_context *context, int32_t strategy, exact_run *run)
     output.lengths = SKG_LENGTHS_SURFACE;
     SKG_TRY(skg_plan_submit(run->plan, 1, NULL, &output, &job));
     const skg_status status = skg_job_wait(&job);
-    return status < 0 ? status : SKG_OK;
+    return SKG_FAILED(status) ? status : SKG_OK;
 }
 
 static void compare(const exact_run *run, const char *strategy, skg_verdict *verdict) {

@@ -68,7 +68,7 @@ static skg_status render(test_run *run) {
     output.type = run->scene.number == SKG_SELF_TEST_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     if (run->scene.number == SKG_SELF_TEST_VARIANCE) output.kind = SKG_OUTPUT_VARIANCE;
     skg_status status = skg_plan_image(run->plan, &output);
-    if (status < 0) return status;
+    if (SKG_FAILED(status)) return status;
     read_floats(run, memory, run->image);
     skg_plan_report_init(&report);
     SKG_TRY(skg_plan_report_get(run->plan, &report));
@@ -78,7 +78,7 @@ static skg_status render(test_run *run) {
     output.lengths = SKG_LENGTHS_SURFACE;
     status = skg_plan_image(run->plan, &output);
     read_floats(run, memory, run->lengths);
-    return status < 0 ? status : SKG_OK;
+    return SKG_FAILED(status) ? status : SKG_OK;
 }
 
 /* The mean over the samples of the source and the rays of a pixel. */

@@ -19,6 +19,13 @@ START_TEST(every_status_has_name_and_text) {
 }
 END_TEST
 
+START_TEST(errors_are_failures_and_answers_are_none) {
+#define SKG_CHECK_FAILED(name, value, text)                                                                  \
+    ck_assert_int_eq(SKG_FAILED(name), strncmp(#name, "SKG_ERR_", strlen("SKG_ERR_")) == 0);
+    SKG_STATUS_LIST(SKG_CHECK_FAILED)
+}
+END_TEST
+
 START_TEST(last_error_may_quote_itself) {
     skg_fail(SKG_ERR_FILE, "%s: not there", "a.stl");
     skg_fail(SKG_ERR_SCENE, "scene.json: %s", skg_last_error());
@@ -252,6 +259,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, every_status_has_name_and_text);
+    tcase_add_test(tests, errors_are_failures_and_answers_are_none);
     tcase_add_test(tests, last_error_may_quote_itself);
     tcase_add_test(tests, a_sentence_is_one_line);
     tcase_add_test(tests, allocation_checks_its_product);

@@ -6,6 +6,7 @@
 
 #include <math.h>
 #include <pthread.h>
+#include <signal.h>
 #include <stdatomic.h>
 #include <string.h>
 
@@ -134,7 +135,15 @@ static void *cancel(void *job) {
     return NULL;
 }
 
-START_TEST(cancelled_in_the_middle_by_another_thread) {
+static skg_job *interrupted;
+
+static void cancel_in_handler(int number) {
+    (void)number;
+    (void)skg_job_cancel(interrupted);
+}
+
+/* By another thread, and by the handler of a signal. */
+START_TEST(cancelled_in_the_middle) {
     if (!holds_frames()) return;
     skg_job *job = submit(), *later = NULL;
     int64_t done = 0, total = 0, before = 0;
@@ -147,8 +156,14 @@ START_TEST(cancelled_in_the_middle_by_another_thread) {
     }
     ck_skg(skg_job_test(job, &is_done));
     ck_assert_int_eq(is_done, 0);
-    ck_assert_int_eq(pthread_create(&thread, NULL, cancel, job), 0);
-    pthread_join(thread, NULL);
+    if (_i == 0) {
+        ck_assert_int_eq(pthread_create(&thread, NULL, cancel, job), 0);
+        pthread_join(thread, NULL);
+    } else {
+        interrupted = job;
+        ck_assert(signal(SIGUSR1, cancel_in_handler) != SIG_ERR);
+        ck_assert_int_eq(raise(SIGUSR1), 0);
+    }
     static float again[PIXELS];
     const skg_output output = output_of(again);
     ck_skg(skg_plan_submit(plan, 1, NULL, &output, &later));
@@ -445,7 +460,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_plan, close_plan);
     tcase_add_test(tests, cancelled_at_once);
-    tcase_add_test(tests, cancelled_in_the_middle_by_another_thread);
+    tcase_add_loop_test(tests, cancelled_in_the_middle, 0, 2);
     tcase_add_test(tests, cancelled_after_the_end);
     tcase_add_test(tests, another_thread_cancels_while_one_waits);
     tcase_add_test(tests, the_scene_of_the_submission);

@@ -1,5 +1,5 @@
-/* Two threads with a context each, from the start of OpenCL to images and files: the same bits as one thread alone. This is
- * also what ThreadSanitizer watches (preset tsan). */
+/* Two threads with a context each, from the start of OpenCL to images and files: the same bits as one thread alone, from scenes of their
+ * own and from one that they share. This is also what ThreadSanitizer watches (preset tsan). */
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>
@@ -12,6 +12,7 @@ enum { THREADS = 2, SIDE = 48, PIXELS = SIDE * SIDE, FRAMES = 6 };
 typedef struct {
     pthread_barrier_t *together;
     skg_material *shared; /* never changes, so that threads may share it */
+    skg_scene *scene;     /* nobody changes it, nor its meshes; NULL: the worker makes its own */
     skg_status status;
     char message[256];
     float images[FRAMES][PIXELS];
@@ -106,9 +107,13 @@ static skg_status work(worker *w) {
     skg_scene *scene = NULL;
     TRY(skg_context_create(NULL, &context));
     skg_status status = skg_context_log_set(context, hear, w);
-    if (status == SKG_OK) status = skg_scene_create(context, &scene);
-    if (status == SKG_OK) status = make_scene(w->shared, scene);
-    if (status == SKG_OK) status = use_plan(context, scene, w);
+    if (w->scene) {
+        if (status == SKG_OK) status = use_plan(context, w->scene, w);
+    } else {
+        if (status == SKG_OK) status = skg_scene_create(context, &scene);
+        if (status == SKG_OK) status = make_scene(w->shared, scene);
+        if (status == SKG_OK) status = use_plan(context, scene, w);
+    }
     skg_scene_release(&scene);
     skg_context_release(&context);
     return status;
@@ -127,10 +132,15 @@ START_TEST(the_same_bits_as_alone) {
     pthread_barrier_t together;
     pthread_t threads[THREADS];
     skg_material *shared = NULL;
+    skg_scene *scene = NULL;
     ck_skg(skg_material_create_mu("soft", 0.2, &shared));
+    if (_i == 1) {
+        ck_skg(skg_scene_create(NULL, &scene));
+        ck_skg(make_scene(shared, scene));
+    }
     pthread_barrier_init(&together, NULL, THREADS);
     for (int n = 0; n < THREADS; n++) {
-        workers[n] = (worker){.together = &together, .shared = shared};
+        workers[n] = (worker){.together = &together, .shared = shared, .scene = scene};
         ck_assert_int_eq(pthread_create(&threads[n], NULL, run, &workers[n]), 0);
     }
     for (int n = 0; n < THREADS; n++) ck_assert_int_eq(pthread_join(threads[n], NULL), 0);
@@ -145,12 +155,13 @@ START_TEST(the_same_bits_as_alone) {
     }
     ck_assert(alone.lengths[PIXELS / 2 + SIDE / 2] > 0);
     ck_assert_mem_ne(alone.images[0], alone.images[1], sizeof alone.images[0]); /* noise */
+    skg_scene_release(&scene);
     skg_material_release(&shared);
 }
 END_TEST
 
 static void add_tests(TCase *tests) {
-    tcase_add_test(tests, the_same_bits_as_alone);
+    tcase_add_loop_test(tests, the_same_bits_as_alone, 0, 2);
 }
 
 SKG_SUITE_MAIN("two threads", add_tests)

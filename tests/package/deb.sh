@@ -58,6 +58,7 @@ has libskiagraph-dev "usr/$multiarch/pkgconfig/skiagraph.pc"
 has libskiagraph-dev "usr/$multiarch/cmake/skiagraph/skiagraph-config.cmake"
 has libskiagraph-dev usr/include/skiagraph/skiagraph.h
 has libskiagraph-dev usr/share/doc/skiagraph/examples/first_image.c
+if command -v doxygen >/dev/null 2>&1; then has libskiagraph-dev usr/share/man/man3/skg_mesh_load.3; fi
 has skiagraph usr/bin/skiagraph
 has skiagraph usr/share/man/man1/skiagraph.1
 has python3-skiagraph usr/lib/python3/dist-packages/skiagraph/__init__.py

@@ -321,6 +321,23 @@ static skg_status refuse(const skg_scan_batch *batch, void *user) {
     return SKG_ERR_OUTPUT;
 }
 
+/* 1e6 photons of 80 keV are 80,000 MeV, more than 16 bits hold: an answer, after which every field is there. */
+START_TEST(flat_fields_beyond_the_range_are_all_made) {
+    skg_spectrum *beam = NULL;
+    skg_plan *coarse = NULL;
+    skg_plan_options its;
+    ck_skg(skg_spectrum_create_mono(80, 1e6, &beam));
+    skg_plan_options_init(&its);
+    its.precision = SKG_PRECISION_HALF;
+    ck_skg(skg_plan_create(run_context, scene, &view, beam, &its, &coarse));
+    memset(got, 0, sizeof got);
+    ck_skg_fails(skg_scan_flat_fields_render(coarse, scene, scan, NULL, COUNT, got), SKG_RANGE, "not finite");
+    for (int64_t f = 0; f < COUNT; f++) ck_assert(isinf(got[f][0]));
+    skg_plan_release(&coarse);
+    skg_spectrum_release(&beam);
+}
+END_TEST
+
 START_TEST(what_is_refused) {
     static const int64_t falling[] = {3, 2};
     int calls = 0;
@@ -361,6 +378,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, parts_move_from_one_projection_to_the_next);
     tcase_add_test(tests, a_subset_has_the_projections_of_the_whole);
     tcase_add_test(tests, a_run_can_be_left);
+    tcase_add_test(tests, flat_fields_beyond_the_range_are_all_made);
     tcase_add_test(tests, what_is_refused);
 }
 

@@ -110,6 +110,10 @@ START_TEST(bits) {
     subject_plan(&s);
     skg_scatter_series *series = make(&s, &t), *again = make(&s, &t);
     ck_assert(series && again);
+    skg_scatter_series *owner = again; /* one of two */
+    ck_skg(skg_scatter_series_retain(owner));
+    skg_scatter_series_release(&owner);
+    ck_assert_ptr_null(owner);
     pictures a = take(&s, &t, series, 10), between = take(&s, &t, series, 40.25), b = take(&s, &t, again, 10);
     ck_assert_mem_eq(a.image, b.image, COUNT * sizeof(float));
     ck_assert_mem_eq(a.scatter, b.scatter, COUNT * sizeof(float));

@@ -64,7 +64,7 @@ int outline_find(fluoroscopy *f, const char *wanted) {
         output.lengths = SKG_LENGTHS_SURFACE;
         status = skg_plan_submit(f->plan, 1, NULL, &output, &job);
         if (status == SKG_OK) status = skg_job_wait(&job);
-        if (status >= SKG_OK) add_border(f, f->image[0]);
+        if (!SKG_FAILED(status)) add_border(f, f->image[0]);
         if (status > SKG_OK) status = SKG_OK;
         found++;
     }

@@ -102,9 +102,9 @@ static int measure_whole(cost_study *study, cost_advice *advice) {
         exit_status = cli_error(CLI_DEVICE, "out of host memory for the image");
     } else {
         skg_status status = cost_shoot(study, &advice->whole.setting, image, &advice->whole.shot);
-        if (status >= SKG_OK) status = cost_image(study, &best, reference, NULL);
+        if (!SKG_FAILED(status)) status = cost_image(study, &best, reference, NULL);
         exit_status =
-            status < SKG_OK ? cli_fail(status) : cost_compare(study, 1, image, reference, &advice->whole);
+            SKG_FAILED(status) ? cli_fail(status) : cost_compare(study, 1, image, reference, &advice->whole);
         if (exit_status == CLI_DONE)
             exit_status = cost_compare_shot(study, image, &study->shots[advice->whole.shot]);
     }
@@ -124,7 +124,8 @@ static int time_whole(cost_study *study, const cost_setting *setting) {
     double *image = calloc((size_t)study->pixels, sizeof *image);
     if (!image) return cli_error(CLI_DEVICE, "out of host memory for the image");
     const skg_status status = cost_shoot(study, setting, image, &number);
-    exit_status = status < SKG_OK ? cli_fail(status) : cost_compare_shot(study, image, &study->shots[number]);
+    exit_status =
+        SKG_FAILED(status) ? cli_fail(status) : cost_compare_shot(study, image, &study->shots[number]);
     free(image);
     return exit_status;
 }

@@ -79,7 +79,7 @@ static int fetch(cost_study *study, slot slots[SLOTS], const cost_setting *setti
     slot *its = &slots[free_slot];
     its->setting = *setting;
     *status = cost_image(study, setting, its->image, NULL);
-    its->is_filled = *status >= SKG_OK;
+    its->is_filled = !SKG_FAILED(*status);
     return its->is_filled ? free_slot : -1;
 }
 

@@ -93,8 +93,8 @@ static skg_status lengths_of(skg_plan *plan, int64_t part, int32_t type, int64_t
     output.part = part;
     output.lengths = SKG_LENGTHS_SURFACE;
     skg_status status = skg_plan_submit(plan, 1, NULL, &output, &job);
-    if (status >= SKG_OK) status = skg_job_wait(&job);
-    if (status >= SKG_OK) cost_widen(type, pixels, data);
+    if (!SKG_FAILED(status)) status = skg_job_wait(&job);
+    if (!SKG_FAILED(status)) cost_widen(type, pixels, data);
     return status;
 }
 
@@ -118,12 +118,12 @@ static void add_part(const cost_study *study, length_errors *e) {
 static skg_status add_parts(const cost_study *study, length_errors *e) {
     double begun = 0;
     skg_status status = SKG_OK;
-    for (; status >= SKG_OK && e->seen < e->parts; e->seen++) {
+    for (; !SKG_FAILED(status) && e->seen < e->parts; e->seen++) {
         if (e->seen == 1) begun = cli_now_ms(); /* the first part compiles the kernels */
         if (e->seen > 1 && cli_now_ms() - begun > cost_patience_ms(study)) break;
-        for (int k = 0; k < 2 && status >= SKG_OK; k++)
+        for (int k = 0; k < 2 && !SKG_FAILED(status); k++)
             status = lengths_of(e->plan[k], e->seen, e->type[k], study->pixels, e->data[k]);
-        if (status >= SKG_OK) add_part(study, e);
+        if (!SKG_FAILED(status)) add_part(study, e);
     }
     return status;
 }
@@ -146,17 +146,17 @@ void cost_compare_lengths(cost_study *study, const cost_setting *reference, cost
     e.data[0] = calloc((size_t)(2 * study->pixels), sizeof *e.data[0]);
     e.data[1] = e.data[0] + study->pixels;
     skg_status status = e.data[0] ? skg_scene_part_count(study->session.scene, &e.parts) : SKG_ERR_MEMORY;
-    if (status >= SKG_OK) status = cost_plan(study, &best, NULL, &e.plan[0]);
-    if (status >= SKG_OK) status = cost_plan(study, &its, NULL, &e.plan[1]);
-    if (status >= SKG_OK) status = add_parts(study, &e);
-    if (status >= SKG_OK && e.seen < e.parts) {
+    if (!SKG_FAILED(status)) status = cost_plan(study, &best, NULL, &e.plan[0]);
+    if (!SKG_FAILED(status)) status = cost_plan(study, &its, NULL, &e.plan[1]);
+    if (!SKG_FAILED(status)) status = add_parts(study, &e);
+    if (!SKG_FAILED(status) && e.seen < e.parts) {
         char text[160];
         cost_describe(study, &point->setting, text, sizeof text);
         cost_note(study, "path lengths of %s: the first %lld of %lld parts; the others would take too long",
                   text, (long long)e.seen, (long long)e.parts);
     }
-    point->max_mm = status >= SKG_OK ? e.worst : (double)NAN;
-    point->rms_mm = status >= SKG_OK ? (e.met ? sqrt(e.squares / (double)e.met) : 0) : (double)NAN;
+    point->max_mm = !SKG_FAILED(status) ? e.worst : (double)NAN;
+    point->rms_mm = !SKG_FAILED(status) ? (e.met ? sqrt(e.squares / (double)e.met) : 0) : (double)NAN;
     skg_plan_release(&e.plan[0]);
     skg_plan_release(&e.plan[1]);
     free(e.data[0]);

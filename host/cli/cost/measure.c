@@ -97,7 +97,7 @@ skg_status cost_time(cost_study *study, cost_run run, void *user, int64_t least,
            (n < least || passed < wish_ms) && (n < 2 || passed < limit_ms)) {
         cost_begin(&start);
         const skg_status status = run(user);
-        if (status < SKG_OK) return status;
+        if (SKG_FAILED(status)) return status;
         cost_end(&end);
         shot->run_wall_ms[shot->runs] = (end.wall - start.wall) / (double)shot->frames;
         shot->run_price_ms[shot->runs++] = cost_price_ms(study, &start, &end) / (double)shot->frames;
@@ -143,7 +143,7 @@ static skg_status make_still(void *user) {
     still *its = user;
     skg_job *job = NULL;
     skg_status status = skg_plan_submit(its->plan, its->frames, NULL, &its->output, &job);
-    return status >= SKG_OK ? skg_job_wait(&job) : status;
+    return !SKG_FAILED(status) ? skg_job_wait(&job) : status;
 }
 
 static void begin_still(const cost_setting *setting, double *data, int64_t frames, still *its) {
@@ -156,20 +156,20 @@ static void begin_still(const cost_setting *setting, double *data, int64_t frame
 skg_status cost_image(cost_study *study, const cost_setting *setting, double *image, double *ms) {
     still its = {0};
     skg_status status = cost_plan(study, setting, NULL, &its.plan);
-    if (status < SKG_OK) return status;
+    if (SKG_FAILED(status)) return status;
     begin_still(setting, image, 1, &its);
     const double begun = cli_now_ms();
     status = make_still(&its);
     if (ms) *ms = cli_now_ms() - begun;
-    if (status >= SKG_OK && ms &&
+    if (!SKG_FAILED(status) && ms &&
         *ms < 4 * cost_patience_ms(study)) { /* the first run of a plan takes longer */
         const double again = cli_now_ms();
         status = make_still(&its);
         *ms = fmin(*ms, cli_now_ms() - again);
     }
-    if (status >= SKG_OK) cost_widen(its.output.type, study->pixels, image);
+    if (!SKG_FAILED(status)) cost_widen(its.output.type, study->pixels, image);
     skg_plan_release(&its.plan);
-    return status < SKG_OK ? status : SKG_OK;
+    return SKG_FAILED(status) ? status : SKG_OK;
 }
 
 int cost_find_shot(const cost_study *study, const cost_setting *setting) {
@@ -225,36 +225,37 @@ skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *im
     const double begun = cli_now_ms();
     skg_status status = cost_plan(study, setting, NULL, &its.plan);
     const double plan_ms = cli_now_ms() - begun;
-    if (status < SKG_OK) return status;
+    if (SKG_FAILED(status)) return status;
     begin_still(setting, image, 1, &its);
     status = make_still(&its);
-    if (status >= SKG_OK) cost_widen(its.output.type, study->pixels, image);
+    if (!SKG_FAILED(status)) cost_widen(its.output.type, study->pixels, image);
     cost_shot shot = {.plan_ms = plan_ms, .frames = study->frames};
     begin_still(setting, study->batch, study->frames, &its);
-    if (status >= SKG_OK && study->shot_count) status = feel_pulse(study);
-    if (status >= SKG_OK)
+    if (!SKG_FAILED(status) && study->shot_count) status = feel_pulse(study);
+    if (!SKG_FAILED(status))
         status = cost_time(study, make_still, &its, cost_first_runs(study), cost_first_ms(study), &shot);
-    if (status >= SKG_OK) status = cost_report_plan(its.plan, &shot);
-    if (status >= SKG_OK && (*number = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
-    if (status >= SKG_OK) {
+    if (!SKG_FAILED(status)) status = cost_report_plan(its.plan, &shot);
+    if (!SKG_FAILED(status) && (*number = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
+    if (!SKG_FAILED(status)) {
         shot.setting = *setting;
         shot.total_rms = shot.total_max = (double)NAN;
         study->shots[*number] = shot;
         keep_plan(study, *number, &its.plan);
     }
     skg_plan_release(&its.plan);
-    return status < SKG_OK ? status : SKG_OK;
+    return SKG_FAILED(status) ? status : SKG_OK;
 }
 
 static skg_status visit(cost_study *study, int number) {
     cost_shot *shot = &study->shots[number];
     still its = {.plan = shot->plan};
     skg_status status = feel_pulse(study);
-    if (status >= SKG_OK && !its.plan) status = cost_plan(study, &shot->setting, NULL, &its.plan);
+    if (!SKG_FAILED(status) && !its.plan) status = cost_plan(study, &shot->setting, NULL, &its.plan);
     begin_still(&shot->setting, study->batch, study->frames, &its);
-    if (status >= SKG_OK && !shot->plan)
+    if (!SKG_FAILED(status) && !shot->plan)
         status = make_still(&its); /* the first frame of a plan takes longer */
-    if (status >= SKG_OK) status = cost_time(study, make_still, &its, 2, 0.25 * cost_first_ms(study), shot);
+    if (!SKG_FAILED(status))
+        status = cost_time(study, make_still, &its, 2, 0.25 * cost_first_ms(study), shot);
     if (!shot->plan) skg_plan_release(&its.plan);
     return status;
 }
@@ -268,11 +269,11 @@ static double visit_ms(const cost_study *study, const cost_shot *shot) {
 skg_status cost_visit_again(cost_study *study, double share) {
     skg_status status = SKG_OK;
     for (int round = 0; round < 3; round++)
-        for (int i = 0; i < study->shot_count && status >= SKG_OK; i++) {
+        for (int i = 0; i < study->shot_count && !SKG_FAILED(status); i++) {
             const cost_shot *shot = &study->shots[i];
             if (shot->setting.relaxation >= 0 || shot->visits == COST_VISITS_MAX) continue;
             if (visit_ms(study, shot) > cost_left_ms(study, share)) continue;
             status = visit(study, i);
         }
-    return status < SKG_OK ? status : SKG_OK;
+    return SKG_FAILED(status) ? status : SKG_OK;
 }

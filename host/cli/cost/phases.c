@@ -50,7 +50,7 @@ static skg_status run(void *user) {
     skg_status status = skg_motion_pose_at_phase(b->motion, (double)b->phase / COST_PHASES);
     if (status == SKG_OK) status = skg_motion_fill(b->motion, &frame);
     if (status == SKG_OK) status = skg_plan_submit(b->plan, 1, &frame, &b->output, &job);
-    if (status >= SKG_OK) status = skg_job_wait(&job);
+    if (!SKG_FAILED(status)) status = skg_job_wait(&job);
     b->phase = (b->phase + 1) % COST_PHASES;
     return status;
 }
@@ -78,11 +78,11 @@ static skg_status read_positions(const breath *b, double *positions, int64_t *co
 static skg_status run_all(breath *b, double *images, double *positions, int64_t vertices) {
     skg_status status = SKG_OK;
     b->phase = 0;
-    for (int64_t k = 0; k < COST_PHASES && status >= SKG_OK; k++) {
+    for (int64_t k = 0; k < COST_PHASES && !SKG_FAILED(status); k++) {
         b->output.data = images + k * b->study->pixels;
         status = run(b);
         cost_widen(b->output.type, b->study->pixels, b->output.data);
-        if (status >= SKG_OK) status = read_positions(b, positions + 3 * vertices * k, &vertices);
+        if (!SKG_FAILED(status)) status = read_positions(b, positions + 3 * vertices * k, &vertices);
     }
     return status;
 }
@@ -109,29 +109,29 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
     *exit_status = CLI_DONE;
     skg_status status = begin(&b, setting);
     cost_shot shot = {.plan_ms = cli_now_ms() - start, .setting = *setting, .frames = 1};
-    if (status >= SKG_OK) status = read_positions(&b, NULL, &vertices);
-    if (status >= SKG_OK && point && vertices != reference->vertices) {
+    if (!SKG_FAILED(status)) status = read_positions(&b, NULL, &vertices);
+    if (!SKG_FAILED(status) && point && vertices != reference->vertices) {
         *exit_status =
             cli_error(CLI_INPUT, "%s: its mesh files changed during the measurement", study->session.path);
         status = SKG_ERR_MESH;
-    } else if (status >= SKG_OK) {
+    } else if (!SKG_FAILED(status)) {
         images = calloc((size_t)(COST_PHASES * study->pixels), sizeof *images);
         positions = calloc((size_t)(COST_PHASES * 3 * vertices) + 1, sizeof *positions);
         status = images && positions ? run_all(&b, images, positions, vertices) : SKG_ERR_MEMORY;
     }
-    if (status >= SKG_OK && !point) {
+    if (!SKG_FAILED(status) && !point) {
         reference->image = images;
         reference->positions = positions;
         reference->vertices = vertices;
         images = positions = NULL;
-    } else if (status >= SKG_OK) {
+    } else if (!SKG_FAILED(status)) {
         *exit_status = cost_compare(study, COST_PHASES, images, reference->image, point);
         compare_positions(positions, reference->positions, COST_PHASES * vertices, point);
         b.output.data = images;
         status = cost_time(study, run, &b, cost_first_runs(study), cost_first_ms(study), &shot);
-        if (status >= SKG_OK) status = cost_report_plan(b.plan, &shot);
-        if (status >= SKG_OK && (point->shot = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
-        if (status >= SKG_OK) {
+        if (!SKG_FAILED(status)) status = cost_report_plan(b.plan, &shot);
+        if (!SKG_FAILED(status) && (point->shot = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
+        if (!SKG_FAILED(status)) {
             shot.total_rms = shot.total_max = (double)NAN;
             study->shots[point->shot] = shot;
         }
@@ -139,5 +139,5 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
     end(&b);
     free(images);
     free(positions);
-    return status < SKG_OK ? status : SKG_OK;
+    return SKG_FAILED(status) ? status : SKG_OK;
 }

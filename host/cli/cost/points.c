@@ -18,14 +18,14 @@ int cost_make_reference(cost_study *study, int number) {
     double ms = 0;
     skg_status status = cost_image(study, &reference->setting, reference->image, &ms);
     if (number == COST_OF_RAYS) study->best_pass_ms = ms / cost_passes(&reference->setting);
-    return status < SKG_OK ? cli_fail(status) : CLI_DONE;
+    return SKG_FAILED(status) ? cli_fail(status) : CLI_DONE;
 }
 
 /* What a status of the library means for the sweep: *keep 1: go on with the image; 0: the setting is left out, because the
  * scene does not allow it (half with a leaky mesh) or memory lacks. */
 static int judge(cost_study *study, const cost_setting *setting, skg_status status, int *keep) {
     char text[160];
-    *keep = status >= SKG_OK;
+    *keep = !SKG_FAILED(status);
     if (*keep) return CLI_DONE;
     if (status == SKG_ERR_DEVICE || status == SKG_ERR_INTERNAL || status == SKG_ERR_NO_DEVICE)
         return cli_fail(status);

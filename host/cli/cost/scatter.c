@@ -37,8 +37,8 @@ static skg_status render(const cost_study *study, const skg_scatter *scatter, fl
     options.scatter = scatter;
     skg_status status =
         skg_plan_create(session->context, session->scene, &session->view, session->spectrum, &options, &plan);
-    if (status >= SKG_OK) status = skg_plan_image(plan, &output);
-    if (status >= SKG_OK) status = skg_plan_scatter_report_get(plan, report);
+    if (!SKG_FAILED(status)) status = skg_plan_image(plan, &output);
+    if (!SKG_FAILED(status)) status = skg_plan_scatter_report_get(plan, report);
     skg_plan_release(&plan);
     return status;
 }
@@ -80,7 +80,7 @@ static int measure_price(cost_study *study, int number, float *data, double *spe
     scatter.tolerance = price->tolerance;
     scatter.histories = 0;
     const skg_status status = render(study, &scatter, data, &report);
-    if (status < SKG_OK) {
+    if (SKG_FAILED(status)) {
         snprintf(s->refusal, sizeof s->refusal, "%.319s", skg_last_error());
         return CLI_DONE;
     }

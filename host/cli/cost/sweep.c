@@ -78,7 +78,7 @@ static void drop_unmeasured(cost_study *study) {
 /* The scene as it is: its image and its time, from which those of the others are estimated. */
 static int look_at_own(cost_study *study, double *image) {
     skg_status status = cost_shoot(study, &study->own, image, &study->here);
-    if (status < SKG_OK) return cli_fail(status);
+    if (SKG_FAILED(status)) return cli_fail(status);
     study->pass_ms = study->shots[study->here].wall_now_ms / cost_passes(&study->own);
     study->plan_ms = study->shots[study->here].plan_ms;
     return CLI_DONE;
@@ -96,7 +96,7 @@ static int find_noise(cost_study *study, const double *image) {
     for (int64_t i = 0; i < study->pixels; i++) squares += (noisy[i] - image[i]) * (noisy[i] - image[i]);
     study->noise = sqrt(squares / (double)study->pixels) / study->flat_field;
     free(noisy);
-    return status < SKG_OK ? cli_fail(status) : CLI_DONE;
+    return SKG_FAILED(status) ? cli_fail(status) : CLI_DONE;
 }
 
 /* The best of every dial: as many samples and rays a pixel as the time allows, with the scene's own precision, tolerance and
@@ -145,7 +145,7 @@ static int measure_in_turn(cost_study *study, double *image) {
     if (exit_status != CLI_DONE) return exit_status;
     cli_progress_forecast("timing every setting again", 0, 0, fmax(cost_left_ms(study, TIMED), 0));
     const skg_status status = cost_visit_again(study, TIMED);
-    return status < SKG_OK ? cli_fail(status) : CLI_DONE;
+    return SKG_FAILED(status) ? cli_fail(status) : CLI_DONE;
 }
 
 int cost_sweep(cost_study *study) {

@@ -11,7 +11,7 @@ skg_status write_batch(cli_acquisition *a, skg_scan_run *run, int64_t *count) {
     *count = 0;
     skg_status status = skg_scan_run_next(run, &batch);
     if (status == SKG_RANGE) cli_end_image(status, &a->range_warned);
-    if (status < SKG_OK) return status;
+    if (SKG_FAILED(status)) return status;
     if (batch.count == 0) return SKG_OK;
     status = grey_batch(a, &batch, &images);
     if (status == SKG_OK)

@@ -21,7 +21,7 @@ static skg_status make(cli_acquisition *a, int is_dark, void **images) {
         status = is_dark ? skg_scan_dark_fields_render(a->plan, a->scan, &a->options, count, kev)
                          : skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, count,
                                                        kev);
-    if (status >= SKG_OK && a->is_grey) status = grey_fields(a, is_dark, kev, grey);
+    if (!SKG_FAILED(status) && a->is_grey) status = grey_fields(a, is_dark, kev, grey);
     *images = a->is_grey ? grey : kev;
     free(a->is_grey ? kev : grey);
     return status;
@@ -30,12 +30,12 @@ static skg_status make(cli_acquisition *a, int is_dark, void **images) {
 int fields_write(cli_acquisition *a) {
     void *white = NULL, *dark = NULL;
     skg_status status = make(a, 0, &white);
-    if (status >= SKG_OK) status = make(a, 1, &dark);
-    if (status >= SKG_OK) status = skg_scan_file_fields_write(a->file, a->flats, white, a->darks, dark);
+    if (!SKG_FAILED(status)) status = make(a, 1, &dark);
+    if (!SKG_FAILED(status)) status = skg_scan_file_fields_write(a->file, a->flats, white, a->darks, dark);
     free(white);
     free(dark);
     if (status == SKG_ERR_MEMORY) return cli_error(CLI_DEVICE, "out of host memory for flat fields");
-    return status >= SKG_OK ? CLI_DONE : cli_fail(status);
+    return !SKG_FAILED(status) ? CLI_DONE : cli_fail(status);
 }
 
 int fields_describe(const cli_acquisition *a, char *text, size_t size) {

@@ -89,7 +89,7 @@ int grey_prepare(cli_acquisition *a) {
     skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
     if (status == SKG_OK)
         status = skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, 1, flat);
-    if (status >= SKG_OK) status = SKG_OK;
+    if (!SKG_FAILED(status)) status = SKG_OK;
     const int is_noisy = a->session.options.noise || a->session.options.electronic_kev > 0;
     a->readout.full_kev = is_noisy ? channel.flat_field : 0;
     for (int64_t i = 0; status == SKG_OK && !is_noisy && i < pixels_of(a); i++) {

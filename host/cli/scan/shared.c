@@ -50,7 +50,7 @@ static int compare_devices(const cli_arguments *arguments, cli_acquisition *a, i
     options.to = index + 1;
     options.only_count = 0;
     const skg_status status = skg_scan_run_each(a->plan, a->scan, &options, add_bits, bits);
-    if (status < SKG_OK) return cli_fail(status);
+    if (SKG_FAILED(status)) return cli_fail(status);
     uint64_t first = bits[0];
     ranks_share(&a->ranks, &first, sizeof first);
     if (first == bits[0] || cli_given(arguments, &cli_flag_scan_mixed)) return CLI_DONE;

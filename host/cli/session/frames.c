@@ -51,12 +51,12 @@ int cli_run_frames(skg_plan *plan, cli_frame frame, const skg_output *output, co
     skg_status status = frame(plan, output, user);
     times->first_ms = cli_now_ms() - start;
     if (times->repeats) cli_progress_begin("frames", times->repeats);
-    for (int64_t i = 0; status >= SKG_OK && i < times->repeats; i++) {
+    for (int64_t i = 0; !SKG_FAILED(status) && i < times->repeats; i++) {
         start = cli_now_ms();
         status = frame(plan, output, user);
         times->frame_ms[i] = cli_now_ms() - start;
-        skg_status noted = status < SKG_OK ? status : note_stages(plan, times);
-        if (noted < SKG_OK) status = noted;
+        skg_status noted = SKG_FAILED(status) ? status : note_stages(plan, times);
+        if (SKG_FAILED(noted)) status = noted;
         cli_progress_step(i + 1);
     }
     cli_progress_end();

@@ -30,9 +30,9 @@ int view_find_sensitivity(view_work *w) {
     skg_frame_init(&frame);
     skg_channel_init(&channel);
     skg_status status = w->motion ? skg_motion_fill(w->motion, &frame) : SKG_OK;
-    if (status >= SKG_OK) status = make_plan(w, &plan);
-    if (status >= SKG_OK) status = skg_plan_channel_get(plan, 0, &channel);
-    if (status < SKG_OK)
+    if (!SKG_FAILED(status)) status = make_plan(w, &plan);
+    if (!SKG_FAILED(status)) status = skg_plan_channel_get(plan, 0, &channel);
+    if (SKG_FAILED(status))
         cli_sensitivity_refuse(found);
     else if (!(channel.flat_field > 0))
         snprintf(found->refusal, sizeof found->refusal, "the scene has no beam");

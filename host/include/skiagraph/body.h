@@ -26,7 +26,9 @@
  * Any other organ moves with the one that it lies inside, if that is deformable and neither the skin nor the
  * muscle, or if that is rigid, as marrow in a rib. Otherwise it stays, and a warning says so. x must point to the patient's left, y to the back, z to the head.
  *
- * A body is used by one thread at a time. */
+ * A body is used by one thread at a time.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_BODY_H
 #define SKIAGRAPH_BODY_H
 

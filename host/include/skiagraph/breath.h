@@ -1,6 +1,8 @@
 /** @file
  * Breaths: waveforms, phase and the state of a breath at a time. Times are in s. Nothing is remembered from
- * call to call: any time or phase may be asked for in any order. */
+ * call to call: any time or phase may be asked for in any order.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_BREATH_H
 #define SKIAGRAPH_BREATH_H
 

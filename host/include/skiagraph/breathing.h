@@ -1,5 +1,7 @@
 /** @file
- * Breathing: includes breath.h, thorax.h and body.h. */
+ * Breathing: includes breath.h, thorax.h and body.h.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_BREATHING_H
 #define SKIAGRAPH_BREATHING_H
 

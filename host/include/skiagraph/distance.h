@@ -5,7 +5,9 @@
  * percentile are integrals over the first one's area, and its maximum is the one-sided (non-symmetric) Hausdorff
  * distance. The larger of the two one-sided maxima is the Hausdorff distance.
  *
- * Results do not depend on the number of threads, bit for bit. Lengths are in mm. */
+ * Results do not depend on the number of threads, bit for bit. Lengths are in mm.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_DISTANCE_H
 #define SKIAGRAPH_DISTANCE_H
 

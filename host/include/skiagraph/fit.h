@@ -11,7 +11,9 @@
  *     skg_fit_scene_save(fit, "fitted.json");
  *
  * Same scene, targets, options and seed give the same bits with any number of threads. A body is fitted without
- * hysteresis. Lengths are in mm, angles in degrees. A fit is used by one thread at a time; it uses those of OpenMP. */
+ * hysteresis. Lengths are in mm, angles in degrees. A fit is used by one thread at a time; it uses those of OpenMP.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_FIT_H
 #define SKIAGRAPH_FIT_H
 

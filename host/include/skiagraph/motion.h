@@ -4,7 +4,9 @@
  *
  * Posing runs on the host and submitting copies what a frame needs, so the next pose can be computed while an
  * image is made. That pays even if the device is the CPU (bench/breathing). Poses do not depend on those
- * before: any order gives the same bits. A motion is used by one thread at a time. */
+ * before: any order gives the same bits. A motion is used by one thread at a time.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_MOTION_H
 #define SKIAGRAPH_MOTION_H
 

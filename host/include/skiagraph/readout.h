@@ -1,6 +1,8 @@
 /** @file
  * Grey values: what a detector writes for the energy that its pixels collect. The noise is that of a specification of
- * the finished image; for noise from the photons themselves see skg_plan_options. */
+ * the finished image; for noise from the photons themselves see skg_plan_options.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_READOUT_H
 #define SKIAGRAPH_READOUT_H
 

@@ -1,6 +1,8 @@
 /** @file
  * Reconstruction of circular scans by the method of Feldkamp, Davis and Kress (J. Opt. Soc. Am. A 1 (1984) 612-619),
- * to look at what a scan gives. Programs such as RTK, ASTRA, TIGRE and CIL do more. */
+ * to look at what a scan gives. Programs such as RTK, ASTRA, TIGRE and CIL do more.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_RECONSTRUCT_H
 #define SKIAGRAPH_RECONSTRUCT_H
 

@@ -18,7 +18,9 @@
  *     energy    one: that of the spectrum, or the one at which the scene attenuates as it does with the spectrum
  *     detector  noise, blur, steps, scatter, jaws, focal spot, heel, bow-tie filter and grid of the plan's options are left out
  *
- * Lengths are in mm, angles in radians. A registration is used by one thread at a time. */
+ * Lengths are in mm, angles in radians. A registration is used by one thread at a time.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_REGISTRATION_H
 #define SKIAGRAPH_REGISTRATION_H
 

@@ -4,7 +4,9 @@
  * skg_setup_scan_get gives it. scan_run.h computes the projections.
  *
  * A scan describes turning samples in front of a source and a detector that stand still. Its views turn
- * source and detector the other way, which gives the same images. */
+ * source and detector the other way, which gives the same images.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SCAN_H
 #define SKIAGRAPH_SCAN_H
 

@@ -1,7 +1,9 @@
 /** @file
  * Files of projections that survive the end of the program that writes them. A file is laid out whole before the
  * first projection is written. Each projection is written in place and then marked as finished. Whoever opens the
- * file again continues with the projections that are missing. */
+ * file again continues with the projections that are missing.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SCAN_FILE_H
 #define SKIAGRAPH_SCAN_FILE_H
 

@@ -1,5 +1,7 @@
 /** @file
- * Reading a finished scan from the .h5 that skg_scan_file wrote, for reconstruction. */
+ * Reading a finished scan from the .h5 that skg_scan_file wrote, for reconstruction.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SCAN_READER_H
 #define SKIAGRAPH_SCAN_READER_H
 

@@ -1,5 +1,7 @@
 /** @file
- * Runs: the projections of a scan, computed batch by batch while the caller works with the batch before. */
+ * Runs: the projections of a scan, computed batch by batch while the caller works with the batch before.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SCAN_RUN_H
 #define SKIAGRAPH_SCAN_RUN_H
 

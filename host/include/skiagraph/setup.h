@@ -2,7 +2,9 @@
  * Scene files: scene, view, spectrum and options from JSON, in the schema that users of gVXR have ("JSON
  * 1.0.0": WindowSize, Source, Detector, Samples, Scan) with keys of our own. docs/scene-files.md lists all of
  * them. Keys and names are read without regard to case, lengths have unit strings, paths are relative to the
- * file. */
+ * file.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SETUP_H
 #define SKIAGRAPH_SETUP_H
 

@@ -9,7 +9,9 @@
  * fork, frame.h jobs.
  *
  * Calls compute in the default floating-point environment and read and write decimal points, whatever rounding
- * mode and locale the calling thread has. Both are restored when a call returns. */
+ * mode and locale the calling thread has. Both are restored when a call returns.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_H
 #define SKIAGRAPH_H
 

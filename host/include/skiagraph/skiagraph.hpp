@@ -1,6 +1,8 @@
 /** @file
  * Skiagraph from C++20: handles that release themselves, failures as exceptions, arrays as spans. A thin layer: every
- * function of the C headers is called as it is, by skiagraph::make, skiagraph::check or the handle's get(). */
+ * function of the C headers is called as it is, by skiagraph::make, skiagraph::check or the handle's get().
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_HPP
 #define SKIAGRAPH_HPP
 
@@ -34,7 +36,7 @@ class error : public std::runtime_error {
 
 /** Throws if a status is a failure. Returns SKG_OK, SKG_STALE or SKG_RANGE. */
 inline skg_status check(skg_status status) {
-    if (status < 0) throw error(status);
+    if (SKG_FAILED(status)) throw error(status);
     return status;
 }
 
@@ -268,7 +270,8 @@ template <class Pixel> skg_status scatter(const plan &by, std::span<Pixel> to, s
 
 /** Computes the image that is expected, without noise, [channel][row][column], and the variance that noise gives to each of its values
  * if `variance` is not empty. */
-template <class Pixel> skg_status noise(const plan &by, std::span<Pixel> mean, std::span<Pixel> variance = {}) {
+template <class Pixel>
+skg_status noise(const plan &by, std::span<Pixel> mean, std::span<Pixel> variance = {}) {
     skg_job *submitted = nullptr;
     skg_output outputs[] = {detail::dense(mean.data(), detail::type_of(mean.data())),
                             detail::dense(variance.data(), detail::type_of(variance.data()))};

@@ -9,7 +9,9 @@
  *
  * The skin is a layer of fat, 10 to 25 mm thick; inside it "muscle" fills what the other parts leave: the wall of
  * the chest and the belly, the back, the shoulders, and the soft tissue between the lungs. A bone of cortex holds
- * its marrow, a lung its vessels, fat a kidney, stomach and bowel their gas. There are no arms. */
+ * its marrow, a lung its vessels, fat a kidney, stomach and bowel their gas. There are no arms.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_THORAX_H
 #define SKIAGRAPH_THORAX_H
 

@@ -45,18 +45,18 @@ static skg_status render(skg_plan *plan, const skg_frame *frame, int32_t type, v
     return skg_job_wait(&job);
 }
 
-skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *scene, skg_scan *scan,
-                                       const skg_scan_run_options *options, int64_t count, void *images) {
+static skg_status flat_fields(skg_plan *plan, const skg_scene *scene, skg_scan *scan,
+                              const skg_scan_run_options *options, int64_t count, void *images) {
     SKG_PLAIN;
     absence gone = {0};
     skg_view view;
     skg_frame frame;
-    skg_status status = SKG_OK;
+    skg_status status = SKG_OK, range = SKG_OK;
     skg_scan_work work = {.plan = plan, .scan = scan};
     int64_t parts = 0;
-    SKG_NEEDS(plan);
-    SKG_NEEDS(scan);
-    SKG_NEEDS(images);
+    SKG_NEEDS_OF("skg_scan_flat_fields_render", plan);
+    SKG_NEEDS_OF("skg_scan_flat_fields_render", scan);
+    SKG_NEEDS_OF("skg_scan_flat_fields_render", images);
     skg_scan_run_options_init(&work.options);
     if (options)
         SKG_TRY(skg_struct_read(options, "skg_scan_run_options", &work.options, sizeof work.options));
@@ -77,22 +77,31 @@ skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *scene, s
         frame.index = work.projections + f;
         const int64_t at = f * work.image_elements * skg_element_bytes(work.options.type);
         status = render(plan, &frame, work.options.type, (char *)images + at);
+        if (status != SKG_RANGE) continue;
+        range = status;
+        status = SKG_OK;
     }
     skg_plan_warned_unseen_set(plan, warned);
 cleanup:
     skg_free(&gone.parts);
     skg_free(&gone.poses);
-    return status;
+    return status == SKG_OK ? range : status;
 }
 
-skg_status skg_scan_dark_fields_render(const skg_plan *plan, const skg_scan *scan,
+skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *scene, skg_scan *scan,
                                        const skg_scan_run_options *options, int64_t count, void *images) {
+    const skg_error_handler handler = skg_plan_call_begin(plan);
+    return skg_call_end(handler, flat_fields(plan, scene, scan, options, count, images));
+}
+
+static skg_status dark_fields(const skg_plan *plan, const skg_scan *scan, const skg_scan_run_options *options,
+                              int64_t count, void *images) {
     SKG_PLAIN;
     skg_view view;
     skg_scan_run_options run;
-    SKG_NEEDS(plan);
-    SKG_NEEDS(scan);
-    SKG_NEEDS(images);
+    SKG_NEEDS_OF("skg_scan_dark_fields_render", plan);
+    SKG_NEEDS_OF("skg_scan_dark_fields_render", scan);
+    SKG_NEEDS_OF("skg_scan_dark_fields_render", images);
     skg_scan_run_options_init(&run);
     if (options) SKG_TRY(skg_struct_read(options, "skg_scan_run_options", &run, sizeof run));
     if (count < 1) return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " dark fields; give 1 or more", count);
@@ -112,4 +121,10 @@ skg_status skg_scan_dark_fields_render(const skg_plan *plan, const skg_scan *sca
             ((float *)images)[i] = (float)value;
     }
     return SKG_OK;
+}
+
+skg_status skg_scan_dark_fields_render(const skg_plan *plan, const skg_scan *scan,
+                                       const skg_scan_run_options *options, int64_t count, void *images) {
+    const skg_error_handler handler = skg_plan_call_begin(plan);
+    return skg_call_end(handler, dark_fields(plan, scan, options, count, images));
 }

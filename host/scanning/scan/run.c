@@ -3,6 +3,7 @@
 #include "core/log.h"
 #include "core/maths.h"
 #include "core/text.h"
+#include "frame/quiet.h"
 #include "scan/slot.h"
 
 #include <inttypes.h>
@@ -114,16 +115,16 @@ static skg_status prepare(skg_scan_run *run, const skg_scan_run_options *o) {
     return SKG_OK;
 }
 
-skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg_scan_run_options *options,
-                               skg_scan_run **result) {
+static skg_status create(skg_plan *plan, skg_scan *scan, const skg_scan_run_options *options,
+                         skg_scan_run **result) {
     SKG_PLAIN;
     skg_scan_run *run = NULL;
     skg_scan_run_options ours;
     int64_t projections = 0;
-    SKG_NEEDS(result);
+    SKG_NEEDS_OF("skg_scan_run_create", result);
     *result = NULL;
-    SKG_NEEDS(plan);
-    SKG_NEEDS(scan);
+    SKG_NEEDS_OF("skg_scan_run_create", plan);
+    SKG_NEEDS_OF("skg_scan_run_create", scan);
     skg_scan_run_options_init(&ours);
     if (options) SKG_TRY(skg_struct_read(options, "skg_scan_run_options", &ours, sizeof ours));
     SKG_TRY(skg_scan_projection_count(scan, &projections));
@@ -140,6 +141,12 @@ skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg_scan_ru
     else
         *result = run;
     return status;
+}
+
+skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg_scan_run_options *options,
+                               skg_scan_run **result) {
+    const skg_error_handler handler = skg_plan_call_begin(plan);
+    return skg_call_end(handler, create(plan, scan, options, result));
 }
 
 void skg_scan_run_release(skg_scan_run **run) {
@@ -198,7 +205,7 @@ skg_status skg_scan_run_each(skg_plan *plan, skg_scan *scan, const skg_scan_run_
         skg_scan_batch_init(&batch);
         status = skg_scan_run_next(run, &batch);
         if (status == SKG_RANGE) range = status;
-        if (status < SKG_OK || batch.count == 0) break;
+        if (SKG_FAILED(status) || batch.count == 0) break;
         status = function(&batch, user);
         if (status != SKG_OK) break;
     }

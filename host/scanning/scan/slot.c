@@ -49,7 +49,7 @@ static skg_status wait_for_jobs(skg_scan_slot *slot) {
     skg_status status = SKG_OK;
     for (int64_t j = 0; j < slot->job_count; j++) {
         const skg_status its = skg_job_wait(&slot->jobs[j]);
-        if (status == SKG_OK || (status == SKG_RANGE && its < SKG_OK)) status = its;
+        if (status == SKG_OK || (status == SKG_RANGE && SKG_FAILED(its))) status = its;
     }
     slot->job_count = 0;
     return status;
@@ -190,6 +190,6 @@ static void take_means(const skg_scan_work *work, skg_scan_slot *slot) {
 
 skg_status skg_scan_slot_wait(const skg_scan_work *work, skg_scan_slot *slot) {
     const skg_status status = wait_for_jobs(slot);
-    if (status >= SKG_OK && work->options.subframes > 1) take_means(work, slot);
+    if (!SKG_FAILED(status) && work->options.subframes > 1) take_means(work, slot);
     return status;
 }

@@ -8,7 +8,9 @@
  * plan finds out from its view how many of these photons a pixel receives.
  *
  * A spectrum or response never changes and may be shared by threads. Functions that make one return
- * SKG_ERR_BEAM unless they say otherwise; the caller releases the result. Energies are 1 keV to 20 MeV. */
+ * SKG_ERR_BEAM unless they say otherwise; the caller releases the result. Energies are 1 keV to 20 MeV.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_BEAM_H
 #define SKIAGRAPH_BEAM_H
 

@@ -1,6 +1,8 @@
 /** @file
  * Bodies by their parameters: foam, fibres, gyroids, surfaces of a volume, line pairs and stars, each as one closed mesh
- * that points outward and is centred at the origin. Lengths are in mm. The same parameters give the same mesh. */
+ * that points outward and is centred at the origin. Lengths are in mm. The same parameters give the same mesh.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_BODIES_H
 #define SKIAGRAPH_BODIES_H
 

@@ -1,5 +1,7 @@
 /** @file
- * Jaws that limit the beam. */
+ * Jaws that limit the beam.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_COLLIMATION_H
 #define SKIAGRAPH_COLLIMATION_H
 

@@ -35,7 +35,9 @@
  * dlclose: the library stays in memory, because threads of OpenMP and of drivers still need it.
  *
  * The library never changes the environment of the process and never binds the caller's threads to cores. PoCL
- * sets HWLOC_PLUGINS_PATH when it is started. */
+ * sets HWLOC_PLUGINS_PATH when it is started.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_CONTEXT_H
 #define SKIAGRAPH_CONTEXT_H
 
@@ -137,8 +139,8 @@ SKG_API skg_status skg_context_interrupt(skg_context *context);
 typedef void (*skg_error_function)(skg_status status, const char *sentence, void *user);
 
 /** Sets the function that receives the failures of calls that take this context, or a plan or a job of it. Exceptions: calls
- * that only take or read a handle (_retain, _get, _count), the setters of a context, skg_job_cancel, and calls that compute a
- * scan, which make calls that report. NULL, the default: none. */
+ * that only take or read a handle (_retain, _get, _count), the setters of a context, skg_job_cancel, and skg_scan_run_each, whose
+ * function may call the library: the calls that it makes report. NULL, the default: none. */
 SKG_API skg_status skg_context_error_set(skg_context *context, skg_error_function error, void *user);
 
 /** A device of OpenCL. The library fills it; prepare with skg_device_info_init. */

@@ -1,5 +1,7 @@
 /** @file
- * Detectors that count photons: what a sensor with pixels and thresholds counts of each. */
+ * Detectors that count photons: what a sensor with pixels and thresholds counts of each.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_COUNTING_H
 #define SKIAGRAPH_COUNTING_H
 

@@ -1,6 +1,8 @@
 /** @file
  * Dose: what a scene gives to people and things. Air kerma at places and over the field, energy that stays in each part, air kerma at the
- * detector and its exposure index, half-value layers of the beam. One exposure of the plan's view. */
+ * detector and its exposure index, half-value layers of the beam. One exposure of the plan's view.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_DOSE_H
 #define SKIAGRAPH_DOSE_H
 

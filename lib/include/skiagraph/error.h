@@ -9,8 +9,10 @@
  * - skg_lung_hounsfield, which is a formula.
  *
  * SKG_OK is 0 and failures (SKG_ERR_...) are negative. SKG_STALE and SKG_RANGE are positive: they are
- * answers, not failures, and the functions that give them say what was done. A function that fails leaves its
- * results as they were, or NULL where it makes a handle. */
+ * answers, not failures (SKG_FAILED), and the functions that give them say what was done. A function that fails leaves its
+ * results as they were, or NULL where it makes a handle.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_ERROR_H
 #define SKIAGRAPH_ERROR_H
 
@@ -24,6 +26,10 @@ extern "C" {
 
 /** The result of a call: one of enum skg_status_code. */
 typedef int32_t skg_status;
+
+/** Whether a status is a failure. SKG_STALE and SKG_RANGE are none: after SKG_RANGE the result is there, after SKG_STALE it
+ * is not, or not all of it. A program that adds parts or swaps them after it planned compares with SKG_STALE as well. */
+#define SKG_FAILED(status) ((status) < 0)
 
 /** All status codes: X(name, value, text) for each. */
 #define SKG_STATUS_LIST(X)                                                                                   \

@@ -15,7 +15,11 @@
  * - No struct contains another one by value.
  *
  * Whoever extends the library adds a field at the end of its struct, and gives 0 the meaning of what the
- * library did before. A default other than 0 is possible for the fields of the first release only. */
+ * library did before. A default other than 0 is possible for the fields of the first release only.
+ *
+ * A name is as old as the comment at the head of its header says (since), or its own comment if that says it.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_EXPORT_H
 #define SKIAGRAPH_EXPORT_H
 

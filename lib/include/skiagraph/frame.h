@@ -15,7 +15,9 @@
  * source, some of these samples at once. If a job has more, the others follow during
  * skg_job_test, skg_job_progress and skg_job_wait, and when another job is submitted to the context. Until then
  * a job can be cancelled (skg_job_cancel), and no part may be added to its scene or put elsewhere. Frames of leaky
- * meshes, those with scatter and those of opencl.h are all given at once. */
+ * meshes, those with scatter and those of opencl.h are all given at once.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_FRAME_H
 #define SKIAGRAPH_FRAME_H
 
@@ -190,7 +192,7 @@ SKG_API skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total)
 
 /** Cancels a job: frames, and steps of a frame, that the device was not given yet are not made. Those that it was given cannot be taken back;
  * skg_job_wait waits for them. Does nothing if the device has them all, or if the job was waited for. Other jobs are not touched.
- * Any thread may call it at any time while it holds a reference: a window's thread retains the job that another thread waits for. */
+ * Any thread, and any handler of a signal, may call it while it holds a reference: a window's thread retains the job that another waits for. */
 SKG_API skg_status skg_job_cancel(skg_job *job);
 
 /** Adds a reference to a job, for another thread that may cancel it. Any thread that holds a reference may call it. */

@@ -14,7 +14,9 @@
  *     edges     A face that contains rays, such as the side of a box in a parallel beam, is hit by none, but the mean of a pixel
  *               changes with its place. Faces narrower than 1e-4 pixels in the image add the derivative of that mean. Of a part
  *               that competes by priority they count where the part wins, less what it takes from others there
- *     bits      Sums over hits are integers: they depend neither on the strategy nor on the number of threads */
+ *     bits      Sums over hits are integers: they depend neither on the strategy nor on the number of threads
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_GRADIENT_H
 #define SKIAGRAPH_GRADIENT_H
 

@@ -1,5 +1,7 @@
 /** @file
- * Image files: TIFF, MetaImage and PNG, written and read. A file that is written appears whole or not at all. */
+ * Image files: TIFF, MetaImage and PNG, written and read. A file that is written appears whole or not at all.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_IMAGE_H
 #define SKIAGRAPH_IMAGE_H
 

@@ -7,7 +7,9 @@
  * licence of each table.
  *
  * A material never changes and may be shared by threads. Functions that make one return SKG_ERR_MATERIAL
- * unless they say otherwise; the caller releases the result. A `name` is for messages and may be NULL. */
+ * unless they say otherwise; the caller releases the result. A `name` is for messages and may be NULL.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_MATERIAL_H
 #define SKIAGRAPH_MATERIAL_H
 

@@ -4,7 +4,9 @@
  * An allocator is one for the process, because meshes, materials and spectra belong to no context. All memory of the
  * library's own comes from it. What other libraries allocate does not: the OpenCL driver, OpenMP, Jansson, Assimp, libpng,
  * libtiff and HDF5. Results are written to memory of the caller, so that nothing which the library allocates has to be
- * freed by anyone else. */
+ * freed by anyone else.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_MEMORY_H
 #define SKIAGRAPH_MEMORY_H
 

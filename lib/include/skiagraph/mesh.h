@@ -7,7 +7,9 @@
  * its vertices move, and a health (skg_mesh_health): is it closed, does it point outward, how large is it.
  *
  * Meshes that nobody changes may be shared by threads. Functions take a context for its log only; it may be
- * NULL. */
+ * NULL.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_MESH_H
 #define SKIAGRAPH_MESH_H
 

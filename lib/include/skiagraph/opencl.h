@@ -1,7 +1,9 @@
 /** @file
  * For callers with OpenCL objects of their own. This is the only header that needs CL/cl.h: compile with what
  * `pkg-config --cflags --libs skiagraph-opencl` says, or in CMake find_package(skiagraph COMPONENTS opencl)
- * and link skiagraph::opencl. */
+ * and link skiagraph::opencl.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_OPENCL_H
 #define SKIAGRAPH_OPENCL_H
 

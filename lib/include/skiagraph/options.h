@@ -1,5 +1,7 @@
 /** @file
- * What a plan is asked for: precision, quantity, source, detector, repair, tolerances. */
+ * What a plan is asked for: precision, quantity, source, detector, repair, tolerances.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_OPTIONS_H
 #define SKIAGRAPH_OPTIONS_H
 

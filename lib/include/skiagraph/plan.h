@@ -1,7 +1,9 @@
 /** @file
  * Plans. A plan looks at scene, view, spectrum and options once: it decides how images are computed, compiles
  * what they need and allocates memory. Frames are then submitted to it (frame.h), and it reports what it
- * decided (report.h). */
+ * decided (report.h).
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_PLAN_H
 #define SKIAGRAPH_PLAN_H
 

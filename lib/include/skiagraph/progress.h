@@ -5,7 +5,9 @@
  * skg_distance_options. It can be used in three ways, also together: a function that the work calls, skg_progress_get
  * from any thread, and skg_progress_cancel from any thread or from a signal handler. Jobs of frames have functions of
  * their own: skg_job_progress and skg_job_cancel. Only the scatter of a frame, which is computed while the frame is submitted, has
- * a progress: skg_frame.progress. */
+ * a progress: skg_frame.progress.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_PROGRESS_H
 #define SKIAGRAPH_PROGRESS_H
 

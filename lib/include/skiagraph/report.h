@@ -1,5 +1,7 @@
 /** @file
- * What a plan decided and why, and what its last job found. Texts are valid as long as the plan. */
+ * What a plan decided and why, and what its last job found. Texts are valid as long as the plan.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_REPORT_H
 #define SKIAGRAPH_REPORT_H
 

@@ -1,6 +1,8 @@
 /** @file
  * Scatter of a series of frames, such as the projections of a scan: followed in few of them, and smooth over the detector and along
- * the series. */
+ * the series.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SCATTER_SERIES_H
 #define SKIAGRAPH_SCATTER_SERIES_H
 

@@ -4,7 +4,9 @@
  *
  * Positions are in mm. A pose is a 4 x 4 affine matrix of doubles, row by row (pose[4 * r + c]), that takes
  * the coordinates of the mesh to those of the world: x_world = pose (x, y, z, 1). A pose may mirror; one that
- * is singular is refused. */
+ * is singular is refused.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SCENE_H
 #define SKIAGRAPH_SCENE_H
 

@@ -3,7 +3,9 @@
  * where it should before an X-ray image is computed.
  *
  * Positions are in mm. The picture has perspective unless the look says otherwise, and always holds everything:
- * parts, source, detector and the path of the source. */
+ * parts, source, detector and the path of the source.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_SCENE_PICTURE_H
 #define SKIAGRAPH_SCENE_PICTURE_H
 

@@ -1,6 +1,8 @@
 /** @file
  * Types that several headers use: what a pixel holds, how exactly it is computed, and from where it is
- * seen. */
+ * seen.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_TYPES_H
 #define SKIAGRAPH_TYPES_H
 

@@ -2,7 +2,9 @@
  * Volumes of cells: a CT image, or any other grid of values, as a part of a scene.
  *
  * Each cell has one value throughout. The value decides what it is made of: its composition and its density. Path
- * lengths are those between the planes of the cells, so that images are exact for such a body. */
+ * lengths are those between the planes of the cells, so that images are exact for such a body.
+ *
+ * @since 0.1.0 */
 #ifndef SKIAGRAPH_VOLUME_H
 #define SKIAGRAPH_VOLUME_H
 
