@@ -109,6 +109,8 @@ skg_status skg_decide_view(const skg_recipe *recipe, const skg_view *view) {
     SKG_TRY(check_distance(recipe, view));
     SKG_TRY(skg_counting_check_pixels(recipe, view, SKG_STALE));
     SKG_TRY(skg_blur_check_pixels(recipe, view, SKG_STALE));
+    SKG_TRY(skg_heel_covers(&recipe->model.shades, view, &recipe->options));
+    SKG_TRY(skg_bowtie_covers(&recipe->model.shades, view, &recipe->options));
     SKG_TRY(skg_grid_covers(&recipe->model.shades, view, &recipe->options));
     return skg_oblique_covers(&recipe->model.shades, view, &recipe->options);
 }

@@ -27,16 +27,24 @@ static skg_status see(void *user, const skg_camera *camera, const double ray[3],
     return SKG_OK;
 }
 
-static skg_status check_reach(const skg_bowtie *bowtie, const extent *e) {
+static skg_status check_reach(const skg_bowtie *bowtie, const extent *e, skg_status status) {
     const double degree = 180 / SKG_PI, low = atan(e->low) * degree, high = atan(e->high) * degree;
     /* Angles are printed with some digits: a hundred-thousandth of a degree is 1e-7 of any length. */
     const double rounding = 1e-5, last = bowtie->angle_deg[bowtie->count - 1];
     if (low >= bowtie->angle_deg[0] - rounding && high <= last + rounding) return SKG_OK;
     return skg_fail(
-        SKG_ERR_SCENE,
+        status,
         "the bow-tie's profile goes from %g to %g degrees, but rays leave the source from %.4g to "
         "%.4g degrees; add rows to the profile, or make the detector smaller",
         bowtie->angle_deg[0], last, low, high);
+}
+
+skg_status skg_bowtie_covers(const skg_shades *shades, const skg_view *view,
+                             const skg_plan_options *options) {
+    extent e = {.shades = shades, .low = HUGE_VAL, .high = -HUGE_VAL, .longest = 1};
+    if (shades->bowtie == 0) return SKG_OK;
+    SKG_TRY(skg_shade_rays_of(view, options, see, &e));
+    return check_reach(options->bowtie, &e, SKG_STALE);
 }
 
 skg_status skg_bowtie_shade(const skg_shading *shading, skg_shades *shades) {
@@ -49,7 +57,7 @@ skg_status skg_bowtie_shade(const skg_shading *shading, skg_shades *shades) {
     SKG_TRY(skg_shade_direction(shading->view, skg_length(bowtie->direction) > 0 ? bowtie->direction : rows,
                                 "bow-tie", "the direction in which its angles grow", shades->fan_toward));
     SKG_TRY(skg_shade_rays(shading, see, &e));
-    SKG_TRY(check_reach(bowtie, &e));
+    SKG_TRY(check_reach(bowtie, &e, SKG_ERR_SCENE));
     shades->rows = bowtie->count;
     shades->fan_angle[0] = atan(e.low), shades->fan_angle[1] = atan(e.high);
     SKG_TRY(skg_shades_append_table(2 * bowtie->count, shades, &table));

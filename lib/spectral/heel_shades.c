@@ -37,6 +37,21 @@ static skg_status see(void *user, const skg_camera *camera, const double ray[3],
     return SKG_OK;
 }
 
+skg_status skg_heel_covers(const skg_shades *shades, const skg_view *view, const skg_plan_options *options) {
+    const skg_shade_extent *known = &shades->heel_extent;
+    extent e = {shades, 1, -1};
+    if (shades->heel == 0) return SKG_OK;
+    SKG_TRY(skg_shade_rays_of(view, options, see, &e));
+    if (e.low >= known->middle - known->half && e.high <= known->middle + known->half) return SKG_OK;
+    return skg_fail(
+        SKG_STALE,
+        "rays of this view leave the anode at %.4g to %.4g degrees, the plan knows the heel effect from %.4g to %.4g; make a "
+        "plan for it",
+        asin(fmax(e.low, -1)) * (180 / SKG_PI), asin(fmin(e.high, 1)) * (180 / SKG_PI),
+        asin(fmax(known->middle - known->half, -1)) * (180 / SKG_PI),
+        asin(fmin(known->middle + known->half, 1)) * (180 / SKG_PI));
+}
+
 skg_status skg_heel_shades(const skg_shading *shading, skg_shades *shades) {
     const skg_heel *heel = shading->options->heel;
     const skg_heel_tube tube = {

@@ -111,6 +111,8 @@ skg_status skg_shade_rays_of(const skg_view *view, const skg_plan_options *optio
 
 /* Fails with SKG_STALE if rays of another view than those that the shades were made from lie beyond their tables. */
 skg_status skg_grid_covers(const skg_shades *shades, const skg_view *view, const skg_plan_options *options);
+skg_status skg_heel_covers(const skg_shades *shades, const skg_view *view, const skg_plan_options *options);
+skg_status skg_bowtie_covers(const skg_shades *shades, const skg_view *view, const skg_plan_options *options);
 skg_status skg_oblique_covers(const skg_shades *shades, const skg_view *view,
                               const skg_plan_options *options);
 

@@ -19,6 +19,36 @@ def moved(view, source):
     return sk.View(source=source, detector=view.detector, column_step=view.column_step, row_step=view.row_step, pixels=(32, 32))
 
 
+def tube_of(**source):
+    """A scene with a heel effect or a bow-tie filter."""
+    return sk.Scene({
+        "Detector": {"Position": [0, 0, 0, "mm"], "RightVector": [1, 0, 0], "UpVector": [0, 0, -1], "NumberOfPixels": [32, 32],
+                     "Spacing": [6.25, 6.25, "mm"]},
+        "Source": {"Shape": "PointSource", "Position": [0, -1200, 0, "mm"], "Beam": {"kVp": 100, "mAs": 2, "TubeAngle": 20, "Filter": [["Al", 3, "mm"]]},
+                   **source},
+        "Samples": [{"Label": "w", "Cube": [50, "mm"], "Material": "Water", "Transform": [["Translation", 0, -200, 0, "mm"]]}]})
+
+
+BOWTIE = {"Material": "Al", "Direction": [1, 0, 0], "Unit": "mm", "Profile": [[-10, 5], [0, 1], [10, 5]]}
+
+
+@pytest.mark.parametrize("key, beyond, says", [("Heel", (0, -250, 0), "photons would leave the anode|heel effect"),
+                                               ("BowTie", (0, -300, 0), "profile goes from -10 to 10 degrees")])
+def test_tubes_of_another_view(key, beyond, says):
+    value = {"Heel": {"Direction": [0, 0, 1]}, "BowTie": BOWTIE}[key]
+    used, fresh = tube_of(**{key: value}), tube_of(**{key: value})
+    used.image("transmission")
+    for scene in (used, fresh):
+        scene.view = moved(scene.view, (0, -700, 0))
+    images = [scene.image("transmission") for scene in (used, fresh)]
+    np.testing.assert_allclose(*images, rtol=1e-5)
+    used.view = moved(used.view, beyond)
+    with pytest.raises(sk.Error, match=says):
+        used.image("transmission")
+    with pytest.raises(sk.Error, match="make a plan for it|profile goes from"):
+        fresh.images("transmission", views=[fresh.view, used.view])
+
+
 @pytest.mark.parametrize("source", [(0, -900, 0), (60, -1200, 0)])
 @pytest.mark.parametrize("detector", [{"Grid": GRID}, {"Scintillator": {"Material": "CsI", "Thickness": 300, "Unit": "um", "Oblique": True}}])
 def test_another_view_has_tables_of_its_own(source, detector):

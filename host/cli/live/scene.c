@@ -137,7 +137,8 @@ int live_scene_fits(const live_scene *scene, const live_wish *wish) {
     if (wish->quantity != scene->session.options.quantity || !has_bands(scene, wish)) return 0;
     /* What is tabulated for the rays of a view is made anew. */
     const skg_plan_options *options = &scene->session.options;
-    if ((options->grid || options->oblique) && has_moved(scene, wish)) return 0;
+    if ((options->grid || options->oblique || options->heel || options->bowtie) && has_moved(scene, wish))
+        return 0;
     json_t *was = fixed_settings(scene->settings), *is = fixed_settings(wish->settings);
     const int fits = json_equal(was, is);
     json_decref(was);

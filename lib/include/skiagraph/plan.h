@@ -52,8 +52,9 @@ SKG_API skg_status skg_spectrum_create_resolved(const skg_spectrum *spectrum, co
                                                 skg_spectrum **resolved);
 
 /** Sets the view of frames without their own. Returns SKG_STALE, and changes nothing, if the view has another size than the
- * plan's, if the spectrum is absolute and one of the two is parallel and the other is not, if rays lean across a grid or
- * cross an oblique scintillator at angles beyond those of the plan's views, or if its pixels are not those of a detector that counts. */
+ * plan's, if the spectrum is absolute and one of the two is parallel and the other is not, if rays leave
+ * the anode (heel), pass a bow-tie filter, lean across a grid or cross an oblique scintillator at angles beyond those of the plan's views, or if its
+ * pixels are not those of a detector that counts or of a blur that says its pixels. */
 SKG_API skg_status skg_plan_view_set(skg_plan *plan, const skg_view *view);
 
 #ifdef __cplusplus
