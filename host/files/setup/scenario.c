@@ -1,11 +1,11 @@
 /* Writes a scene with a circular scan as a CTSimU scenario of format 1.2. */
-#include "setup/scenario.h"
-
 #include "core/core.h"
 #include "core/files.h"
 #include "core/maths.h"
 #include "core/text.h"
 #include "setup/save.h"
+#include "setup/scenario_json.h"
+#include "setup/scenario_parts.h"
 #include "trajectory/types.h"
 
 #include <skiagraph/setup.h>
@@ -16,33 +16,11 @@
 
 enum { PATH_LENGTH = 4096 };
 
-static const char scenario_ending[] = ".ctsimu.json";
-
-json_t *skg_scenario_number(double value, const char *unit) {
-    return unit ? json_pack("{s:f, s:s}", "value", value, "unit", unit) : json_pack("{s:f}", "value", value);
-}
-
-json_t *skg_scenario_vector(const double *vector, const char *names, const char *unit) {
-    json_t *object = json_object();
-    for (int k = 0; k < 3; k++) {
-        const char name[2] = {names[k], '\0'};
-        json_object_set_new(object, name, skg_scenario_number(vector[k], unit));
-    }
-    return object;
-}
-
-skg_status skg_scenario_name(const char *path, const char *ending, int whole, char *name, size_t size) {
-    const char *slash = strrchr(path, '/'), *from = whole || !slash ? path : slash + 1;
-    const int stem = (int)(strlen(from) - strlen(scenario_ending));
-    if ((size_t)snprintf(name, size, "%.*s%s", stem, from, ending) < size) return SKG_OK;
-    return skg_fail(SKG_ERR_OUTPUT, "%s: its name is too long", path);
-}
-
 static skg_status check_path(const char *path) {
-    const size_t length = strlen(path), ending = strlen(scenario_ending);
-    if (length > ending && skg_same_name(path + length - ending, scenario_ending)) return SKG_OK;
+    const size_t length = strlen(path), ending = strlen(skg_scenario_ending);
+    if (length > ending && skg_same_name(path + length - ending, skg_scenario_ending)) return SKG_OK;
     return skg_fail(SKG_ERR_ARGUMENT, "%s: a CTSimU scenario is written to a file that ends in %s", path,
-                    scenario_ending);
+                    skg_scenario_ending);
 }
 
 /* What a scenario does not hold of a scan. */

@@ -1,9 +1,10 @@
 /* Samples and materials of a CTSimU scenario from the parts of a scene. */
+#include "setup/scenario_parts.h"
 #include "core/core.h"
 #include "core/maths.h"
 #include "material/material.h"
 #include "scene/scene.h"
-#include "setup/scenario.h"
+#include "setup/scenario_json.h"
 
 #include <skiagraph/mesh.h>
 
