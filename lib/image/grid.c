@@ -8,12 +8,18 @@
 typedef struct {
     const char *path;
     FILE *stream;
-    int compressed, ended;
+    int compressed;
+    int code;   /* of the expansion: Z_OK while it goes on, Z_STREAM_END behind the checksum */
+    int behind; /* 1: something else stands behind that */
     z_stream inflating;
     unsigned char buffer[1 << 16];
 } source;
 
 static skg_status fail_short(const source *s, int64_t slice, int64_t slices) {
+    if (s->compressed && s->code != Z_OK && s->code != Z_STREAM_END)
+        return skg_fail(SKG_ERR_FORMAT,
+                        "%s: what is compressed is damaged in slice %lld of %lld; take another copy", s->path,
+                        (long long)slice, (long long)slices);
     return skg_fail(SKG_ERR_FORMAT, "%s: ends in slice %lld of %lld; is it the whole file?", s->path,
                     (long long)slice, (long long)slices);
 }
@@ -31,26 +37,62 @@ static void close_source(source *s) {
     if (s->compressed) inflateEnd(&s->inflating);
 }
 
+static int is_readable(const source *s) {
+    return s->code == Z_OK || s->code == Z_STREAM_END;
+}
+
+/* Fills the buffer if it is empty. Returns 0 at the end of the file. */
+static int fill_buffer(source *s) {
+    z_stream *z = &s->inflating;
+    if (z->avail_in > 0) return 1;
+    z->next_in = s->buffer;
+    z->avail_in = (uInt)fread(s->buffer, 1, sizeof s->buffer, s->stream);
+    return z->avail_in > 0;
+}
+
+/* Goes on behind the end of a member of gzip, of which a file may have several; zeros behind the last one fill a block. */
+static void begin_member(source *s) {
+    z_stream *z = &s->inflating;
+    while (fill_buffer(s) && *z->next_in == 0) z->next_in++, z->avail_in--;
+    if (z->avail_in == 0) return;
+    s->behind = *z->next_in != 0x1f;
+    s->code = s->behind ? Z_DATA_ERROR : inflateReset(z);
+}
+
 /* Reads so many bytes. Returns how many there were. */
 static size_t read_bytes(source *s, void *to, size_t count) {
     if (!s->compressed) return fread(to, 1, count, s->stream);
     z_stream *z = &s->inflating;
     size_t done = 0;
-    while (done < count && !s->ended) {
+    while (done < count && is_readable(s) && fill_buffer(s)) {
         const size_t left = count - done;
-        if (z->avail_in == 0) {
-            z->next_in = s->buffer;
-            z->avail_in = (uInt)fread(s->buffer, 1, sizeof s->buffer, s->stream);
-            if (z->avail_in == 0) break;
-        }
+        if (s->code == Z_STREAM_END) begin_member(s);
+        if (s->code != Z_OK) continue;
         z->next_out = (unsigned char *)to + done;
         z->avail_out = left < 1u << 30 ? (uInt)left : 1u << 30;
         const uInt room = z->avail_out;
-        const int code = inflate(z, Z_NO_FLUSH);
+        s->code = inflate(z, Z_NO_FLUSH);
         done += room - z->avail_out;
-        s->ended = code != Z_OK;
     }
     return done;
+}
+
+/* Nothing may stand behind the cells, and what is compressed ends with a checksum. */
+static skg_status check_end(source *s, const skg_grid *grid) {
+    unsigned char more;
+    if (read_bytes(s, &more, 1) == 1)
+        return skg_fail(SKG_ERR_FORMAT,
+                        "%s: holds more than the %lld x %lld x %lld cells of its header; correct one of them",
+                        s->path, (long long)grid->size[0], (long long)grid->size[1],
+                        (long long)grid->size[2]);
+    if (!s->compressed || s->code == Z_STREAM_END) return SKG_OK;
+    if (s->code == Z_OK)
+        return skg_fail(SKG_ERR_FORMAT, "%s: ends before the checksum of its values; is it the whole file?",
+                        s->path);
+    return skg_fail(SKG_ERR_FORMAT,
+                    s->behind ? "%s: has bytes behind its compressed values; write the file anew"
+                              : "%s: its values do not agree with their checksum; take another copy",
+                    s->path);
 }
 
 static int is_scaled(const skg_grid_file *file) {
@@ -91,6 +133,22 @@ static void take_slice(const unsigned char *slice, const skg_grid_file *file, in
     }
 }
 
+skg_status skg_grid_read_head(const char *path, FILE *stream, const skg_grid_file *file, size_t most,
+                              void *bytes, size_t *count) {
+    source *s = NULL;
+    rewind(stream);
+    SKG_TRY(skg_alloc(1, sizeof *s, "volume", &s));
+    s->path = path, s->stream = stream;
+    const skg_status status = open_source(s, file);
+    if (status == SKG_OK) {
+        *count = read_bytes(s, bytes, most);
+        close_source(s);
+    }
+    skg_free(&s);
+    rewind(stream);
+    return status;
+}
+
 skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_file *file, skg_grid *grid) {
     static const size_t sizes[] = {sizeof(int16_t), sizeof(uint16_t), sizeof(float), sizeof(double)};
     const int64_t plane = grid->size[0] * grid->size[1];
@@ -110,12 +168,7 @@ skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_fi
         else
             take_slice(slice, file, z * plane, plane, grid);
     }
-    unsigned char more;
-    if (status == SKG_OK && read_bytes(s, &more, 1) == 1)
-        status =
-            skg_fail(SKG_ERR_FORMAT,
-                     "%s: holds more than the %lld x %lld x %lld cells of its header; correct one of them",
-                     path, (long long)grid->size[0], (long long)grid->size[1], (long long)grid->size[2]);
+    if (status == SKG_OK) status = check_end(s, grid);
 cleanup:
     if (s) close_source(s);
     skg_free(&s);

@@ -75,6 +75,11 @@ typedef struct {
     double slope, shift; /* a value is the number in the file times slope plus shift; slope 0: the number */
 } skg_grid_file;
 
+/* The first bytes of what a file holds, up to `most`; *count: so many there were. Only `compressed` of `file` is read. The stream is
+ * then at its begin. */
+skg_status skg_grid_read_head(const char *path, FILE *stream, const skg_grid_file *file, size_t most,
+                              void *bytes, size_t *count);
+
 /* Reads the cells of a grid of known size, of which *stream is at the first. */
 skg_status skg_grid_read_cells(const char *path, FILE *stream, const skg_grid_file *file, skg_grid *grid);
 

@@ -1,19 +1,16 @@
 /* Reads volumes from NIfTI files (nifti.nimh.nih.gov: nifti1.h and nifti2.h), of one file each, plain or by gzip. */
-#define _POSIX_C_SOURCE 200809L /* fileno */
 #include "core/text.h"
 #include "image/image.h"
 
 #include <math.h>
 #include <string.h>
-#include <unistd.h>
-#include <zlib.h>
 
 enum { LONG_HEADER = 540, SHORT_HEADER = 348, DIMENSIONS = 8 };
 
 /* Where the members of a header stand, and how many bytes its numbers have. */
 typedef struct {
-    int size, magic, dim, datatype, spacing, offset, slope, shift, units, qform, sform, quaternion, place,
-        rows;
+    int size, magic, dim, datatype, bits, spacing, offset, slope, shift, units, qform, sform, quaternion,
+        place, rows;
     int dim_bytes, real_bytes, offset_bytes, code_bytes;
     char offset_kind;
 } layout;
@@ -22,6 +19,7 @@ static const layout layouts[2] = {{.size = SHORT_HEADER,
                                    .magic = 344,
                                    .dim = 40,
                                    .datatype = 70,
+                                   .bits = 72,
                                    .spacing = 76,
                                    .offset = 108,
                                    .slope = 112,
@@ -41,6 +39,7 @@ static const layout layouts[2] = {{.size = SHORT_HEADER,
                                    .magic = 4,
                                    .dim = 16,
                                    .datatype = 12,
+                                   .bits = 14,
                                    .spacing = 104,
                                    .offset = 168,
                                    .slope = 176,
@@ -71,18 +70,10 @@ static double real(const header *h, int first, int index) {
     return number(h, first + index * h->at->real_bytes, h->at->real_bytes, 'f');
 }
 
-static skg_status read_header(FILE *stream, header *h) {
-    /* gzread passes on what is not compressed. */
-    const int own = dup(fileno(stream));
-    gzFile file = own < 0 ? NULL : gzdopen(own, "rb");
-    if (!file) {
-        if (own >= 0) close(own);
-        return skg_fail(SKG_ERR_FILE, "%s: cannot be read", h->path);
-    }
-    const int got = gzread(file, h->bytes, LONG_HEADER);
-    gzclose(file);
-    rewind(stream);
-    for (int k = 0; k < 2 && !h->at && got >= layouts[k].size; k++)
+static skg_status read_header(FILE *stream, const skg_grid_file *file, header *h) {
+    size_t got = 0;
+    SKG_TRY(skg_grid_read_head(h->path, stream, file, LONG_HEADER, h->bytes, &got));
+    for (int k = 0; k < 2 && !h->at && got >= (size_t)layouts[k].size; k++)
         for (int swapped = 0; swapped < 2; swapped++)
             if (skg_number_of_bytes(h->bytes, 4, 'i', swapped) == layouts[k].size)
                 h->at = &layouts[k], h->swapped = swapped;
@@ -91,7 +82,12 @@ static skg_status read_header(FILE *stream, header *h) {
                         "%s: is no NIfTI file: it begins with the size of no header of NIfTI-1 or NIfTI-2",
                         h->path);
     const unsigned char *magic = h->bytes + h->at->magic;
-    if (magic[0] != 'n' || magic[1] != '+')
+    if (magic[0] != 'n' || (magic[1] != '+' && magic[1] != 'i'))
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s: lacks the mark of NIfTI (n+1, n+2), as a file of Analyze 7.5 does, whose axes are not known; convert it",
+            h->path);
+    if (magic[1] != '+')
         return skg_fail(
             SKG_ERR_UNSUPPORTED,
             "%s: its values are in a file of their own (.hdr and .img); write one file, .nii or .nii.gz",
@@ -105,10 +101,15 @@ static skg_status read_type(const header *h, skg_grid_file *file) {
         char kind;
     } types[] = {{2, 1, 'u'},   {4, 2, 'i'},   {8, 4, 'i'},   {16, 4, 'f'},   {64, 8, 'f'},
                  {256, 1, 'i'}, {512, 2, 'u'}, {768, 4, 'u'}, {1024, 8, 'i'}, {1280, 8, 'u'}};
-    const int code = (int)number(h, h->at->datatype, 2, 'i');
+    const int code = (int)number(h, h->at->datatype, 2, 'i'), bits = (int)number(h, h->at->bits, 2, 'i');
     for (size_t t = 0; t < sizeof types / sizeof *types; t++)
         if (types[t].code == code) {
             file->bytes = types[t].bytes, file->kind = types[t].kind;
+            if (bits != 0 && bits != 8 * types[t].bytes)
+                return skg_fail(
+                    SKG_ERR_FORMAT,
+                    "%s: its header says %d bits a value and type %d, which has %d; correct one of them",
+                    h->path, bits, code, 8 * types[t].bytes);
             return SKG_OK;
         }
     return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its type, %d, is none of a number", h->path, code);
@@ -179,6 +180,17 @@ static skg_status read_place(const header *h, skg_grid *grid) {
     return SKG_OK;
 }
 
+/* Slope and intercept. A slope of 0 or NaN says that there is none. */
+static skg_status read_scale(const header *h, skg_grid_file *file) {
+    file->slope = real(h, h->at->slope, 0), file->shift = real(h, h->at->shift, 0);
+    if (isnan(file->slope)) file->slope = 0;
+    if (isfinite(file->slope) && (file->slope == 0 || isfinite(file->shift))) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_FORMAT,
+        "%s: its values are to be multiplied by %g and shifted by %g; correct scl_slope and scl_inter",
+        h->path, file->slope, file->shift);
+}
+
 skg_status skg_nifti_read_grid(const char *path, skg_grid *grid) {
     header h = {.path = path};
     skg_grid_file file = {.bytes = 0};
@@ -186,15 +198,13 @@ skg_status skg_nifti_read_grid(const char *path, skg_grid *grid) {
     skg_status status = SKG_OK;
     *grid = (skg_grid){.type = 0};
     SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
-    SKG_TRY_CLEANUP(read_header(stream, &h));
+    file.compressed = fgetc(stream) == 0x1f && fgetc(stream) == 0x8b;
+    SKG_TRY_CLEANUP(read_header(stream, &file, &h));
     SKG_TRY_CLEANUP(read_type(&h, &file));
     SKG_TRY_CLEANUP(read_size(&h, grid));
     SKG_TRY_CLEANUP(read_place(&h, grid));
-    file.compressed = fgetc(stream) == 0x1f && fgetc(stream) == 0x8b;
-    rewind(stream);
     file.swapped = h.swapped;
-    file.slope = real(&h, h.at->slope, 0), file.shift = real(&h, h.at->shift, 0);
-    if (!isfinite(file.slope) || !isfinite(file.shift)) file.slope = 0; /* NaN says that there is none */
+    SKG_TRY_CLEANUP(read_scale(&h, &file));
     const double first = number(&h, h.at->offset, h.at->offset_bytes, h.at->offset_kind);
     if (!(first >= h.at->size && first < 1 << 30)) {
         status = skg_fail(SKG_ERR_FORMAT, "%s: its values begin at byte %g, within the header or nowhere",

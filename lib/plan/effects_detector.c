@@ -1,13 +1,18 @@
 /* Effects of the detector: response, blur, layers. Those of its noise are in effects_noise.c. */
 #include "beam/spectrum.h"
+#include "core/maths.h"
 #include "core/log.h"
 #include "core/text.h"
 #include "plan/decisions.h"
 #include "plan/rules.h"
 #include "spectral/model.h"
 
+#include <float.h>
 #include <inttypes.h>
 #include <math.h>
+
+/* Sizes of pixels that are the same but for the six digits that exporters write. */
+static const double ALIKE = 1e-4;
 
 static void find_response(const skg_effect_facts *f, skg_effect_state *state) {
     const skg_plan_options *options = &f->recipe->options;
@@ -120,6 +125,51 @@ static double cost_of_layers(const skg_effect_facts *f, int32_t first) {
     return channels * samples + f->counts.passes * nodes * (model->layers - 1);
 }
 
+skg_status skg_blur_take_pixels(const skg_detector_blur *blurs, int64_t index, double pixel_mm[2]) {
+    skg_detector_blur one = {.size = sizeof one};
+    SKG_TRY(skg_struct_read_at(blurs, index, "skg_detector_blur", &one, sizeof one));
+    for (int d = 0; d < 2; d++) {
+        const double mm = one.pixel_mm[d];
+        if (!(mm >= 0 && mm <= DBL_MAX))
+            return skg_fail(SKG_ERR_ARGUMENT, "the blur is of pixels of %g mm; give a length, or 0 for any",
+                            mm);
+        if (mm > 0 && pixel_mm[d] > 0 && fabs(mm / pixel_mm[d] - 1) > ALIKE)
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "the blurs of depths are of pixels of %g and of %g mm; give them for the same",
+                            pixel_mm[d], mm);
+        if (mm > 0) pixel_mm[d] = mm;
+    }
+    return SKG_OK;
+}
+
+static skg_status check_pixels(const double own[2], const char *what, const char *mend, const skg_view *view,
+                               skg_status status) {
+    const double mm[2] = {skg_length(view->column_step), skg_length(view->row_step)};
+    for (int d = 0; d < 2; d++)
+        if (own[d] > 0 && fabs(mm[d] / own[d] - 1) > ALIKE)
+            return skg_fail(status, "%s is of pixels of %g x %g mm, those of the view are %g x %g mm; %s",
+                            what, own[0], own[1], mm[0], mm[1], mend);
+    return SKG_OK;
+}
+
+skg_status skg_blur_check_pixels(const skg_recipe *recipe, const skg_view *view, skg_status status) {
+    const double own[2] = {skg_length(recipe->view.column_step), skg_length(recipe->view.row_step)};
+    SKG_TRY(check_pixels(
+        recipe->blur_pixel_mm, "the blur of the detector (MTF)",
+        "give it for these (a file with them, skg_line_spread_get, or blur={\"mtf\": rows} in Python)", view,
+        status));
+    return recipe->options.dqe
+               ? check_pixels(own, "the noise power (DQE) of the plan", "make a plan for it", view, status)
+               : SKG_OK;
+}
+
+skg_status skg_blur_check(const skg_recipe *recipe) {
+    SKG_TRY(skg_blur_check_pixels(recipe, &recipe->view, SKG_ERR_SCENE));
+    for (int64_t v = 0; v < recipe->options.view_count; v++)
+        SKG_TRY(skg_blur_check_pixels(recipe, &recipe->options.views[v], SKG_ERR_SCENE));
+    return SKG_OK;
+}
+
 static skg_status copy_depths(skg_recipe *recipe) {
     skg_depth_blur *ours = NULL;
     double before = 0;
@@ -141,6 +191,8 @@ static skg_status copy_depths(skg_recipe *recipe) {
                             " of the scintillator ends at %g of its thickness; ends rise, and the "
                             "last is 1",
                             d + 1, ours->to[d]);
+    for (int64_t d = 0; d < ours->count; d++)
+        SKG_TRY(skg_blur_take_pixels(ours->blur, d, recipe->blur_pixel_mm));
     ours->blur = NULL; /* read when the plan is made */
     recipe->options.depth_blur = ours;
     return SKG_OK;

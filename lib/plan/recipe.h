@@ -32,6 +32,7 @@ struct skg_recipe {
     skg_channel_name *channel_names; /* [channels] */
     skg_samples samples;             /* of source and pixel */
     int32_t is_blurred;
+    double blur_pixel_mm[2]; /* pixels that the blur is of; 0: any */
     int32_t mixed; /* accumulators that the planes of images are mixed from; 0: they are not mixed */
     int32_t priority_possible;   /* 1: priorities differ, or children are clipped */
     int32_t strategy;            /* SKG_STRATEGY_..., never AUTO */

@@ -35,6 +35,7 @@ static skg_status copy_options(skg_recipe *recipe, const skg_plan_options *given
     SKG_TRY(skg_struct_read(given, "skg_plan_options", options, sizeof *options));
     *spot = options->spot;
     recipe->is_blurred = options->blur != NULL || options->depth_blur != NULL;
+    if (options->blur) SKG_TRY(skg_blur_take_pixels(options->blur, 0, recipe->blur_pixel_mm));
     options->spot = NULL;
     if (options->response) skg_response_retain(options->response);
     if (options->world) skg_material_retain(options->world);
@@ -166,6 +167,7 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
     SKG_TRY(skg_plan_options_check(options, device));
     SKG_TRY(skg_effects_check(options));
     SKG_TRY(skg_counting_check(recipe));
+    SKG_TRY(skg_blur_check(recipe));
     if (options->falloff == SKG_FALLOFF_AUTO) recipe->options.falloff = recipe->exposure > 0;
     recipe->volume_count = skg_scene_volumes(recipe->scene);
     SKG_TRY(skg_plan_meshes_create(recipe->scene, &recipe->meshes));

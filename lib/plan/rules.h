@@ -122,6 +122,14 @@ skg_status skg_counting_check_flat(const skg_recipe *recipe);
 /* Whether a view has the pixels that the table of counts was made for; status: what is said otherwise. */
 skg_status skg_counting_check_pixels(const skg_recipe *recipe, const skg_view *view, skg_status status);
 
+/* Adds the pixels that the caller's blur is of, if it says so, to pixel_mm, which is 0 or those of others. */
+skg_status skg_blur_take_pixels(const skg_detector_blur *blurs, int64_t index, double pixel_mm[2]);
+
+/* Whether blur and noise power are of the pixels of a view: of the plan's own and of those of its options; of another, whose refusal
+ * is `status`. */
+skg_status skg_blur_check(const skg_recipe *recipe);
+skg_status skg_blur_check_pixels(const skg_recipe *recipe, const skg_view *view, skg_status status);
+
 /* Fails if volumes of cells stand beside what is not computed with them. */
 skg_status skg_volumes_check(const skg_recipe *recipe);
 

@@ -109,8 +109,9 @@ static void choose(const profile *p, const int64_t *orders, const double *varian
                    double *shares, skg_choice *choice) {
     const int64_t last = last_order(p);
     double fourth = 0;
-    for (int64_t k = 0; k < size; k++) shares[k] = 0;
-    for (int64_t first = 1, end; first <= last; first = end + 1) {
+    for (int64_t k = 0; k < size; k++)
+        shares[k] = orders[k] == 1; /* the mean: as many photons as there are */
+    for (int64_t first = 2, end; first <= last; first = end + 1) {
         end = block_end(first, last);
         const double signal = choose_block(p, first, end, choice, &fourth);
         for (int64_t k = 0; k < size; k++)

@@ -166,20 +166,19 @@ static skg_status fit(const skg_arrivals *a, const double *across, const double 
     const double places = (double)size;
     skg_choice choice;
     int64_t *orders = NULL;
-    double *shares = work;
     for (int64_t b = 0; b < a->batches; b++)
         transform(c, across, down, a->values + b * size, work, all + b * size);
     average(a, all, c);
     SKG_TRY(skg_alloc(size, sizeof *orders, "smoothing", &orders));
     for (int64_t k = 0; k < size; k++) orders[k] = order_of(c, k);
-    const skg_status status = skg_choose_order(size, orders, c->value, c->variance, shares, &choice);
+    const skg_status status = skg_choose_order(size, orders, c->value, c->variance, c->share, &choice);
     skg_free(&orders);
     if (status != SKG_OK) return status;
     c->bias = choice.bias / places;
     c->doubt = choice.doubt / places;
     for (int64_t k = 0; k < size; k++) {
-        c->value[k] *= shares[k], c->variance[k] *= shares[k] * shares[k];
-        for (int64_t b = 0; b < a->batches; b++) all[b * size + k] *= shares[k];
+        c->value[k] *= c->share[k], c->variance[k] *= c->share[k] * c->share[k];
+        for (int64_t b = 0; b < a->batches; b++) all[b * size + k] *= c->share[k];
     }
     sharpen(a->batches, all, c);
     keep(c, choice.order);
@@ -198,6 +197,7 @@ skg_status skg_cosines_fit(const skg_arrivals *a, skg_cosines *c) {
     SKG_TRY_CLEANUP(skg_alloc(a->batches * size, sizeof *all, "smoothing", &all));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->variance, "smoothing", &c->variance));
+    SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->share, "smoothing", &c->share));
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *c->spread, "smoothing", &c->spread));
     status = fit(a, across, down, work, all, c);
 cleanup:
@@ -213,13 +213,14 @@ skg_status skg_cosines_like(const skg_cosines *like, const double *values, skg_c
     *c = (skg_cosines){.columns = like->columns, .rows = like->rows, .kept = {like->kept[0], like->kept[1]}};
     SKG_TRY(skg_alloc(size, sizeof *c->value, "smoothing", &c->value));
     SKG_TRY(skg_cosines_of(c->columns, c->rows, 1, values, c->value));
-    for (int64_t k = 0; k < size; k++) c->value[k] = like->value[k] != 0 ? c->value[k] / of_places(c, k) : 0;
+    for (int64_t k = 0; k < size; k++) c->value[k] *= like->share[k] / of_places(c, k);
     return SKG_OK;
 }
 
 void skg_cosines_free(skg_cosines *c) {
     skg_free(&c->value);
     skg_free(&c->variance);
+    skg_free(&c->share);
     skg_free(&c->spread);
 }
 

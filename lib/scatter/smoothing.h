@@ -44,6 +44,7 @@ typedef struct {
     double *
         value; /* [rows][columns] coefficients of the smooth function at the middle of a place; 0 if not kept */
     double *variance; /* [rows][columns] of them */
+    double *share;    /* [rows][columns] how much of each is kept */
     double
         *spread;  /* [rows][columns] coefficients of the variance that the batches show from place to place */
     double bias;  /* mean square of what was left out, of means over places */

@@ -51,7 +51,8 @@ skg_status skg_volume_load(const char *path, double unit_mm, const skg_volume_so
     ours.columns = grid.size[0], ours.rows = grid.size[1], ours.slices = grid.size[2];
     ours.type = grid.type, ours.cells = grid.cells;
     if (!ours.name) ours.name = path;
-    const skg_status status = skg_volume_create(&ours, volume);
+    skg_status status = skg_volume_create(&ours, volume);
     skg_free(&grid.cells);
-    return status;
+    /* The caller gave a file, not its values. */
+    return status == SKG_ERR_ARGUMENT ? skg_fail(SKG_ERR_FORMAT, "%s", skg_last_error()) : status;
 }

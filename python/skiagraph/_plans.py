@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from ._device import Device
-from ._interface import OK, STALE, ArgumentError
+from ._interface import ENUMS, OK, STALE, ArgumentError
 from ._library import call, check, choice, ffi, fill, lib, make, struct
 from .beam import Beam
 from .view import View
@@ -46,13 +46,13 @@ class Plans:
 
     def _make(self, setup: Any, scene: Any, view: View, beam: Beam, given: dict[str, Any]) -> Any:
         keep: list[Any] = []
-        options = self.options(setup, given, keep)
+        options = self.options(setup, given, keep, view)
         return make("skg_plan_create", "skg_plan", self._device.handle, scene, view._write(struct("skg_view")),
                     beam._handle, options)
 
     @staticmethod
-    def options(setup: Any, given: Mapping[str, Any], keep: list[Any]) -> Any:
-        """The library's skg_plan_options: what the file says, and what is given besides."""
+    def options(setup: Any, given: Mapping[str, Any], keep: list[Any], view: View | None = None) -> Any:
+        """The library's skg_plan_options: what the file says, and what is given besides, for a view."""
         options = struct("skg_plan_options")
         call("skg_setup_options_get", setup, options)
         values = {name: value for name, value in given.items() if value is not None}
@@ -63,8 +63,15 @@ class Plans:
         if bands is not None:
             edges = np.atleast_1d(np.asarray(bands, dtype=float))
             values.update(band_kev=edges, bands=len(edges) - 1)
-        if blur is not None:
-            values["blur"] = blur if not isinstance(blur, Mapping) else _blur(blur)
+        if isinstance(blur, Mapping):
+            values["blur"] = _blur(blur, view)
+        elif blur is False:  # not even that of the file
+            options.blur = ffi.NULL
+        elif blur is not None:
+            values["blur"] = blur
+        if values.get("depth_blur") is False:
+            options.depth_blur = ffi.NULL
+            del values["depth_blur"]
         if views:
             sample = views[::-(-len(views) // _VIEWS)]
             written = struct("skg_view", len(sample))
@@ -109,8 +116,28 @@ def _number(value: Any, what: str) -> float:
         raise ArgumentError(f"{what} is {value!r}; give a number") from None
 
 
-def _blur(blur: Mapping[str, Any]) -> dict[str, Any]:
-    """along_row and along_column, or point [rows][columns], with their numbers of samples."""
+def _lines(rows: Any, view: View) -> dict[str, Any]:
+    """The line spread functions of a modulation transfer function [[line pairs per mm, value], ...] in the pixels of a view."""
+    table = np.asarray(rows, dtype=float)
+    if table.ndim != 2 or table.shape[1] != 2:
+        raise ArgumentError("blur: mtf has rows of line pairs per mm and value, such as [[0, 1], [2.5, 0.4]]")
+    per_mm, mtf = (np.ascontiguousarray(column) for column in table.T)
+    pixel_mm = [float(np.linalg.norm(step)) for step in (view.column_step, view.row_step)]
+    lines = []
+    for mm in pixel_mm:
+        line, samples = np.zeros(ENUMS["limit"]["line_samples_max"]), ffi.new("int64_t *")
+        call("skg_line_spread_get", len(table), ffi.from_buffer("double[]", per_mm), ffi.from_buffer("double[]", mtf), mm,
+             ffi.from_buffer("double[]", line), samples)
+        lines.append(line[:samples[0]])
+    return {"along_row": lines[0], "along_column": lines[1], "pixel_mm": pixel_mm}
+
+
+def _blur(blur: Mapping[str, Any], view: View | None) -> dict[str, Any]:
+    """along_row and along_column, point [rows][columns], or mtf, with their numbers of samples."""
+    if "mtf" in blur and view is not None:
+        if len(blur) > 1:
+            raise ArgumentError("blur: give mtf alone")
+        blur = _lines(blur["mtf"], view)
     found = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in blur.items()}
     if "point" in found:
         rows, columns = np.atleast_2d(found["point"]).shape

@@ -58,3 +58,56 @@ def test_a_window_above_the_beam_is_warned_of():
         scene_of(Spacing=[0.1, 0.1, "mm"], Counting={"Material": "CdTe", "Thickness": [1, "mm"], "Thresholds": [70]}).image("photons")
     with pytest.raises(sk.ArgumentError, match="give a Counter"):
         scene_of().image("photons", counter="CdTe")
+
+
+MTF = [[0, 1], [0.5, 0.7], [1, 0.4], [5, 0]]
+
+
+def pixels_of(scene, mm):
+    scene.view = sk.View(source=scene.view.source, detector=scene.view.detector, column_step=(mm, 0, 0), row_step=(0, 0, mm), pixels=(32, 32))
+
+
+def test_a_modulation_transfer_function_is_of_the_pixels_of_the_file():
+    scene, fine = scene_of(Spacing=[0.5, 0.5, "mm"], MTF=MTF), scene_of(Spacing=[0.25, 0.25, "mm"], MTF=MTF)
+    ball = sk.Mesh.sphere(1.5, 24)
+    for one in (scene, fine):
+        one.remove("w")
+        one.add("b", ball, material="Al").pose = [[1, 0, 0, 0], [0, 1, 0, -200], [0, 0, 1, 0], [0, 0, 0, 1]]
+    there = scene.image("photons")
+    pixels_of(scene, 0.25)
+    with pytest.raises(sk.SceneError, match=r"\(MTF\) is of pixels of 0.5 x 0.5 mm, those of the view are 0.25 x 0.25 mm; give it for these"):
+        scene.image("photons")
+    np.testing.assert_allclose(scene.image("photons", blur={"mtf": MTF}), fine.image("photons"), rtol=1e-6)  # places of pixels are rounded
+    pixels_of(scene, 0.5)
+    np.testing.assert_allclose(scene.image("photons", blur={"mtf": MTF}), there, rtol=1e-6)
+    assert not np.array_equal(scene.image("photons", blur=False), there)
+
+
+def test_line_spread_functions_are_of_any_pixels():
+    scene = scene_of(Spacing=[0.5, 0.5, "mm"], LSF=[0.25, 0.5, 0.25])
+    pixels_of(scene, 0.25)
+    scene.image("photons")
+
+
+def test_views_of_other_pixels_in_a_batch_are_refused():
+    scene = scene_of(Spacing=[0.5, 0.5, "mm"], MTF=MTF)
+    there = scene.view
+    pixels_of(scene, 0.25)
+    fine, scene.view = scene.view, there
+    with pytest.raises(sk.SceneError, match="MTF"):
+        scene.images("photons", views=[there, fine])
+
+
+def test_noise_power_is_of_the_pixels_of_the_view():
+    dqe = {"MTF": MTF, "DQE": [[0, 0.7], [5, 0.2]]}
+    scene, fine = scene_of(Spacing=[0.5, 0.5, "mm"], **dqe), scene_of(Spacing=[0.25, 0.25, "mm"], **dqe)
+    scene.image("photons", noise=True, blur={"mtf": MTF})
+    pixels_of(scene, 0.25)
+    np.testing.assert_array_equal(scene.image("photons", noise=True, blur={"mtf": MTF}, index=0),
+                                  fine.image("photons", noise=True, index=0))
+
+
+@pytest.mark.parametrize("mtf", [[0, 1], [[0, 1, 2]], [[0.5, 1], [5, 0]], [[0, 1], [0.01, 0.5]]])
+def test_tables_of_another_shape_are_refused(mtf):
+    with pytest.raises(sk.ArgumentError):
+        scene_of().image("photons", blur={"mtf": mtf})

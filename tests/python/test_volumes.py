@@ -1,6 +1,8 @@
 """Volumes of cells as parts."""
+import gzip
 import json
 import pickle
+import struct
 
 import numpy as np
 import pytest
@@ -183,3 +185,38 @@ def test_simpleitk_images(tmp_path):
             scene = make_scene()
             scene.add_volume("ct", tmp_path / name)
             np.testing.assert_allclose(scene.image("attenuation"), expected, atol=1e-6 * expected.max())
+
+
+def nifti(cells):
+    """A NIfTI-1 file of 16-bit cells [z, y, x] with sides of 2 mm."""
+    header = bytearray(352)
+    struct.pack_into("<i", header, 0, 348)
+    struct.pack_into("<8h", header, 40, 3, *reversed(cells.shape), 1, 1, 1, 1)
+    struct.pack_into("<2h", header, 70, 4, 16)
+    struct.pack_into("<f", header, 108, 352)
+    struct.pack_into("<2h", header, 252, 0, 1)
+    struct.pack_into("<12f", header, 280, 2, 0, 0, -19, 0, 2, 0, -14, 0, 0, 2, -9)
+    header[123], header[344:347] = 2, b"n+1"
+    return bytes(header) + cells.astype("<i2").tobytes()
+
+
+def test_compressed_files_are_whole(tmp_path):
+    cells = np.arange(3000).reshape(10, 15, 20) - 1000
+    plain, path = nifti(cells), tmp_path / "ct.nii.gz"
+    whole = gzip.compress(plain, mtime=0)
+    members = b"".join(gzip.compress(plain[i:i + 999], mtime=0) for i in range(0, len(plain), 999))  # as pigz -i and bgzip write it
+    for data in (whole, members, members + bytes(512)):
+        path.write_bytes(data)
+        scene = make_scene()
+        scene.add_volume("ct", str(path))
+        scene.image("attenuation")
+    wrong = bytearray(whole)
+    wrong[-7] ^= 1
+    damaged = bytearray(whole)
+    damaged[len(whole) // 2:len(whole) // 2 + 40] = bytes(40)
+    for data, says in [(whole[:-4], "ends before the checksum"), (bytes(wrong), "do not agree with their checksum"),
+                       (whole + b"more", "has bytes behind its compressed values"), (bytes(damaged), "damaged|checksum|holds more"),
+                       (whole[:len(whole) // 2], "ends in slice"), (whole + whole, "holds more than")]:
+        path.write_bytes(data)
+        with pytest.raises(sk.Error, match=says):
+            make_scene().add_volume("ct", str(path))

@@ -257,6 +257,17 @@ START_TEST(nifti_files_are_read) {
     ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_UNSUPPORTED, "its type, 128");
     h = nifti_of(2, 0, 1), put_int(&h, 168, 100, 8);
     ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "begin at byte 100");
+    h = nifti_of(1, 0, 1), put_int(&h, 72, 8, 2);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "8 bits a value and type 4, which has 16");
+    h = nifti_of(2, 1, 1), put_reals(&h, 184, (const double[]){INFINITY}, 1);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "shifted by inf; correct scl_slope");
+    h = nifti_of(1, 0, 1), put_reals(&h, 112, (const double[]){-INFINITY}, 1);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "multiplied by -inf");
+    h = nifti_of(1, 0, 1), put_reals(&h, 112, (const double[]){NAN, NAN}, 2);
+    ck_skg(load_nifti(&h, CELLS, &volume));
+    skg_volume_release(&volume);
+    h = nifti_of(1, 0, 1), memset(h.bytes + 344, 0, 4);
+    ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_UNSUPPORTED, "lacks the mark of NIfTI");
     h = nifti_of(2, 0, 1), h.bytes[0] = 0;
     ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "is no NIfTI file");
 }

@@ -277,9 +277,11 @@ int live_scene_draft(const live_base *base, live_scene *scene, double ms, char *
     /* what a frame takes goes about with its pixels; with scatter the time of the rest is not known */
     while (scene->frame_ms / (double)(factor * factor) > ms && pixels / (double)(factor * factor) > 4096)
         factor++;
-    if (has_scatter) factor = 1;
+    if (has_scatter || options.counter) factor = 1; /* what counts has pixels of its own */
     live_view_coarsen(&view, factor);
     options.scatter = NULL;
+    if (factor > 1)
+        options.blur = NULL, options.depth_blur = NULL; /* less than a pixel of these, as a rule */
     const skg_status status = skg_plan_create(base->context, scene->session.scene, &view,
                                               scene->session.spectrum, &options, &scene->draft);
     if (status != SKG_OK) return fail(sentence);

@@ -39,7 +39,9 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) 
     if (status == SKG_OK) tell_plan(*plan, *plan_ms);
     if (status == SKG_OK) return CLI_DONE;
     int exit_status = cli_fail(status);
-    return status == SKG_ERR_UNSUPPORTED ? CLI_DEVICE : exit_status;
+    /* Most of what is not supported is a scene's; a device may lack double precision. */
+    return status == SKG_ERR_UNSUPPORTED && session->options.precision == SKG_PRECISION_DOUBLE ? CLI_DEVICE
+                                                                                               : exit_status;
 }
 
 skg_status cli_flat_field_quality(const cli_session *session, skg_quality *quality) {

@@ -147,6 +147,7 @@ static double variance_of(const skg_detector_blur *shape, const int64_t bins[2])
 
 static skg_status bin_blur(skg_setup_blur *blur, const int64_t bins[2]) {
     if (blur->shape.columns == 0) return SKG_OK;
+    for (int d = 0; d < 2; d++) blur->shape.pixel_mm[d] *= (double)bins[d];
     return blur->shape.point ? bin_points(&blur->shape, bins, &blur->samples)
                              : bin_lines(&blur->shape, bins, &blur->samples);
 }

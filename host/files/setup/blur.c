@@ -98,6 +98,7 @@ static skg_status read_transfer(const skg_setup_reader *reader, const skg_json_n
         SKG_TRY_CLEANUP(skg_json_at(node, status));
     }
     blur->shape.columns = samples[0], blur->shape.rows = samples[1];
+    blur->shape.pixel_mm[0] = pixel_mm[0], blur->shape.pixel_mm[1] = pixel_mm[1];
     blur->shape.along_row = blur->samples, blur->shape.along_column = blur->samples + SKG_LINE_SAMPLES_MAX;
 cleanup:
     skg_free(&rows);

@@ -58,7 +58,8 @@ enum skg_repair {
  * Give two line spread functions, whose product is the point spread function, or the point spread function
  * itself. Numbers of samples are odd, 1 to 4095; sample k of n is the share of a pixel's value that is found
  * k - n/2 pixels further on. Samples are scaled to the sum 1. A pixel beyond the edge of the image has the
- * value of the nearest edge pixel. */
+ * value of the nearest edge pixel. Samples that were made for pixels of a certain size say so in pixel_mm: a plan for
+ * others is refused, and a view that has others makes a plan SKG_STALE. */
 typedef struct {
     /** Set by skg_detector_blur_init. */
     int32_t size;
@@ -74,6 +75,9 @@ typedef struct {
     const double *along_column;
     /** [rows][columns] point spread function; NULL: the two line spread functions */
     const double *point;
+    /** mm between pixels along a row and along a column for which the samples were made, as by skg_line_spread_get; 0
+     * (default): they are of pixels of any size */
+    double pixel_mm[2];
 } skg_detector_blur;
 
 SKG_INIT(skg_detector_blur)

@@ -63,11 +63,15 @@ class Camera:
         options: dict[str, Any] = {"quantity": subject.wish.quantity, "profile": True}
         if subject.wish.bands:
             options["bands"] = subject.wish.bands
-        has_scatter = bool(state.plans.options(state.options_setup, {}, []).scatter)
-        factor = self._factor(view) if drag and not has_scatter else 1
+        of_file = state.plans.options(state.options_setup, {}, [])
+        has_scatter = bool(of_file.scatter)
+        # what counts has pixels of its own
+        factor = self._factor(view) if drag and not has_scatter and not of_file.counter else 1
         is_draft = drag and (factor > 1 or has_scatter)
         if is_draft:
             view, options["scatter"] = _coarse(view, factor), False
+            if factor > 1:  # it is less than a pixel of these, as a rule
+                options["blur"] = options["depth_blur"] = False
         start = time.perf_counter()
         with warnings.catch_warnings(record=True) as said:
             warnings.simplefilter("always")
