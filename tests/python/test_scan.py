@@ -135,6 +135,16 @@ def test_projections_are_images_of_the_views(scanned):
     assert scanned.scan(quantity="photons", bands=[20, 40, 80]).shape == (N, 2, *scanned.view.shape)
 
 
+def test_a_reconstruction_is_about_the_axis_of_its_scan(scanned):
+    scanned.trajectory = sk.Scan(scanned.view, 60, axis="y", centre=(2, 0, 1))
+    projections = scanned.scan(quantity="attenuation")
+    volume = sk.reconstruct(scanned.trajectory, projections, size=16)
+    told = sk.reconstruct(scanned.trajectory, projections, size=16, axis="y", centre=(2, 0, 1))
+    assert np.array_equal(volume, told) and volume.max() > 0
+    with pytest.raises(sk.UnsupportedError, match="but lean by 6 degrees"):
+        sk.reconstruct(scanned.trajectory, projections, size=16, axis="z")
+
+
 def test_what_is_wrong_is_named(scanned, view, path):
     with pytest.raises(sk.ArgumentError, match="out has the shape"):
         scanned.scan(np.zeros((N, 3, 4)))
