@@ -322,7 +322,8 @@ START_TEST(what_a_scenario_does_not_hold_is_named) {
             5, refused[r][1],
             "scan scene.json --set Samples.body.Transform=[] --set %s -o a.raw --geometry a.ctsimu.json",
             refused[r][0]);
-    ck_assert(!has_file("a.ctsimu.json") && !has_file("a.raw"));
+    ck_assert(!has_file("a.ctsimu.json") && !has_file("a.raw") && !has_file("a-spectrum.csv") &&
+              !has_file("a-part-1.stl"));
     ck_run(
         0,
         "scan scene.json -o a.raw --geometry a.ctsimu.json --set Falloff=false --set Noise='{\"Quantum\":true}'");

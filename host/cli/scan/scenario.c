@@ -39,7 +39,9 @@ static void note_losses(const cli_acquisition *a, const char *path) {
         if (is_held(effect.name) || used >= sizeof list) continue;
         used += (size_t)snprintf(list + used, sizeof list - used, "%s%s", used > 0 ? ", " : "", effect.name);
     }
-    if (a->motion)
+    if (a->is_grey && used < sizeof list)
+        used += (size_t)snprintf(list + used, sizeof list - used, "%sgrey values", used > 0 ? ", " : "");
+    if (a->motion && used < sizeof list)
         used += (size_t)snprintf(list + used, sizeof list - used, "%sbreathing", used > 0 ? ", " : "");
     if (used > 0)
         cli_warn("%s: the scenario does not have %s: its images differ from those of the scene", path, list);

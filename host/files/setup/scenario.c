@@ -46,6 +46,7 @@ static skg_status check_scan(const skg_setup *setup, const skg_scan_options *o) 
     const char *what = skg_scan_is_table(setup->scan.scan) ? "Table"
                        : setup->scan.moving_count > 0      ? "Poses"
                                                            : NULL;
+    if (!what && setup->scan.intensities) what = "Intensity";
     for (size_t i = 0; i < sizeof moves / sizeof *moves && !what; i++)
         if (moves[i] != 0) what = names[i];
     if (!what) return SKG_OK;
@@ -54,6 +55,16 @@ static skg_status check_scan(const skg_setup *setup, const skg_scan_options *o) 
         "Scan: %s is not written as a CTSimU scenario, which holds circular scans here; the geometry alone is in the "
         ".csv of --geometry",
         what);
+}
+
+static skg_status check_spot(const skg_spot *spot) {
+    const int32_t shape = spot->shape;
+    if (shape == SKG_SPOT_POINT ||
+        ((shape == SKG_SPOT_RECTANGLE || shape == SKG_SPOT_GAUSSIAN) && !(skg_length(spot->axis) > 0)))
+        return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "Source.Shape: a CTSimU scenario holds points, and rectangles and Gaussian spots across the beam");
 }
 
 /* The stage: w along the axis, u any direction across it. */
@@ -144,9 +155,6 @@ static skg_status put_source(const skg_setup *setup, double per_sr, const char *
     const double fwhm = 2 * sqrt(2 * log(2)), *extent = setup->spot.extent;
     char name[PATH_LENGTH], whole[PATH_LENGTH];
     const int32_t shape = setup->spot.shape;
-    if (shape != SKG_SPOT_POINT && shape != SKG_SPOT_RECTANGLE && shape != SKG_SPOT_GAUSSIAN)
-        return skg_fail(SKG_ERR_UNSUPPORTED,
-                        "Source.Shape: a CTSimU scenario holds points, rectangles and Gaussian spots");
     SKG_TRY(skg_scenario_name(path, "-spectrum.csv", 1, whole, sizeof whole));
     SKG_TRY(skg_scenario_name(path, "-spectrum.csv", 0, name, sizeof name));
     SKG_TRY(write_spectrum(setup, per_sr, whole));
@@ -210,10 +218,10 @@ static skg_status fill(const skg_setup *setup, const char *path, json_t *scenari
                                   "CTSimU Scenario", "file_format_version", "major", 1, "minor", 2));
     SKG_TRY(put_geometry(view, &stage, scenario, &distance));
     skg_cross(view->column_step, view->row_step, normal);
-    SKG_TRY(put_source(setup, distance * distance / (skg_length(normal) * seconds), path, scenario));
     put_detector(view, seconds, fmax(scan->options.interval_s - seconds, 0), scenario);
     put_acquisition(&scan->options, scenario);
-    return skg_scenario_put_parts(setup, &stage, path, scenario);
+    SKG_TRY(skg_scenario_put_parts(setup, &stage, path, scenario));
+    return put_source(setup, distance * distance / (skg_length(normal) * seconds), path, scenario);
 }
 
 skg_status skg_setup_save_scenario(const skg_setup *setup, const char *path) {
@@ -224,6 +232,7 @@ skg_status skg_setup_save_scenario(const skg_setup *setup, const char *path) {
     SKG_TRY(check_path(path));
     SKG_TRY(skg_setup_scan_get(setup, &scan));
     SKG_TRY(check_scan(setup, &scan->options));
+    SKG_TRY(check_spot(&setup->spot));
     json_t *scenario = json_object();
     skg_status status = fill(setup, path, scenario);
     if (status == SKG_OK) status = skg_setup_write_json(scenario, path);

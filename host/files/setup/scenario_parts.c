@@ -179,7 +179,7 @@ skg_status skg_scenario_put_parts(const skg_setup *setup, const skg_scenario_sta
                             "%s: is a volume of cells, and a CTSimU scenario holds meshes", what);
         if (!skg_material_is_void(part.material))
             SKG_TRY(put_material(part.material, part.label, what, materials));
-        SKG_TRY(put_sample(setup, stage, path, i, samples));
     }
+    for (int64_t i = 0; i < setup->scene->count; i++) SKG_TRY(put_sample(setup, stage, path, i, samples));
     return SKG_OK;
 }
