@@ -170,7 +170,8 @@ static skg_status sweep_cell(skg_columns *grid, sweep_state *state, int64_t cell
                        skg_column_place(grid, 1, grid->first_row + cell / grid->side)};
     skg_columns_sort(grid, cell);
     for (int64_t h = first; h < end; h++) {
-        pass(state, grid->hits[h].part, grid->hits[h].sign);
+        const int32_t part = grid->hits[h].part, sign = grid->hits[h].sign;
+        pass(state, part, state->solids[part].inward ? -sign : sign);
         if (h + 1 == end) break;
         const double from = grid->hits[h].depth, to = grid->hits[h + 1].depth;
         place[2] = (from + to) / 2;

@@ -15,6 +15,8 @@ typedef struct {
     const double *positions; /* [vertices][3] */
     const int32_t *corners;  /* [triangles][3] */
     int64_t inside;          /* the parent's number, or -1 */
+    int32_t inward;          /* 1: its triangles face inward, as those of a mirrored part */
+    int32_t reserved;
 } skg_solid;
 
 typedef struct {

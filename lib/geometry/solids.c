@@ -13,6 +13,11 @@ skg_status skg_solid_place(const skg_mesh *mesh, const double pose[16], int64_t 
         skg_mesh_vertex(mesh, v, at);
         skg_pose_point(pose, at, *positions + 3 * v);
     }
-    *solid = (skg_solid){mesh->vertices, mesh->triangles, *positions, mesh->corners, inside};
+    *solid = (skg_solid){.vertices = mesh->vertices,
+                         .triangles = mesh->triangles,
+                         .positions = *positions,
+                         .corners = mesh->corners,
+                         .inside = inside,
+                         .inward = (skg_pose_determinant(pose) < 0) != (mesh->orientation < 0)};
     return SKG_OK;
 }

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from . import _arrays
 from ._device import warn
-from ._interface import ArgumentError
+from ._interface import ArgumentError, UnsupportedError
 from ._library import call, choice, encode, ffi, filled, integer, make, release, struct
 from ._progress import Progress, Watch
 from .matrices import direction
@@ -28,7 +28,7 @@ def reconstruct(scan: str | os.PathLike[str] | Scan, projections: Any = None, *,
     scan: an .h5 that scene.scan() wrote; or a Scan with its projections as -ln(I/I0), [n, row, column], as
     scene.scan(quantity="attenuation") computes them. size: voxels along each side, or (x, y, z); by default as many as columns.
     voxel: their edge in mm; by default the step of the columns as it is seen at the axis. filter: "ramp" or "hann". axis,
-    centre: those of the scan's rotation, by default what the file says, or "z" through the origin. The volume is about centre.
+    centre: those of the scan's rotation, by default what scan or file says; of a table of poses "z" through the origin. The volume is about centre.
     truncation: "none", or "extrapolate", which continues rows that the detector cuts off; both are warned of. A displaced
     detector (half-fan) is weighted by itself. progress: True, or a function of (done, of); if it returns False, or raises, the reconstruction is cancelled.
     """
@@ -42,7 +42,7 @@ def reconstruct(scan: str | os.PathLike[str] | Scan, projections: Any = None, *,
             call("skg_scan_reader_scan_get", reader, handle)
             views, found = Scan._borrowed(handle[0]), _axis_of(reader)
         else:
-            views, found = scan, (np.array([0.0, 0, 1]), np.zeros(3))
+            views, found = scan, _turn_of(scan)
         options = _options(views[0], size, voxel, filter, found[0] if axis is None else direction(axis),
                            found[1] if centre is None else _arrays.vector(centre, "centre"))
         options.truncation = choice("fdk_truncation", truncation, "truncation")
@@ -58,6 +58,14 @@ def _axis_of(reader: Any) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
     axis, centre = ffi.new("double[3]"), ffi.new("double[3]")
     call("skg_scan_reader_axis_get", reader, axis, centre)
     return np.array(list(axis)), np.array(list(centre))
+
+
+def _turn_of(scan: Scan) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Axis and centre; of a table of poses, which has none, z through the origin."""
+    try:
+        return scan.axis
+    except UnsupportedError:
+        return np.array([0.0, 0, 1]), np.zeros(3)
 
 
 def _checked(scan: Scan, projections: Any) -> NDArray[np.float32]:

@@ -36,6 +36,9 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
     target = pathlib.Path(path)
     if target.suffix.lower() != ".json":
         raise ArgumentError(f"{target}: a scene is written as .json; give save({str(path)!r}, image) for an image")
+    if target.name.lower().endswith(".ctsimu.json"):
+        raise ArgumentError(f"{target}: the command writes scenarios of CTSimU: save the scene as .json, then skiagraph scan SCENE.json -o "
+                            f"projections --geometry {target.name}")
     text = settings_text(state)
     _rename_files(text, state.source.files, target.parent)
     _write_samples(state, text, target)

@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _arrays
-from ._device import warn
-from ._interface import ArgumentError, FileError, FormatError
+from ._interface import ArgumentError
 from ._library import call, encode, ffi, fill, integer, make, number, owned, retained, struct
 from .matrices import direction, rotate
 from .view import View
@@ -93,14 +92,16 @@ class Scan(Sequence[View]):
         goes along y, z is up, and the sample turns clockwise. Give scene.view its first projection, and scene.trajectory the scan.
 
         Read: Projections, DetectorPixelsX and Y, DetectorPixelSizeX and Y, SrcToObject, SrcToDetector, InitialAngle, AngularStep,
-        and ObjectOffsetX, ObjectRoll, ObjectTilt, or CentreOfRotationTop and Bottom instead.
+        and ObjectOffsetX, ObjectRoll, ObjectTilt, or CentreOfRotationTop and Bottom instead. Other keys of the geometry that are
+        not 0, such as DetectorOffsetX, are refused.
         """
-        said = _Nikon(path)
-        axis, offset = said.axis()
-        source, detector = said("SrcToObject"), said("SrcToDetector") - said("SrcToObject")
-        view = View(source=(offset, -source, 0), detector=(offset, detector, 0), column_step=(-said("DetectorPixelSizeX"), 0, 0),
-                    row_step=(0, 0, -said("DetectorPixelSizeY")), pixels=(int(said("DetectorPixelsX")), int(said("DetectorPixelsY"))))
-        return cls(view, int(said("Projections")), -said("AngularStep"), start=180 - said("InitialAngle"), axis=axis)
+        handle = make("skg_scan_load_xtekct", "skg_scan", encode(path, "path"), ffi.NULL, ffi.NULL, 0)
+        read = cls.__new__(cls)
+        read._handle, read._recipe = owned("skg_scan", handle), None
+        (axis, centre), angles = read.axis, read.angles
+        step = float(angles[1] - angles[0]) if len(angles) > 1 else 0.0
+        return cls(rotate(axis, float(angles[0]), about=centre) @ read[0], len(angles), step, start=float(angles[0]), axis=axis,
+                   centre=centre)
 
     def __len__(self) -> int:
         return integer("skg_scan_projection_count", self._handle)
@@ -127,6 +128,13 @@ class Scan(Sequence[View]):
         return np.degrees([number("skg_scan_angle_get", self._handle, k) for k in range(len(self))])
 
     @property
+    def axis(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """The direction of the axis of rotation, of length 1, and a point on it, mm; a table of poses has none, and is refused."""
+        direction, centre = ffi.new("double[3]"), ffi.new("double[3]")
+        call("skg_scan_axis_get", self._handle, direction, centre)
+        return np.array(list(direction)), np.array(list(centre))
+
+    @property
     def times(self) -> NDArray[np.float64]:
         """When the middle of each exposure is, s."""
         time, made = ffi.new("double *"), np.empty(len(self))
@@ -147,43 +155,6 @@ class Scan(Sequence[View]):
         if self._recipe is None:
             raise ArgumentError("the scan belongs to a scene file; pickle the scene")
         return _remake, self._recipe
-
-
-class _Nikon:
-    """The numbers of a .xtekct file."""
-
-    def __init__(self, path: str | os.PathLike[str]) -> None:
-        self.path, self.values = os.fspath(path), dict[str, str]()
-        try:
-            with open(path, encoding="utf-8", errors="replace") as file:
-                for line in file:
-                    name, _, value = line.partition("=")
-                    self.values.setdefault(name.strip(), value.strip())
-        except OSError as error:
-            raise FileError(f"{self.path}: cannot be read: {error.strerror}") from None
-        for name in ("DetectorOffsetX", "DetectorOffsetY"):
-            if self(name, 0) != 0:
-                warn(f"{self.path}: {name} is {self.values[name]} mm and is not used; displace the detector of the view if it was")
-
-    def __call__(self, name: str, default: float | None = None) -> float:
-        text = self.values.get(name, "" if default is None else str(default))
-        try:
-            value = float(text)
-        except ValueError:
-            raise FormatError(f"{self.path}: {name} is {text!r}; a .xtekct of a circular scan has a number there") from None
-        if not np.isfinite(value):
-            raise FormatError(f"{self.path}: {name} is {text}; give a finite number")
-        return value
-
-    def axis(self) -> tuple[NDArray[np.float64], float]:
-        """The direction of the axis, and how far source and detector lie beside it along x, mm."""
-        top, bottom = self("CentreOfRotationTop", 0), self("CentreOfRotationBottom", 0)
-        height = self("DetectorPixelsY") * self("DetectorPixelSizeY")
-        offset = self("ObjectOffsetX", (top + bottom) / 2 * self("SrcToObject") / self("SrcToDetector"))
-        roll = self("ObjectRoll", -np.degrees(np.arctan2(top - bottom, height)))
-        turned = rotate("x", -self("ObjectTilt", 0)) @ rotate("y", roll)
-        direction: NDArray[np.float64] = turned[:3, 2]
-        return direction, offset
 
 
 def _remake(name: str, view: View, fields: dict[str, Any], poses: NDArray[np.float64] | None) -> Scan:

@@ -10,7 +10,7 @@ from typing import Any, overload
 import numpy as np
 from numpy.typing import NDArray
 
-from . import (_arrays, _command, _dose, _edit, _gradient, _images, _look, _pickle, _projections, _register, _save, _scatter, _show, _source,
+from . import (_arrays, _command, _dose, _edit, _gradient, _images, _look, _parts, _pickle, _projections, _register, _save, _scatter, _show, _source,
                _volume)
 from ._device import Device
 from ._frames import Batch
@@ -70,9 +70,19 @@ class Scene(_gradient.Differentiable):
         return Part(self._state, self._state.number(label))
 
     @property
-    def parts(self) -> list[Part]:
-        """The parts, in their order."""
-        return list(self)
+    def parts(self) -> _parts.Parts:
+        """The parts, in their order. Called, scene.parts(), they are measured: the table that `skiagraph parts` prints.
+
+        >>> from skiagraph import Beam, Mesh, Scene, View
+        >>> scene = Scene()
+        >>> scene.add("cube", Mesh.cube(20), material="water")
+        <Part 'cube': Water, Liquid>
+        >>> scene.view = View(source=(0, -900, 0), detector=(0, 100, 0), column_step=(1, 0, 0), row_step=(0, 0, -1), pixels=(64, 64))
+        >>> scene.beam = Beam.mono(60, 1000)
+        >>> [(row["label"], round(row["mass_g"], 6), round(row["share"], 6)) for row in scene.parts()["parts"]]
+        [('cube', 8.0, 1.0)]
+        """
+        return _parts.Parts(self._state)
 
     def __contains__(self, label: object) -> bool:
         return isinstance(label, str) and any(part.label == label for part in self)

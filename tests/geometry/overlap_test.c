@@ -22,7 +22,8 @@ static skg_solid make_box(box *store, double x0, double x1, double y0, double y1
         store->at[3 * v + 1] = v & 2 ? y1 : y0;
         store->at[3 * v + 2] = v & 4 ? z1 : z0;
     }
-    return (skg_solid){8, 12, store->at, box_corners, inside};
+    return (skg_solid){
+        .vertices = 8, .triangles = 12, .positions = store->at, .corners = box_corners, .inside = inside};
 }
 
 START_TEST(overlapping_boxes_are_measured) {
@@ -43,6 +44,24 @@ START_TEST(overlapping_boxes_are_measured) {
     ck_assert_double_eq_tol(pairs[0].volume, 160000, 160000 * 0.06);
     ck_assert_double_eq_tol(pairs[0].longest, 40, 16 * DBL_EPSILON * 40);
     ck_assert_double_eq_tol(pairs[0].place[2], 50, 16 * DBL_EPSILON * 50);
+    skg_free(&pairs);
+}
+END_TEST
+
+/* The second box is mirrored in x, so that its triangles face inward; it has a child. */
+START_TEST(a_mirrored_box_is_no_other) {
+    box store[3];
+    skg_solid solids[3];
+    solids[0] = make_box(&store[0], 0, 100, 0, 100, 0, 100, -1);
+    solids[1] = make_box(&store[1], 140, 60, 0, 100, 30, 70, -1);
+    solids[1].inward = 1;
+    solids[2] = make_box(&store[2], 110, 130, 20, 80, 40, 60, 1);
+    int64_t side = 0, count = 0;
+    skg_overlap_pair *pairs = NULL;
+    ck_skg(skg_overlaps_find(3, solids, &side, &count, &pairs));
+    ck_assert_int_eq(count, 1);
+    ck_assert_int_eq(pairs[0].kind, SKG_OVERLAP_SIBLINGS);
+    ck_assert_double_eq_tol(pairs[0].volume, 160000, 160000 * 0.06); /* as above */
     skg_free(&pairs);
 }
 END_TEST
@@ -188,7 +207,7 @@ END_TEST
 START_TEST(nothing_is_no_failure) {
     int64_t side = 0, count = 7;
     skg_overlap_pair *pairs = NULL;
-    skg_solid none = {0, 0, NULL, NULL, -1};
+    skg_solid none = {.inside = -1};
     ck_skg(skg_overlaps_find(1, &none, &side, &count, &pairs));
     ck_assert_int_eq(count, 0);
     skg_free(&pairs);
@@ -197,6 +216,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_test(tests, overlapping_boxes_are_measured);
+    tcase_add_test(tests, a_mirrored_box_is_no_other);
     tcase_add_test(tests, a_child_that_leaves_its_parent_is_reported);
     tcase_add_test(tests, touching_boxes_do_not_overlap);
     tcase_add_test(tests, bands_find_the_same_hits_in_the_same_order);

@@ -64,13 +64,14 @@ def test_a_scan_of_a_nikon_scanner(tmp_path, scene):
     scene.view, scene.trajectory = scan[0], scan
     assert scene.scan(quantity="attenuation").shape == (4, 48, 64)
     path.write_text(XTEKCT + "CentreOfRotationTop=2\nCentreOfRotationBottom=1\n")  # mm on the detector, 5 times as far
-    leaning = sk.Scan.xtekct(path)
+    leaning = pickle.loads(pickle.dumps(sk.Scan.xtekct(path)))
     assert leaning[0].source[2] != 0  # the axis rolls, by 1 in 12
+    assert leaning.axis[0][0] / leaning.axis[0][2] == pytest.approx(-1 / 12) and leaning.axis[1] == pytest.approx(0, abs=1e-12)
     path.write_text(XTEKCT + "ObjectTilt=30\n")
     axis = np.cross(*(sk.Scan.xtekct(path)[k].source - sk.Scan.xtekct(path)[k + 1].source for k in (0, 1)))
     assert abs(axis[1:] / np.linalg.norm(axis)) == pytest.approx((0.5, np.sqrt(0.75)))
-    with pytest.warns(sk.SkiagraphWarning, match="DetectorOffsetX is 4 mm and is not used"):
-        path.write_text(XTEKCT + "DetectorOffsetX=4\n")
+    path.write_text(XTEKCT + "DetectorOffsetX=4\n")
+    with pytest.raises(sk.UnsupportedError, match="DetectorOffsetX is 4, and what it does to the geometry is not known"):
         sk.Scan.xtekct(path)
     path.write_text(XTEKCT.replace("SrcToObject=200.0", "SrcToObject=far"))
     with pytest.raises(sk.FormatError, match="turbine.xtekct: SrcToObject is 'far'"):
@@ -132,6 +133,16 @@ def test_projections_are_images_of_the_views(scanned):
     assert scanned.scan(precision="double").dtype == np.float64
     scanned.beam = sk.Beam([30, 60], [100, 200])
     assert scanned.scan(quantity="photons", bands=[20, 40, 80]).shape == (N, 2, *scanned.view.shape)
+
+
+def test_a_reconstruction_is_about_the_axis_of_its_scan(scanned):
+    scanned.trajectory = sk.Scan(scanned.view, 60, axis="y", centre=(2, 0, 1))
+    projections = scanned.scan(quantity="attenuation")
+    volume = sk.reconstruct(scanned.trajectory, projections, size=16)
+    told = sk.reconstruct(scanned.trajectory, projections, size=16, axis="y", centre=(2, 0, 1))
+    assert np.array_equal(volume, told) and volume.max() > 0
+    with pytest.raises(sk.UnsupportedError, match="but lean by 6 degrees"):
+        sk.reconstruct(scanned.trajectory, projections, size=16, axis="z")
 
 
 def test_what_is_wrong_is_named(scanned, view, path):

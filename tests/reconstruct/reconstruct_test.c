@@ -291,6 +291,33 @@ START_TEST(a_detail) {
 }
 END_TEST
 
+/* An axis that leans towards the beam, or beside it, by 5 degrees is taken; by 15 degrees it is not. */
+START_TEST(an_axis_that_leans) {
+    static const char *const said[] = {
+        "the rows of the detector do not run across the axis of rotation but lean by 15 degrees",
+        "the axis of rotation leans out of the detector's plane by 15 degrees"};
+    for (int lean = 15; lean > 0; lean -= 10) {
+        memset(geometry.axis, 0, sizeof geometry.axis);
+        geometry.axis[_i] = sin(lean * PI / 180);
+        geometry.axis[2] = cos(lean * PI / 180);
+        memcpy(options.axis, geometry.axis, sizeof options.axis);
+        ck_skg(skg_scan_create(&view, &geometry, &scan));
+        if (lean == 15) ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED, said[_i]);
+        if (lean == 5) ck_skg(skg_fdk_create(scan, &options, &fdk));
+        skg_scan_release(&scan);
+    }
+}
+END_TEST
+
+/* A beam that passes the plane across the axis on one side: the detector stands upright, 15 degrees below its source. */
+START_TEST(a_beam_that_leans) {
+    view.source[2] = 600 * tan(15 * PI / 180);
+    ck_skg(skg_scan_create(&view, &geometry, &scan));
+    ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED,
+                 "the beam passes the plane across the axis of rotation by 15 degrees");
+}
+END_TEST
+
 START_TEST(what_is_refused) {
     geometry.pitch_mm = 100;
     ck_skg(skg_scan_create(&view, &geometry, &scan));
@@ -327,6 +354,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_detector_that_is_too_narrow);
     tcase_add_test(tests, a_parallel_beam);
     tcase_add_test(tests, a_detail);
+    tcase_add_loop_test(tests, an_axis_that_leans, 0, 2);
+    tcase_add_test(tests, a_beam_that_leans);
     tcase_add_test(tests, what_is_refused);
 }
 

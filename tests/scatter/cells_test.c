@@ -22,7 +22,11 @@ typedef struct {
 static void add(subject *s, solid of, const double coefficients[SKG_SCATTER_RANK]) {
     const int64_t i = s->count++;
     s->of[i] = of;
-    s->solids[i] = (skg_solid){of.vertices, of.triangles, of.positions, of.corners, -1};
+    s->solids[i] = (skg_solid){.vertices = of.vertices,
+                               .triangles = of.triangles,
+                               .positions = of.positions,
+                               .corners = of.corners,
+                               .inside = -1};
     s->sign[i] = 1;
     memcpy(s->coefficients[i], coefficients, sizeof s->coefficients[i]);
 }
@@ -328,7 +332,11 @@ START_TEST(many_faces_in_a_cell_make_a_brick) {
     solid box = solid_box(10, 10, 10);
     solid_shift(&box, 500, 600, 700);
     subject room = s;
-    room.solids[room.count] = (skg_solid){box.vertices, box.triangles, box.positions, box.corners, -1};
+    room.solids[room.count] = (skg_solid){.vertices = box.vertices,
+                                          .triangles = box.triangles,
+                                          .positions = box.positions,
+                                          .corners = box.corners,
+                                          .inside = -1};
     room.sign[room.count] = 1;
     memcpy(room.coefficients[room.count++], far, sizeof far);
     skg_cells cells = make(&room, 0);

@@ -4,8 +4,9 @@
 const cli_flag cli_flag_reconstruct_output = {"-o", "FILE", "The volume to write, a .mha. Required.", NULL,
                                               CLI_NAMES_FILE};
 const cli_flag cli_flag_reconstruct_geometry = {
-    "--geometry", "FILE.csv",
-    "The places of a point source and the detector for the projections of an .mha, a line each: what scan --geometry FILE.csv writes.",
+    "--geometry", "FILE",
+    "The places of a point source and the detector for the projections of a stack or a folder: a .csv with a line each, which scan "
+    "--geometry FILE.csv writes, or the .xtekct of a Nikon scanner.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_reconstruct_size = {
     "--size", "N",
@@ -36,8 +37,10 @@ const cli_flag cli_flag_reconstruct_truncation = {
 
 static const char *const text[] = {
     "Reconstructs a circular scan by the method of Feldkamp, Davis and Kress, to look at what the scan gives. "
-    "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. The scan is an .h5 or .nxs that `skiagraph scan` wrote, or "
-    "an .mha with the --geometry of its projections; flat and dark fields are read beside it (scan-flats.mha), otherwise the flat field of its header is taken.",
+    "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. An axis or a detector that leans so far that the method is wrong is refused.",
+    "The scan is an .h5 or .nxs that `skiagraph scan` wrote; or, with --geometry, a stack (.mha, .mhd or .tif) or a folder of TIFFs "
+    "(projection-00000.tif or NAME_0000.tif and so on); or the .xtekct of a Nikon scanner, which names its folder. Flat and dark fields are read beside a stack (scan-flats.mha) or in the "
+    "folder (flat-00000.tif, NAME_flat_0000.tif); without them the flat field is that of the header, of scan.txt, or the WhiteLevel of the .xtekct.",
     "The volume holds attenuation coefficients in 1/cm. It is centred on the centre of rotation, and its axes are those "
     "of the scene.",
     "--json prints {projections, size, voxel_mm, range, displaced, covered_mm, truncated, seconds, file}; range has the least and the largest value, "
@@ -58,6 +61,8 @@ static const cli_flag *const flags[] = {&cli_flag_reconstruct_output,
 static const cli_item examples[] = {
     {"skiagraph reconstruct scan.h5 -o volume.mha --size 256 --filter hann", "writes 256 x 256 x 256 voxels"},
     {"skiagraph reconstruct scan.mha --geometry scan.csv -o volume.mha", "takes the poses from a table"},
+    {"skiagraph reconstruct projections/ --geometry scan.csv -o volume.mha", "reads a folder of TIFFs"},
+    {"skiagraph reconstruct turbine.xtekct -o volume.mha", "reads the scan of a Nikon scanner"},
     {NULL, NULL}};
 
 const cli_manual cli_manual_reconstruct = {.name = "reconstruct",

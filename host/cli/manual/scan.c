@@ -81,7 +81,8 @@ const cli_flag cli_flag_scan_verify = {
 const cli_flag cli_flag_scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
-    "cone_vec of ASTRA), .xml (RTK), .tigre.py (TIGRE), .cil.py (CIL) or transforms.json (NeRF, Gaussian splatting). May be repeated.",
+    "cone_vec of ASTRA), .xml (RTK), .tigre.py (TIGRE), .cil.py (CIL) or transforms.json (NeRF, Gaussian splatting). A .ctsimu.json gets the scene itself as a CTSimU scenario, with "
+    "meshes and spectrum in files beside it; a warning names what a scenario does not hold. May be repeated.",
     NULL, CLI_NAMES_FILE};
 
 static const char *const text[] = {

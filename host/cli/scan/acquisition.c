@@ -133,6 +133,7 @@ static int write_geometry(const cli_arguments *arguments, const cli_acquisition 
     if (exit_status != CLI_DONE) return exit_status;
     for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
          i++) {
+        if (scenario_is(path)) continue; /* once there is a plan */
         const skg_status status = skg_scan_geometry_save_noted(a->record.known ? a->record.known : a->scan,
                                                                path, *note ? note : NULL);
         if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;
@@ -187,6 +188,7 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
     if (exit_status == CLI_DONE) exit_status = choose_samples(arguments, a);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
+    if (exit_status == CLI_DONE) exit_status = scenario_write(arguments, a);
     return exit_status == CLI_DONE ? grey_prepare(a) : exit_status;
 }
 

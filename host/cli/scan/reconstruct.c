@@ -3,6 +3,7 @@
 #include "common/file.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "scan/pages.h"
 #include "scan/stack.h"
 #include "verbs/verbs.h"
 
@@ -15,7 +16,7 @@ enum { VOXELS_MAX = 4096 };
 
 typedef struct {
     skg_scan_reader *reader;
-    stack_reader *stack; /* instead of the reader, of a file without its geometry */
+    stack_reader *stack; /* instead of the reader, of projections without their geometry */
     skg_scan *scan;      /* of one of them */
     skg_fdk *fdk;
     skg_fdk_options options;
@@ -26,12 +27,34 @@ typedef struct {
     skg_fdk_report report;
 } reconstruction;
 
-/* A file of projections alone, which does not say where source and detector were. */
+/* Projections alone, which do not say where source and detector were. */
 static int is_bare(const char *path) {
     static const char *const bare[] = {".mha", ".mhd", ".raw", ".tif", ".tiff"};
     for (size_t i = 0; i < sizeof bare / sizeof *bare; i++)
         if (cli_has_extension(path, bare[i])) return 1;
-    return 0;
+    return pages_is_folder(path);
+}
+
+/* The file that has the places of source and detector; NULL: the scan itself has them. */
+static const char *geometry_of(const cli_arguments *arguments) {
+    const char *path = arguments->operands[0];
+    return cli_has_extension(path, ".xtekct") ? path : cli_value(arguments, &cli_flag_reconstruct_geometry);
+}
+
+static int check_geometry(const cli_arguments *arguments) {
+    const char *path = arguments->operands[0],
+               *geometry = cli_value(arguments, &cli_flag_reconstruct_geometry);
+    if (cli_has_extension(path, ".raw"))
+        return cli_error(CLI_INPUT, "%s: does not say what its bytes mean; name the .mhd beside it", path);
+    if (is_bare(path) && !geometry)
+        return cli_error(
+            CLI_INPUT,
+            "%s: holds projections without the places of source and detector; give them by --geometry FILE.csv, "
+            "which scan --geometry writes, or FILE.xtekct, or write the scan as .h5 (scan SCENE -o scan.h5)",
+            path);
+    if (geometry && !is_bare(path))
+        return cli_error(CLI_USAGE, "--geometry %s: %s has its geometry inside", geometry, path);
+    return CLI_DONE;
 }
 
 static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t *size) {
@@ -40,16 +63,7 @@ static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t
     if (!cli_has_extension(r->place, ".mha"))
         return cli_error(CLI_USAGE, "reconstruct: %s is no .mha; give -o FILE.mha", r->place);
     int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, VOXELS_MAX, size);
-    const char *path = arguments->operands[0],
-               *geometry = cli_value(arguments, &cli_flag_reconstruct_geometry);
-    if (exit_status == CLI_DONE && is_bare(path) && !(geometry && cli_has_extension(path, ".mha")))
-        return cli_error(
-            CLI_INPUT,
-            "%s: holds projections without the places of source and detector; give those of an .mha by --geometry "
-            "FILE.csv, which scan --geometry writes, or write the scan as .h5 (scan SCENE -o scan.h5)",
-            path);
-    if (exit_status == CLI_DONE && geometry && !is_bare(path))
-        return cli_error(CLI_USAGE, "--geometry %s: %s has its geometry inside", geometry, path);
+    if (exit_status == CLI_DONE) exit_status = check_geometry(arguments);
     if (exit_status == CLI_DONE)
         exit_status = cli_number(arguments, &cli_flag_reconstruct_voxel, 1e-6, 1e6, &r->options.voxel_mm);
     if (exit_status == CLI_DONE)
@@ -184,7 +198,7 @@ int cli_reconstruct(const cli_arguments *arguments) {
     skg_fdk_options_init(&r.options);
     r.options.progress = cli_progress();
     int exit_status = read_flags(arguments, &r, &size);
-    const char *geometry = cli_value(arguments, &cli_flag_reconstruct_geometry);
+    const char *geometry = geometry_of(arguments);
     if (exit_status == CLI_DONE && geometry)
         exit_status = stack_open(arguments->operands[0], geometry, &r.stack);
     if (exit_status == CLI_DONE) {

@@ -1,8 +1,10 @@
-/* Reading a stack of projections (.mha) with the table of its poses, for reconstruct. */
+/* Reads projections in a stack or a folder of TIFFs, with the places of source and detector in a file of their own, for reconstruct. */
 #include "scan/stack.h"
 
+#include "common/file.h"
 #include "common/say.h"
 #include "core/maths.h"
+#include "scan/pages.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -10,116 +12,65 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { HEADER_LONGEST = 4096, SIDE_MAX = 1 << 20 };
-
-/* An open .mha: slices of a type. */
-typedef struct {
-    FILE *stream;
-    int64_t size[3], data_at; /* columns, rows, slices */
-    int bytes;                /* of an element: 2 whole number, 4 float, 8 double */
-    double flat_field;        /* 0: the header has none */
-    int is_attenuation;
-} slices;
+enum { HEADER_LONGEST = 8192, PATH_LONGEST = 4096, FOLDER_LONGEST = 512 };
 
 struct stack_reader {
-    char path[4096];
-    slices images;
+    char path[PATH_LONGEST];
+    int is_folder;
+    pages images;
+    double flat_field; /* 0: not known */
     skg_scan *scan;
     double axis[3], centre[3];
-    float *white, *dark; /* [rows][columns] means of the fields; white NULL: the header's flat field */
-    unsigned char *raw;
+    double *white, *dark; /* [rows][columns] means of the fields; white NULL: flat_field */
+    double *values;       /* [rows][columns] */
 };
 
-/* The value of a line "KEY = ..." of the header; NULL: there is none. */
-static const char *value_of(const char *header, const char *key) {
-    const size_t length = strlen(key);
-    for (const char *line = header; line; line = strchr(line, '\n')) {
-        line += *line == '\n';
-        if (strncmp(line, key, length) == 0 && strncmp(line + length, " = ", 3) == 0)
-            return line + length + 3;
-    }
-    return NULL;
+/* The number of the line "FlatField = ..." among the first bytes of a file, where `scan` writes it; 0: there is none. */
+static double read_flat_field(const char *path) {
+    static const char key[] = "\nFlatField = ";
+    char head[HEADER_LONGEST + 1] = "";
+    FILE *stream = fopen(path, "rb");
+    if (!stream) return 0;
+    const size_t count = fread(head, 1, HEADER_LONGEST, stream);
+    fclose(stream);
+    for (size_t i = 0; i + sizeof key < count; i++)
+        if (memcmp(head + i, key, sizeof key - 1) == 0) return strtod(head + i + sizeof key - 1, NULL);
+    return 0;
 }
 
-static int starts(const char *value, const char *word) {
-    return value && strncmp(value, word, strlen(word)) == 0;
+static int is_attenuation(const stack_reader *r) {
+    return r->images.quantity == SKG_QUANTITY_ATTENUATION;
 }
 
-static int read_header(const char *path, slices *s) {
-    char header[HEADER_LONGEST + 1];
-    const size_t count = fread(header, 1, HEADER_LONGEST, s->stream);
-    header[count] = '\0';
-    const char *end = strstr(header, "ElementDataFile = LOCAL\n"), *size = value_of(header, "DimSize");
-    const char *type = value_of(header, "ElementType"), *flat = value_of(header, "FlatField");
-    long long n[3] = {0};
-    if (!end || !size || !type || sscanf(size, "%lld %lld %lld", &n[0], &n[1], &n[2]) != 3 || n[0] < 1 ||
-        n[1] < 1 || n[2] < 1 || n[0] > SIDE_MAX || n[1] > SIDE_MAX ||
-        !starts(value_of(header, "BinaryDataByteOrderMSB"), "False"))
-        return cli_error(CLI_INPUT, "%s: is no MetaImage of projections as `skiagraph scan` writes it", path);
-    for (int k = 0; k < 3; k++) s->size[k] = n[k];
-    s->data_at = end - header + (int64_t)strlen("ElementDataFile = LOCAL\n");
-    s->bytes = starts(type, "MET_FLOAT")    ? 4
-               : starts(type, "MET_DOUBLE") ? 8
-               : starts(type, "MET_USHORT") ? 2
-                                            : 0;
-    s->flat_field = flat ? strtod(flat, NULL) : 0;
-    s->is_attenuation = starts(value_of(header, "Comment"), "attenuation");
-    return s->bytes ? CLI_DONE
-                    : cli_error(CLI_INPUT, "%s: its elements are neither floats nor whole numbers of 16 bits",
-                                path);
-}
-
-static int open_slices(const char *path, slices *s) {
-    s->stream = fopen(path, "rb");
-    if (!s->stream) return cli_error(CLI_INPUT, "%s: cannot be read", path);
-    return read_header(path, s);
-}
-
-static double element(const slices *s, const unsigned char *raw, int64_t i) {
-    uint16_t whole;
-    float single;
-    double twice;
-    memcpy(&whole, raw + i * s->bytes, sizeof whole);
-    if (s->bytes == 2) return whole;
-    memcpy(&single, raw + i * s->bytes, sizeof single);
-    if (s->bytes == 4) return (double)single;
-    memcpy(&twice, raw + i * s->bytes, sizeof twice);
-    return twice;
-}
-
-/* Reads slice k into raw, which has room for it. */
-static int read_slice(const slices *s, const char *path, int64_t k, unsigned char *raw) {
-    const int64_t bytes = s->size[0] * s->size[1] * s->bytes;
-    if (fseek(s->stream, (long)(s->data_at + k * bytes), SEEK_SET) == 0 &&
-        fread(raw, 1, (size_t)bytes, s->stream) == (size_t)bytes)
-        return CLI_DONE;
-    return cli_error(CLI_INPUT, "%s: slice %" PRId64 " cannot be read: the file is truncated", path, k);
-}
-
-/* The mean of the fields in NAME-WORD.mha beside the stack; left NULL if that file is not there. */
-static int read_fields(stack_reader *r, const char *word, float **mean) {
-    char path[sizeof r->path + 16];
-    slices fields = {0};
-    const int64_t pixels = r->images.size[0] * r->images.size[1];
-    snprintf(path, sizeof path, "%.*s-%s.mha", (int)strlen(r->path) - 4, r->path, word);
+/* Opens the fields of a kind: in the folder, or in NAME-flats.mha beside NAME.mha. Leaves count 0 if there are none. */
+static int open_fields(const stack_reader *r, enum pages_kind kind, pages *fields) {
+    char path[PATH_LONGEST + 16];
+    if (r->is_folder) return pages_open_folder(r->path, kind, fields);
+    const char *ending = strrchr(r->path, '.');
+    snprintf(path, sizeof path, "%.*s-%s%s", (int)(ending - r->path), r->path,
+             kind == PAGES_FLATS ? "flats" : "darks", ending);
     FILE *stream = fopen(path, "rb");
     if (!stream) return CLI_DONE;
     fclose(stream);
-    int exit_status = open_slices(path, &fields);
-    if (exit_status == CLI_DONE &&
-        (fields.size[0] != r->images.size[0] || fields.size[1] != r->images.size[1]))
-        exit_status = cli_error(CLI_INPUT, "%s: has another size than the projections", path);
-    unsigned char *raw = malloc((size_t)(8 * pixels));
-    *mean = calloc((size_t)pixels, sizeof **mean);
-    if (exit_status == CLI_DONE && (!raw || !*mean))
-        exit_status = cli_error(CLI_DEVICE, "out of host memory for %s", path);
-    for (int64_t k = 0; k < fields.size[2] && exit_status == CLI_DONE; k++) {
-        exit_status = read_slice(&fields, path, k, raw);
+    return pages_open_stack(path, fields);
+}
+
+/* The mean of the fields of a kind; left NULL if there are none. */
+static int read_fields(stack_reader *r, enum pages_kind kind, double **mean) {
+    pages fields = {0};
+    const int64_t pixels = r->images.columns * r->images.rows;
+    int exit_status = open_fields(r, kind, &fields);
+    if (exit_status == CLI_DONE && fields.count > 0 &&
+        (fields.columns != r->images.columns || fields.rows != r->images.rows))
+        exit_status = cli_error(CLI_INPUT, "%s: has another size than the projections", fields.paths[0]);
+    if (exit_status == CLI_DONE && fields.count > 0 && !(*mean = calloc((size_t)pixels, sizeof **mean)))
+        exit_status = cli_error(CLI_DEVICE, "out of host memory for %s", fields.paths[0]);
+    for (int64_t k = 0; k < fields.count && exit_status == CLI_DONE; k++) {
+        exit_status = pages_read(&fields, k, r->values);
         for (int64_t i = 0; i < pixels && exit_status == CLI_DONE; i++)
-            (*mean)[i] += (float)(element(&fields, raw, i) / (double)fields.size[2]);
+            (*mean)[i] += r->values[i] / (double)fields.count;
     }
-    free(raw);
-    if (fields.stream) fclose(fields.stream);
+    pages_close(&fields);
     return exit_status;
 }
 
@@ -152,7 +103,7 @@ static int find_axis(stack_reader *r) {
     double most = 0, cosine = 0, angle = 0;
     skg_view_init(&first), skg_view_init(&view), skg_view_init(&best);
     skg_status status = skg_scan_view_get(r->scan, 0, &first);
-    for (int64_t k = 1; k < r->images.size[2] && status == SKG_OK; k++) {
+    for (int64_t k = 1; k < r->images.count && status == SKG_OK; k++) {
         double sine[3], its;
         status = skg_scan_view_get(r->scan, k, &view);
         if (status != SKG_OK) break;
@@ -174,34 +125,95 @@ static int find_axis(stack_reader *r) {
     return CLI_DONE;
 }
 
-static int read_poses(stack_reader *r, const char *geometry) {
+/* The scan of a .xtekct, of which the white level counts where there are no flat fields. */
+static int read_nikon(stack_reader *r, const char *geometry) {
     skg_view view;
-    int64_t count = 0;
+    double white = 0;
     skg_view_init(&view);
-    view.columns = r->images.size[0], view.rows = r->images.size[1];
-    skg_status status = skg_scan_load_table(&view, NULL, geometry, &r->scan);
-    if (status == SKG_OK) status = skg_scan_projection_count(r->scan, &count);
+    skg_status status = skg_scan_load_xtekct(geometry, &white, NULL, 0, &r->scan);
+    if (status == SKG_OK) status = skg_scan_axis_get(r->scan, r->axis, r->centre);
+    if (status == SKG_OK) status = skg_scan_view_get(r->scan, 0, &view);
     if (status != SKG_OK) return cli_fail(status);
-    if (count != r->images.size[2])
+    if (!(r->flat_field > 0)) r->flat_field = white;
+    if (view.columns == r->images.columns && view.rows == r->images.rows) return CLI_DONE;
+    return cli_error(CLI_INPUT,
+                     "%s: the detector has %" PRId64 " x %" PRId64
+                     " pixels, but the projections of %s have %" PRId64 " x %" PRId64,
+                     geometry, view.columns, view.rows, r->path, r->images.columns, r->images.rows);
+}
+
+static int read_table(stack_reader *r, const char *geometry) {
+    skg_view view;
+    skg_view_init(&view);
+    view.columns = r->images.columns, view.rows = r->images.rows;
+    const skg_status status = skg_scan_load_table(&view, NULL, geometry, &r->scan);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+static int read_poses(stack_reader *r, const char *geometry) {
+    const int is_nikon = cli_has_extension(geometry, ".xtekct");
+    int64_t count = 0;
+    int exit_status = is_nikon ? read_nikon(r, geometry) : read_table(r, geometry);
+    if (exit_status != CLI_DONE) return exit_status;
+    const skg_status status = skg_scan_projection_count(r->scan, &count);
+    if (status != SKG_OK) return cli_fail(status);
+    if (count != r->images.count)
         return cli_error(CLI_INPUT, "%s: has %" PRId64 " poses, but %s has %" PRId64 " projections", geometry,
-                         count, r->path, r->images.size[2]);
-    return find_axis(r);
+                         count, r->path, r->images.count);
+    return is_nikon ? CLI_DONE : find_axis(r);
+}
+
+static int open_images(stack_reader *r) {
+    char text[PATH_LONGEST + 16];
+    int exit_status;
+    snprintf(text, sizeof text, "%s%s", r->path, r->is_folder ? "/scan.txt" : "");
+    exit_status = r->is_folder ? pages_open_folder(r->path, PAGES_PROJECTIONS, &r->images)
+                               : pages_open_stack(r->path, &r->images);
+    if (exit_status == CLI_DONE && r->images.count == 0)
+        return cli_error(CLI_INPUT, "%s: has no projections; they are NAME_0000.tif and so on", r->path);
+    if (exit_status != CLI_DONE) return exit_status;
+    r->flat_field = r->images.quantity == SKG_QUANTITY_TRANSMISSION ? 1 : read_flat_field(text);
+    r->values = calloc((size_t)(r->images.columns * r->images.rows), sizeof *r->values);
+    return r->values ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for %s", r->path);
+}
+
+/* The path of the projections: that of the operand, or, of a .xtekct, the folder that it names. */
+static int find_path(stack_reader *r, const char *path) {
+    char folder[FOLDER_LONGEST];
+    skg_scan *scan = NULL;
+    const int is_nikon = cli_has_extension(path, ".xtekct");
+    const char *slash = strrchr(path, '/');
+    const skg_status status =
+        is_nikon ? skg_scan_load_xtekct(path, NULL, folder, sizeof folder, &scan) : SKG_OK;
+    skg_scan_release(&scan);
+    if (status != SKG_OK) return cli_fail(status);
+    const int length = is_nikon ? snprintf(r->path, sizeof r->path, "%.*s/%s",
+                                           slash ? (int)(slash - path) : 1, slash ? path : ".", folder)
+                                : snprintf(r->path, sizeof r->path, "%s", path);
+    if (length >= (int)sizeof r->path) return cli_error(CLI_INPUT, "%s: its path is too long", path);
+    for (char *end = r->path + length - 1; end > r->path && *end == '/'; end--) *end = '\0';
+    r->is_folder = pages_is_folder(r->path);
+    return !is_nikon || r->is_folder
+               ? CLI_DONE
+               : cli_error(CLI_INPUT, "%s: its InputFolderName, %s, is no folder of projections", path,
+                           folder);
 }
 
 int stack_open(const char *path, const char *geometry, stack_reader **reader) {
     stack_reader *r = *reader = calloc(1, sizeof *r);
-    if (!r || snprintf(r->path, sizeof r->path, "%s", path) >= (int)sizeof r->path)
-        return cli_error(CLI_DEVICE, "out of host memory for %s", path);
-    int exit_status = open_slices(path, &r->images);
+    if (!r) return cli_error(CLI_DEVICE, "out of host memory for %s", path);
+    int exit_status = find_path(r, path);
+    if (exit_status == CLI_DONE) exit_status = open_images(r);
     if (exit_status == CLI_DONE) exit_status = read_poses(r, geometry);
-    if (exit_status == CLI_DONE) exit_status = read_fields(r, "flats", &r->white);
-    if (exit_status == CLI_DONE) exit_status = read_fields(r, "darks", &r->dark);
-    if (exit_status == CLI_DONE && !r->images.is_attenuation && !r->white && !(r->images.flat_field > 0))
+    if (exit_status == CLI_DONE) exit_status = read_fields(r, PAGES_FLATS, &r->white);
+    if (exit_status == CLI_DONE) exit_status = read_fields(r, PAGES_DARKS, &r->dark);
+    if (exit_status == CLI_DONE && !is_attenuation(r) && !r->white && !(r->flat_field > 0))
         exit_status = cli_error(
-            CLI_INPUT, "%s: has no flat field, in its header or in a file -flats.mha beside it", path);
-    r->raw = malloc((size_t)(8 * r->images.size[0] * r->images.size[1]) + 1);
-    if (exit_status == CLI_DONE && !r->raw)
-        exit_status = cli_error(CLI_DEVICE, "out of host memory for %s", path);
+            CLI_INPUT,
+            r->is_folder
+                ? "%s: has no flat field: neither NAME_flat_0000.tif nor a scan.txt or .xtekct that gives it"
+                : "%s: has no flat field, in its header or in a file -flats beside it",
+            path);
     return exit_status;
 }
 
@@ -213,12 +225,12 @@ void stack_scan(stack_reader *r, skg_scan **scan, double axis[3], double centre[
 
 int stack_attenuation(stack_reader *r, int64_t index, float *image) {
     static const double LEAST = 1e-6; /* of the flat field, as of an .h5 */
-    const int64_t pixels = r->images.size[0] * r->images.size[1];
-    const int exit_status = read_slice(&r->images, r->path, index, r->raw);
+    const int64_t pixels = r->images.columns * r->images.rows;
+    const int exit_status = pages_read(&r->images, index, r->values);
     for (int64_t i = 0; i < pixels && exit_status == CLI_DONE; i++) {
-        const double value = element(&r->images, r->raw, i), dark = r->dark ? (double)r->dark[i] : 0;
-        const double white = (r->white ? (double)r->white[i] : r->images.flat_field) - dark;
-        image[i] = (float)(r->images.is_attenuation ? value : -log(fmax((value - dark) / white, LEAST)));
+        const double value = r->values[i], dark = r->dark ? r->dark[i] : 0;
+        const double white = (r->white ? r->white[i] : r->flat_field) - dark;
+        image[i] = (float)(is_attenuation(r) ? value : -log(fmax((value - dark) / white, LEAST)));
     }
     return exit_status;
 }
@@ -226,11 +238,11 @@ int stack_attenuation(stack_reader *r, int64_t index, float *image) {
 void stack_close(stack_reader **reader) {
     stack_reader *r = *reader;
     if (!r) return;
-    if (r->images.stream) fclose(r->images.stream);
+    pages_close(&r->images);
     skg_scan_release(&r->scan);
     free(r->white);
     free(r->dark);
-    free(r->raw);
+    free(r->values);
     free(r);
     *reader = NULL;
 }

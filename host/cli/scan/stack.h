@@ -1,4 +1,4 @@
-/* A stack of projections (.mha) and the table of its poses. Functions that return int return an exit status and print the error. */
+/* Projections in a stack or a folder, and the places of source and detector. Functions that return int return an exit status and print the error. */
 #ifndef CLI_SCAN_STACK_H
 #define CLI_SCAN_STACK_H
 
@@ -6,8 +6,11 @@
 
 typedef struct stack_reader stack_reader;
 
-/* Opens a .mha that `scan` wrote, with the .csv that --geometry wrote, and its flat and dark fields beside it. The caller closes it,
- * also after a failure. */
+/* Opens a .mha, .mhd, .tif or a folder of TIFFs with its flat and dark fields.
+ *
+ * path       a .xtekct: the folder that it names
+ * geometry   .csv as --geometry wrote it, or a .xtekct
+ * reader     result; the caller closes it, also after a failure */
 int stack_open(const char *path, const char *geometry, stack_reader **reader);
 void stack_close(stack_reader **reader);
 

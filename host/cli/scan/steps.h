@@ -35,6 +35,10 @@ int shards_choose_part(cli_acquisition *a);
 /* With --join: copies the projections of all shards into the output. options: of the output. */
 int shards_join(cli_acquisition *a, const skg_scan_file_options *options);
 
+/* CTSimU scenarios, which --geometry writes: whether a path names one, and all of them. */
+int scenario_is(const char *path);
+int scenario_write(const cli_arguments *arguments, const cli_acquisition *a);
+
 /* Grey values of a scan, and the layout of CTSimU. */
 
 /* Decides whether grey values are written. */

@@ -49,11 +49,17 @@ void skg_setup_rename_files(const skg_setup *setup, const char *path, json_t *va
 }
 
 skg_status skg_setup_write_text(json_t *scene, const char *path) {
-    skg_output_file file;
     json_t *named = json_pack("{s:s}", "$schema", "scene.schema.json");
-    const int failed = json_object_update_missing(named, scene);
-    char *text = failed ? NULL : json_dumps(named, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
+    const skg_status status = json_object_update_missing(named, scene)
+                                  ? skg_fail(SKG_ERR_MEMORY, "%s: no memory for its text", path)
+                                  : skg_setup_write_json(named, path);
     json_decref(named);
+    return status;
+}
+
+skg_status skg_setup_write_json(const json_t *object, const char *path) {
+    skg_output_file file;
+    char *text = json_dumps(object, JSON_INDENT(1) | JSON_REAL_PRECISION(17));
     if (!text) return skg_fail(SKG_ERR_MEMORY, "%s: no memory for its text", path);
     skg_status status = skg_output_open(path, &file);
     if (status == SKG_OK) {

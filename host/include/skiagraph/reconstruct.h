@@ -85,7 +85,7 @@ SKG_INIT(skg_fdk_report)
  *     options   NULL: the defaults
  *     fdk       result; the caller releases it
  *     errors    SKG_ERR_ARGUMENT (an option); SKG_ERR_UNSUPPORTED if the scan is not circular, if its range is
- *               too short, or if the rows of the detector are not across the axis */
+ *               too short, or if the axis leans against the detector's columns or the beam by more than 5.7 degrees */
 SKG_API skg_status skg_fdk_create(skg_scan *scan, const skg_fdk_options *options, skg_fdk **fdk);
 
 /** Frees a reconstruction. */

@@ -111,6 +111,23 @@ SKG_API skg_status skg_scan_create_table(const skg_view *view, const skg_scan_op
 SKG_API skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *options,
                                        const char *path, skg_scan **scan);
 
+/** Reads the scan of a Nikon .xtekct file. Lengths are in mm, angles in degrees.
+ *
+ * The frame is that of CIL's NikonDataReader with the axis of rotation through the origin: the beam goes along y, z is up, columns
+ * count against x and rows against z, and projection k has the angle 180 - InitialAngle - k AngularStep. Read are Projections, DetectorPixelsX and Y, DetectorPixelSizeX and Y, SrcToObject, SrcToDetector, InitialAngle,
+ * AngularStep, and ObjectOffsetX, ObjectRoll, ObjectTilt, or CentreOfRotationTop and Bottom instead. Angles that were measured (.ang,
+ * _ctdata.txt) are not read.
+ *
+ *     white_level   result: WhiteLevel, the value of the projections without object; 0: the file has none; NULL: not wanted
+ *     folder        result: [size] bytes, InputFolderName, where the projections are, from the file's own folder on; empty: there;
+ *                   NULL: not wanted
+ *     scan          result; the caller releases it
+ *     errors        SKG_ERR_FILE; SKG_ERR_FORMAT with the key that is missing or has no possible value; SKG_ERR_UNSUPPORTED for
+ *                   another key of source, detector, object or axis that is not 0, such as DetectorOffsetX, which
+ *                   CIL does not use */
+SKG_API skg_status skg_scan_load_xtekct(const char *path, double *white_level, char *folder, int64_t size,
+                                        skg_scan **scan);
+
 /** Makes a scan of some projections of another one, such as those of a phase of the breath.
  *
  *     whole     retained
@@ -147,6 +164,13 @@ SKG_API skg_status skg_scan_view_at(const skg_scan *scan, double position, skg_v
 
 /** Gets the nominal angle of a projection. */
 SKG_API skg_status skg_scan_angle_get(const skg_scan *scan, int64_t index, double *angle_rad);
+
+/** Gets the axis about which a scan turns.
+ *
+ *     axis     result: [3] direction, of length 1
+ *     centre   result: [3] a point on it, mm
+ *     errors   SKG_ERR_UNSUPPORTED if the scan is a table of poses */
+SKG_API skg_status skg_scan_axis_get(const skg_scan *scan, double *axis, double *centre);
 
 /** Gets when a projection is exposed, s.
  *

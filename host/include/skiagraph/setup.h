@@ -120,6 +120,16 @@ SKG_INIT(skg_setup_changes)
  *               places all of them together */
 SKG_API skg_status skg_setup_save(const skg_setup *setup, const skg_setup_changes *changes, const char *path);
 
+/** Writes a set-up with a circular scan as a CTSimU scenario of format 1.2 (docs/ctsimu.md), with meshes and spectrum in files beside it:
+ * of box.ctsimu.json box-part-1.stl and so on, without the parts that lie inside, and box-spectrum.csv. Noise, blur, scatter and other
+ * effects of beam and detector are not written: the detector is ideal, and the beam falls off with distance and obliquity.
+ *
+ *     path     ends in .ctsimu.json
+ *     errors   SKG_ERR_ARGUMENT (path), SKG_ERR_SCENE (no scan), SKG_ERR_OUTPUT; SKG_ERR_UNSUPPORTED for what a scenario cannot hold
+ *              or is not written: other scans than circular ones, samples with Poses, volumes of cells, materials without
+ *              composition or density, a skewed detector, spots that are neither points nor rectangles nor Gaussian */
+SKG_API skg_status skg_setup_save_scenario(const skg_setup *setup, const char *path);
+
 /** Gets where the source stands, for the words of `Source.From`: "front" (-y), "side" (+x), "top" (+z), and those of the clinic, for a body whose
  * x points to its left, y to its back and z to its head: "AP" (the source in front), "PA" (behind), "LAT" (a left lateral: the source at the
  * right side, the detector at the left), and angles of a C-arm, "LAO 30 CRAN 20", which say where the detector stands: from in front of the

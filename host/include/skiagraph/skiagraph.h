@@ -31,6 +31,7 @@
 #include <skiagraph/memory.h>
 #include <skiagraph/mesh.h>
 #include <skiagraph/motion.h>
+#include <skiagraph/part_table.h>
 #include <skiagraph/plan.h>
 #include <skiagraph/progress.h>
 #include <skiagraph/readout.h>

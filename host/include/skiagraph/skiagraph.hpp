@@ -90,6 +90,7 @@ using motion = handle<skg_motion, skg_motion_release>;
 using body = handle<skg_body, skg_body_release>;
 using thorax = handle<skg_thorax, skg_thorax_release>;
 using dose = handle<skg_dose, skg_dose_release>;
+using part_table = handle<skg_part_table, skg_part_table_release>;
 using lag = handle<skg_lag, skg_lag_release>;
 
 /** Calls a function whose last argument is the address of a new handle:

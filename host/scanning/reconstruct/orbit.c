@@ -11,8 +11,9 @@
     "; for other scans, `skiagraph scan SCENE --geometry FILE` writes .xml for RTK, .csv for ASTRA, .tigre.py for TIGRE and .cil.py " \
     "for CIL"
 
-/* The largest cosine between the rows of the detector and the axis. */
-static const double max_oblique = 0.1;
+/* The sine of the largest angle by which rows, detector or beam lean against the plane across the axis, 5.74 degrees: the mean of
+ * a ball of 80 mm before a source at 400 mm is then 0.7 % too low; at 15 degrees 3.6 %. */
+static const double max_lean = 0.1;
 
 static void normalise(double *v) {
     skg_scale_vector(1 / skg_length(v), v, v);
@@ -38,16 +39,54 @@ static skg_status find_forward(const skg_fdk_options *o, const double *axis, int
     return SKG_OK;
 }
 
-/* Seen at the axis: a column step of the detector, and whether rows run across the axis. */
+/* The sine of the angle between a direction and the plane across the axis. */
+static double lean_of(const double *axis, const double *direction) {
+    return skg_dot(axis, direction) / skg_length(direction);
+}
+
+/* The lean of the ray that is nearest to the plane across the axis: 0 if some rows of the detector are on each side. */
+static double lean_of_beam(const double *axis, const skg_orbit_pose *pose) {
+    const skg_view *view = &pose->view;
+    double first[3], last[3], beam[3];
+    if (pose->is_parallel) {
+        const int is_infinite = view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY;
+        skg_scale_vector(1, is_infinite ? view->source : view->centre, beam);
+        if (!is_infinite) skg_add_scaled(beam, -1, view->source, beam);
+        return lean_of(axis, beam);
+    }
+    skg_orbit_ray(pose, 0, view->columns / 2, first);
+    skg_orbit_ray(pose, view->rows - 1, view->columns / 2, last);
+    const double one = lean_of(axis, first), other = lean_of(axis, last);
+    return one * other <= 0 ? 0 : fmin(fabs(one), fabs(other));
+}
+
+static skg_status check_lean(double lean, const char *what, int64_t index) {
+    if (fabs(lean) <= max_lean) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "projection %lld: %s by %.3g degrees; the method of Feldkamp takes up to %.3g" SKG_OTHER_TOOLS,
+        (long long)index, what, asin(fmin(fabs(lean), 1)) * 180 / SKG_PI, asin(max_lean) * 180 / SKG_PI);
+}
+
+/* Refuses an axis that leans against the detector or the beam. */
+static skg_status check_leans(const double *axis, int64_t index, const skg_orbit_pose *pose) {
+    const skg_view *view = &pose->view;
+    double normal[3];
+    skg_cross(view->column_step, view->row_step, normal);
+    SKG_TRY(check_lean(lean_of(axis, view->column_step),
+                       "the rows of the detector do not run across the axis of rotation but lean", index));
+    if (!pose->is_parallel)
+        SKG_TRY(check_lean(lean_of(axis, normal), "the axis of rotation leans out of the detector's plane",
+                           index));
+    return check_lean(lean_of_beam(axis, pose), "the beam passes the plane across the axis of rotation",
+                      index);
+}
+
+/* A column step of the detector, seen at the axis. */
 static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose *pose) {
     const skg_view *view = &pose->view;
-    const double length = skg_length(view->column_step);
     double to_detector[3];
-    if (fabs(skg_dot(view->column_step, axis)) > max_oblique * length)
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "projection %lld: the rows of the detector do not run across the axis of rotation" SKG_OTHER_TOOLS,
-            (long long)index);
+    SKG_TRY(check_leans(axis, index, pose));
     pose->spacing = fabs(skg_dot(view->column_step, pose->across));
     if (pose->is_parallel) return SKG_OK;
     skg_add_scaled(view->centre, -1, view->source, to_detector);

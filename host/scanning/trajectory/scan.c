@@ -211,6 +211,18 @@ skg_status skg_scan_angle_get(const skg_scan *scan, int64_t index, double *angle
     return SKG_OK;
 }
 
+skg_status skg_scan_axis_get(const skg_scan *scan, double *axis, double *centre) {
+    SKG_NEEDS(scan);
+    SKG_NEEDS(axis);
+    SKG_NEEDS(centre);
+    if (skg_scan_is_table(scan))
+        return skg_fail(SKG_ERR_UNSUPPORTED, "the scan is a table of poses, which has no axis");
+    while (scan->whole) scan = scan->whole;
+    memcpy(axis, scan->options.axis, sizeof scan->options.axis);
+    memcpy(centre, scan->options.centre, sizeof scan->options.centre);
+    return SKG_OK;
+}
+
 skg_status skg_scan_time_get(const skg_scan *scan, int64_t index, double *middle_s, double *exposure_s) {
     SKG_PLAIN;
     SKG_NEEDS(scan);

@@ -1,0 +1,150 @@
+/* The verb reconstruct with projections in stacks, in folders of TIFFs, and from a Nikon scanner. */
+#include "cli/command.h"
+
+#include <math.h>
+#include <stdlib.h>
+
+enum { SIDE = 40, VOXELS = SIDE * SIDE * SIDE };
+
+/* A cube of 0.2 per cm, beside the axis, so that no wrong sense of rotation or mirror image gives the same volume. */
+static const char body[] =
+    "{\"Source\": {\"Position\": [0, -400, 0, \"mm\"], \"Shape\": \"PointSource\",\n"
+    "    \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1000}]},\n"
+    "  \"Detector\": {\"Position\": [0, 200, 0, \"mm\"], \"UpVector\": [0, 0, -1],\n"
+    "    \"NumberOfPixels\": [80, 48], \"Spacing\": [1.5, 1.5, \"mm\"]},\n"
+    "  \"Scan\": {\"NumberOfProjections\": 60, \"StartAngle\": -170, \"FinalAngle\": 190},\n"
+    "  \"Samples\": [{\"Label\": \"body\", \"Cuboid\": [30, 16, 20, \"mm\"], \"Material\": [\"mu\", 0.2],\n"
+    "    \"Transform\": [[\"Translation\", 4, 9, 3, \"mm\"]]}]}\n";
+
+static float first[VOXELS], second[VOXELS];
+
+static void set_up_scan(void) {
+    set_up();
+    write_text("body.json", body);
+    ck_run(0, "scan body.json -o out --geometry poses.csv --flats 2 --darks 1 --quiet");
+}
+
+static void tear_down_scan(void) {
+    char line[128];
+    snprintf(line, sizeof line, "rm -rf %s", folder);
+    ck_assert_int_eq(system(line), 0);
+}
+
+static void shell(const char *line) {
+    char text[512];
+    snprintf(text, sizeof text, "cd %s && %s", folder, line);
+    ck_assert_int_eq(system(text), 0);
+}
+
+static void reconstruct(const char *what, float *volume) {
+    char path[512];
+    ck_run(0, "reconstruct %s -o volume.mha --size %d --voxel 1 --filter hann --quiet", what, SIDE);
+    snprintf(path, sizeof path, "%s/volume.mha", folder);
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(stream);
+    ck_assert_int_eq(fseek(stream, -(long)(VOXELS * sizeof *volume), SEEK_END), 0);
+    ck_assert_uint_eq(fread(volume, sizeof *volume, VOXELS, stream), VOXELS);
+    fclose(stream);
+}
+
+/* 2e-5 of the cube: roundings of poses and of logarithms. */
+static void ck_same(void) {
+    for (int i = 0; i < VOXELS; i++) ck_assert_double_eq_tol((double)second[i], (double)first[i], 4e-6);
+}
+
+static double voxel(const float *volume, double x, double y, double z) {
+    const double middle = 0.5 * (SIDE - 1);
+    return (double)
+        volume[((int)lrint(z + middle) * SIDE + (int)lrint(y + middle)) * SIDE + (int)lrint(x + middle)];
+}
+
+START_TEST(a_folder_is_a_stack) {
+    reconstruct("out/ --geometry poses.csv", first);
+    ck_assert_double_eq_tol(voxel(first, 4, 9, 3), 0.2, 0.004);  /* 2 %: 60 projections */
+    ck_assert_double_eq_tol(voxel(first, -4, -9, -3), 0, 0.004); /* 2 % of the cube, beside it */
+    ck_run(0, "scan body.json -o stack.tif --quiet");
+    reconstruct("stack.tif --geometry poses.csv", second);
+    ck_same();
+    ck_run(0, "scan body.json -o stack.raw --flats 2 --quiet");
+    reconstruct("stack.mhd --geometry poses.csv", second);
+    ck_same();
+    ck_run(0, "scan body.json -o lines --quantity attenuation --quiet");
+    reconstruct("lines --geometry poses.csv", second);
+    ck_same();
+    shell("rm out/flat* out/dark*"); /* scan.txt has the flat field */
+    reconstruct("out --geometry poses.csv", second);
+    ck_same();
+}
+END_TEST
+
+START_TEST(what_a_folder_lacks_is_named) {
+    ck_run_fails(3, "out: holds projections without the places", "reconstruct out -o a.mha");
+    ck_run_fails(3, "name the .mhd", "reconstruct out.raw --geometry poses.csv -o a.mha");
+    shell("mv out/projection-00007.tif spare.tif");
+    ck_run_fails(3, "out: projection 7 is missing, between projection-00006.tif and projection-00008.tif",
+                 "reconstruct out --geometry poses.csv -o a.mha");
+    shell("mv spare.tif out/preview.tif");
+    ck_run_fails(3, "out/preview.tif: has no number", "reconstruct out/ --geometry poses.csv -o a.mha");
+    shell("mv out/preview.tif out/other-00007.tif");
+    ck_run_fails(3, "two scans, projection-00000.tif and other-00007.tif",
+                 "reconstruct out --geometry poses.csv -o a.mha");
+    shell("mv out/other-00007.tif out/projection-6.tif");
+    ck_run_fails(3, "projection 6 is there twice", "reconstruct out --geometry poses.csv -o a.mha");
+    shell("rm out/projection-6.tif out/projection-0000?.tif");
+    ck_run_fails(3, "has 60 poses, but out has 50 projections",
+                 "reconstruct out --geometry poses.csv -o a.mha");
+    shell("rm out/proj*");
+    ck_run_fails(3, "out: has no projections", "reconstruct out --geometry poses.csv -o a.mha");
+}
+END_TEST
+
+/* The same scan as a Nikon scanner writes it, in CIL's frame: InitialAngle 10, a step of 6 degrees, 16 bits with a white level. */
+static const char nikon[] =
+    "\xef\xbb\xbf[XTekCT]\r\nName=body\r\nProjections=60\r\nInitialAngle=10\r\nANGULARSTEP=6.0\r\n"
+    "SrcToObject=400\r\nSrcToDetector=600\r\nDetectorPixelsX=80\r\nDetectorPixelsY=48\r\n"
+    "DetectorPixelSizeX=1.5\r\nDetectorPixelSizeY = 1.5\r\nWhiteLevel=60000\r\nUnits=mm\r\n"
+    "DetectorOffsetX=0.0\r\nInputFolderName=images\r\n%s\r\n[Xrays]\r\nDetectorKV=105\r\n";
+
+static void write_nikon(const char *more) {
+    char text[1024];
+    snprintf(text, sizeof text, nikon, more);
+    write_text("body.xtekct", text);
+}
+
+START_TEST(a_nikon_scan_is_its_scan) {
+    reconstruct("out --geometry poses.csv", first);
+    shell("cp -r out images && rm images/flat* images/dark* images/scan.txt");
+    write_nikon("");
+    reconstruct("body.xtekct", second); /* the flat field of these files is 60000 keV, too */
+    ck_same();
+    reconstruct("images --geometry body.xtekct", second);
+    ck_same();
+    write_nikon("DetectorOffsetX=2");
+    ck_run_fails(3, "DetectorOffsetX is 2, and what it does", "reconstruct body.xtekct -o a.mha");
+    write_nikon("HelicalPitch=2");
+    ck_run_fails(3, "HelicalPitch is 2", "reconstruct body.xtekct -o a.mha");
+    write_nikon("ObjectTilt=15");
+    ck_run_fails(3,
+                 "leans out of the detector's plane by 15 degrees; the method of Feldkamp takes up to 5.74",
+                 "reconstruct body.xtekct -o a.mha");
+    write_nikon("ObjectRoll=7");
+    ck_run_fails(3, "across the axis of rotation but lean by 7 degrees", "reconstruct body.xtekct -o a.mha");
+    write_nikon("InputFolderName=none");
+    ck_run_fails(3, "its InputFolderName, none, is no folder", "reconstruct body.xtekct -o a.mha");
+    write_nikon("Projections=59");
+    ck_run_fails(3, "Projections is both 60 and 59", "reconstruct body.xtekct -o a.mha");
+    write_nikon("Units=inch");
+    ck_run_fails(3, "Units is inch", "reconstruct body.xtekct -o a.mha");
+    write_text("few.xtekct", "[XTekCT]\nProjections=60\n");
+    ck_run_fails(3, "few.xtekct: DetectorPixelsX is missing", "reconstruct few.xtekct -o a.mha");
+}
+END_TEST
+
+static void add_tests(TCase *tests) {
+    tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
+    tcase_add_test(tests, a_folder_is_a_stack);
+    tcase_add_test(tests, what_a_folder_lacks_is_named);
+    tcase_add_test(tests, a_nikon_scan_is_its_scan);
+}
+
+SKG_SUITE_MAIN("reconstruct", add_tests)
