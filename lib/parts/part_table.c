@@ -116,12 +116,12 @@ static skg_status fill(skg_plan *plan, skg_part_table *t) {
     return status;
 }
 
-skg_status skg_part_table_create(skg_plan *plan, skg_part_table **table) {
+static skg_status create(skg_plan *plan, skg_part_table **table) {
     SKG_PLAIN;
     skg_part_table *t = NULL;
-    SKG_NEEDS(table);
+    SKG_NEEDS_OF("skg_part_table_create", table);
     *table = NULL;
-    SKG_NEEDS(plan);
+    SKG_NEEDS_OF("skg_part_table_create", plan);
     SKG_TRY(skg_alloc(1, sizeof *t, "table of parts", &t));
     const skg_status status = fill(plan, t);
     if (status == SKG_OK)
@@ -129,6 +129,11 @@ skg_status skg_part_table_create(skg_plan *plan, skg_part_table **table) {
     else
         skg_part_table_release(&t);
     return status;
+}
+
+skg_status skg_part_table_create(skg_plan *plan, skg_part_table **table) {
+    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(handler, create(plan, table));
 }
 
 void skg_part_table_release(skg_part_table **table) {
