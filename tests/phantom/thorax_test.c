@@ -250,12 +250,13 @@ START_TEST(plans_find_no_overlap) {
     int64_t side = 0, found = 0;
     make(_i / 2, sizes[_i % 2]);
     for (int64_t i = 0; i < parts; i++) {
+        s[i] = (skg_solid){.inside = part[i].inside};
         ck_skg(skg_mesh_count(part[i].mesh, &s[i].vertices, &s[i].triangles));
         double *positions = malloc((size_t)s[i].vertices * 3 * sizeof *positions);
         int32_t *corners = malloc((size_t)s[i].triangles * 3 * sizeof *corners);
         ck_skg(skg_mesh_positions_get(part[i].mesh, positions, 0));
         ck_skg(skg_mesh_triangles_get(part[i].mesh, corners, 0));
-        s[i].positions = positions, s[i].corners = corners, s[i].inside = part[i].inside;
+        s[i].positions = positions, s[i].corners = corners;
     }
     ck_skg(skg_overlaps_find(parts, s, &side, &found, &pairs));
     for (int64_t p = 0; p < found; p++)
