@@ -47,9 +47,8 @@ static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_out
     SKG_TRY_CLEANUP(skg_frames_submit(&job, NULL, 0));
     status = skg_job_complete(&job);
     if (status == SKG_ERR_CANCELLED)
-        status = skg_fail(
-            status, "interrupted while the number of samples of the source was found: %d did not suffice yet",
-            (int)samples / 2);
+        status = skg_fail(status, "interrupted while the number of samples of the source was found, at %d",
+                          (int)samples);
     if (status == SKG_RANGE) status = SKG_OK; /* the change does not depend on the verified range */
 cleanup:
     skg_recipe_release(&linear);

@@ -37,15 +37,12 @@ static skg_status choose(skg_joint *j) {
     int64_t *orders = NULL;
     double *shares = NULL;
     skg_choice choice;
-    SKG_TRY(skg_alloc(all, sizeof *orders, "series", &orders));
-    SKG_TRY(skg_alloc(all, sizeof *shares, "series", &shares));
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc(all, sizeof *orders, "series", &orders));
+    SKG_TRY_CLEANUP(skg_alloc(all, sizeof *shares, "series", &shares));
     for (int64_t i = 0; i < all; i++) orders[i] = order_of(j, i / size, i % size);
-    const skg_status status = skg_choose_order(all, orders, j->value, j->of_each, shares, &choice);
-    for (int64_t i = 0; status == SKG_OK && i < all; i++)
-        j->value[i] *= shares[i], j->of_each[i] *= shares[i] * shares[i];
-    skg_free(&shares);
-    skg_free(&orders);
-    if (status != SKG_OK) return status;
+    SKG_TRY_CLEANUP(skg_choose_order(all, orders, j->value, j->of_each, shares, &choice));
+    for (int64_t i = 0; i < all; i++) j->value[i] *= shares[i], j->of_each[i] *= shares[i] * shares[i];
     j->order = choice.order;
     j->kept = choice.order < j->along.count ? choice.order : j->along.count;
     j->bias = choice.bias / places;
@@ -55,7 +52,10 @@ static skg_status choose(skg_joint *j) {
         else
             j->value[i] = j->of_each[i] = 0;
     j->sigma = sqrt(variance / places + j->bias);
-    return SKG_OK;
+cleanup:
+    skg_free(&shares);
+    skg_free(&orders);
+    return status;
 }
 
 /* The mean of a place, from the first coefficients of all frames. */

@@ -1,4 +1,4 @@
-/* How many cosines the smoothing of scatter keeps: up to the order at which noise outweighs what they hold. */
+/* How much the smoothing of scatter keeps of each cosine: by what a block of orders holds beyond noise. */
 #include "scatter/smoothing.h"
 
 #include <float.h>
@@ -10,7 +10,7 @@
 enum { LEAST = 4 };
 static const double SURE = 2;
 
-/* Among the coefficients that are left out, those with more than so many times the median variance count less. */
+/* Coefficients with more than so many times the median variance count less in what a block holds. */
 static const double NOISY = 2;
 
 static int64_t smaller(int64_t a, int64_t b) {
@@ -40,8 +40,7 @@ static skg_status find_median(int64_t count, const double *values, double *media
 
 static skg_status find_profile(int64_t size, const int64_t *orders, const double *value,
                                const double *variance, profile *p) {
-    double median = 0;
-    double largest = 0;
+    double median = 0, largest = 0;
     for (int64_t k = 0; k < size; k++) {
         if (orders[k] > p->most) p->most = orders[k];
         largest = fmax(largest, fabs(value[k]));

@@ -153,9 +153,9 @@ class Device:
         self._unfinished.append((job, lambda: self._wait(job), keep))
         return job
 
-    def interruptible(self, work: Callable[[], Any]) -> Any:
-        """What a call gives that may compute for long before it returns. A thread of its own makes it, so that the main thread answers an
-        interrupt, which ends the call."""
+    def interruptible(self, kind: str, work: Callable[[], Any]) -> Any:
+        """The handle that a call makes which may compute for long before it returns. A thread of its own makes it, so that the main thread
+        answers an interrupt, which ends the call; a handle that was made by then is released."""
         if threading.current_thread() is not threading.main_thread():
             return work()
         done: list[Any] = []
@@ -175,6 +175,8 @@ class Device:
                 lib.skg_context_interrupt(self._handle)
                 with contextlib.suppress(KeyboardInterrupt):
                     thread.join(0.05)
+            if done and not isinstance(done[0], BaseException):
+                self.drop(kind, done[0])
             raise
         if isinstance(done[0], BaseException):
             raise done[0]

@@ -47,7 +47,7 @@ class Plans:
     def _make(self, setup: Any, scene: Any, view: View, beam: Beam, given: dict[str, Any]) -> Any:
         keep: list[Any] = []
         options = self.options(setup, given, keep, view)
-        return self._device.interruptible(lambda: make(
+        return self._device.interruptible("skg_plan", lambda: make(
             "skg_plan_create", "skg_plan", self._device.handle, scene, view._write(struct("skg_view")), beam._handle, options))
 
     @staticmethod
