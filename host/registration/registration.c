@@ -78,8 +78,8 @@ static skg_status create(skg_context *context, skg_scene *scene, skg_spectrum *s
 skg_status skg_registration_create(skg_context *context, skg_scene *scene, skg_spectrum *spectrum,
                                    const skg_plan_options *plan, const skg_registration_options *options,
                                    skg_registration **registration) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, scene, spectrum, plan, options, registration));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, scene, spectrum, plan, options, registration));
 }
 
 static void forget_run(skg_registration *r) {

@@ -19,11 +19,23 @@ void skg_logger_say(const skg_logger *logger, int32_t level, const char *format,
     va_end(arguments);
 }
 
+static _Thread_local int is_aside;
+
+void skg_log_from_aside(void) {
+    is_aside = 1;
+}
+
 void skg_log(const skg_context *context, int32_t level, const char *format, ...) {
+    char sentence[SKG_MAILBOX_SENTENCE];
     if (!context) return;
     va_list arguments;
     va_start(arguments, format);
-    say(&context->log, level, format, arguments);
+    if (!is_aside) {
+        say(&context->log, level, format, arguments);
+    } else if (level != SKG_LOG_PROGRESS) {
+        vsnprintf(sentence, sizeof sentence, format, arguments);
+        skg_mailbox_put(skg_mailbox_address(context->driver), sentence);
+    }
     va_end(arguments);
 }
 
@@ -48,14 +60,19 @@ skg_status skg_context_interrupt(skg_context *context) {
 
 static _Thread_local int depth; /* of public calls */
 
-skg_error_handler skg_call_begin(const skg_context *context) {
+skg_call skg_call_begin(const skg_context *context) {
     depth++;
-    return context ? context->error : (skg_error_handler){0};
+    if (!context) return (skg_call){0};
+    skg_turn *turn = skg_turn_retain(context->turn);
+    skg_turn_take(turn, NULL);
+    return (skg_call){context->error, turn};
 }
 
-skg_status skg_call_end(skg_error_handler handler, skg_status status) {
-    if (--depth == 0 && SKG_FAILED(status) && handler.call)
-        handler.call(status, skg_last_error(), handler.user);
+skg_status skg_call_end(skg_call begun, skg_status status) {
+    skg_turn_give(begun.turn);
+    skg_turn_release(&begun.turn);
+    if (--depth == 0 && SKG_FAILED(status) && begun.error.call)
+        begun.error.call(status, skg_last_error(), begun.error.user);
     return status;
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/core.h"
 #include "core/log.h"
+#include "core/threads.h"
 
 #include <skiagraph/context.h>
 
@@ -22,7 +23,8 @@ struct skg_context {
     int64_t process; /* that made it: any other one is a child after fork */
     skg_logger log;
     skg_error_handler error;
-    skg_mailbox *driver; /* messages of the OpenCL driver's threads */
+    skg_mailbox *driver; /* messages of the OpenCL driver's threads, and of the library's own */
+    skg_turn *turn;
     struct skg_device *device;
     atomic_int interrupted; /* 1: what a plan computes while it is made is to end */
     struct skg_job *held;   /* the job some of whose frames are not enqueued yet (lib/frame); NULL: none */
@@ -33,15 +35,21 @@ struct skg_context {
  * log. */
 skg_status skg_context_enter(const skg_context *context);
 
-/* Bracket a public call, so that its failure is reported to the context's error handler:
+/* A public call that has begun. */
+typedef struct {
+    skg_error_handler error;
+    skg_turn *turn; /* retained and taken */
+} skg_call;
+
+/* Bracket a public call, so that it has its turn on the context, and its failure is reported to the context's error handler:
  *
- *     const skg_error_handler handler = skg_call_begin(context);
- *     return skg_call_end(handler, do_the_work(context));
+ *     const skg_call begun = skg_call_begin(context);
+ *     return skg_call_end(begun, do_the_work(context));
  *
  * skg_call_end calls the handler if status is a failure, and returns status. If a public call makes other public calls, only the
  * outermost one reports, so that a failure is reported once. skg_call_begin copies the handler, because the call in between may
- * free the context. context: NULL has no handler. */
-skg_error_handler skg_call_begin(const skg_context *context);
-skg_status skg_call_end(skg_error_handler handler, skg_status status);
+ * free the context. context: NULL has neither handler nor turn. */
+skg_call skg_call_begin(const skg_context *context);
+skg_status skg_call_end(skg_call begun, skg_status status);
 
 #endif

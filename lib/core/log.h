@@ -23,6 +23,9 @@ void skg_logger_say(const skg_logger *logger, int32_t level, const char *format,
 void skg_log(const skg_context *context, int32_t level, const char *format, ...)
     __attribute__((format(printf, 3, 4)));
 
+/* From now on what this thread says to a context's log waits in its mailbox for the next call of the program. */
+void skg_log_from_aside(void);
+
 /* --- Sentences that threads of a driver leave for the thread that owns a context. *
  * An OpenCL driver may call back from a thread of its own at any time, also after the context was released, and
  * OpenCL 1.2 does not say which call is the last. The driver therefore holds an address that is a number, not a

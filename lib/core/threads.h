@@ -1,10 +1,47 @@
-/* Threads: work beside the caller's, work in shares, OpenMP. Private. */
+/* Threads: turns on a context and work between them, work beside the caller's, work in shares, OpenMP. Private. */
 #ifndef SKG_THREADS_H
 #define SKG_THREADS_H
 
 #include "core/core.h"
 
 #include <pthread.h>
+
+/* --- Turns on a context.
+ *
+ * Every public call on a context takes its turn and gives it back (skg_call_begin). Between the calls a thread of the library may
+ * take it, to go on with a job that nobody asks about. In a child after fork a turn is free, always. NULL likewise. */
+typedef struct skg_turn skg_turn;
+
+skg_status skg_turn_create(skg_turn **turn);
+skg_turn *skg_turn_retain(skg_turn *turn);
+void skg_turn_release(skg_turn **turn);
+
+/* Waits until nobody else has the turn, and takes it; a thread may take it again while it has it. stop: NULL, or what skg_turn_stop
+ * sets: then the turn is not taken, and 0 is returned. */
+int skg_turn_take(skg_turn *turn, const int32_t *stop);
+void skg_turn_give(skg_turn *turn);
+
+/* Sets *stop for a thread that waits, or will wait, for its turn. */
+void skg_turn_stop(skg_turn *turn, int32_t *stop);
+
+/* 0: this process is a child by fork of the one that made the turn. */
+int skg_turn_is_here(const skg_turn *turn);
+
+/* Work of a thread that takes turns with the calls of the program. */
+typedef struct {
+    void *(*turn)(
+        void *user); /* does what can be done now; returns what to wait for; NULL: nothing is left to do */
+    int (*wait)(
+        void *event); /* waits for it outside of the turn, and gives it up; 0: it failed, and the work ends */
+} skg_aside_work;
+
+typedef struct skg_aside skg_aside;
+
+/* Starts such a thread, which logs to the mailbox of a context (skg_log_from_aside). *aside stays NULL if there is none to be had. */
+void skg_aside_begin(skg_turn *turn, skg_aside_work work, void *user, skg_aside **aside);
+
+/* Ends the thread: waits for what it waits for. The caller has the turn. The exit of the process ends all. */
+void skg_aside_end(skg_aside **aside);
 
 /* --- Work that one thread does beside the caller's. */
 

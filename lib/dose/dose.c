@@ -264,8 +264,8 @@ cleanup:
 }
 
 skg_status skg_dose_create(skg_plan *plan, const skg_dose_options *options, skg_dose **dose) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, create(plan, options, dose));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, create(plan, options, dose));
 }
 
 skg_status skg_dose_retain(skg_dose *dose) {

@@ -73,6 +73,6 @@ static skg_status create(skg_context *context, skg_scene *scene, const skg_view 
 
 skg_status skg_plan_create(skg_context *context, skg_scene *scene, const skg_view *view,
                            skg_spectrum *spectrum, const skg_plan_options *options, skg_plan **plan) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, scene, view, spectrum, options, plan));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, scene, view, spectrum, options, plan));
 }

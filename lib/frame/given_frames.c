@@ -45,8 +45,7 @@ skg_status skg_held_frame_read(const skg_job *job, const skg_frame *frames, int6
     skg_frame_init(frame);
     *view = recipe->view;
     *noise = skg_noise_key(recipe->options.noise_seed, index, 1);
-    for (int64_t p = 0; p < recipe->scene->count; p++)
-        poses[p] = job->then.poses ? job->then.poses + 16 * p : NULL;
+    for (int64_t p = 0; p < recipe->scene->count; p++) poses[p] = NULL;
     if (!frames) return SKG_OK;
     SKG_TRY(skg_struct_read_at(frames, index - job->then.first, "skg_frame", frame, sizeof *frame));
     *noise = skg_noise_key((int64_t)((uint64_t)recipe->options.noise_seed + (uint64_t)frame->noise_seed),
@@ -93,7 +92,8 @@ static skg_status check_overrides(const skg_recipe *recipe, const skg_frame *fra
     return status;
 }
 
-/* What the host does between steps reads vertices when the caller may have moved them. */
+/* What the host does between steps, and where it looks for flat faces that touch, reads vertices when the caller may have moved
+ * them. */
 static skg_status own_vertices(skg_job *job, skg_mesh *mesh) {
     const int64_t count = 3 * mesh->vertices;
     if (mesh->positions_stale)
@@ -106,14 +106,25 @@ static skg_status copy_scene(skg_job *job) {
     const skg_scene *scene = job->recipe->scene;
     const skg_plan_meshes *meshes = &job->recipe->meshes;
     skg_job_scene *then = &job->then;
-    SKG_TRY(skg_staging_take(&job->staging, 16 * scene->count, sizeof *then->poses, "poses", &then->poses));
+    skg_scene_part_data *parts = NULL;
+    skg_recipe *recipe = NULL;
+    SKG_TRY(skg_staging_take(&job->staging, scene->count, sizeof *parts, "parts", &parts));
     SKG_TRY(skg_staging_take(&job->staging, meshes->count, sizeof *then->meshes, "meshes", &then->meshes));
-    for (int64_t p = 0; p < scene->count; p++)
-        memcpy(then->poses + 16 * p, scene->parts[p].pose, 16 * sizeof *then->poses);
     for (int64_t m = 0; m < meshes->count; m++)
         memcpy(&then->meshes[m], meshes->meshes[m], sizeof *then->meshes);
-    for (int64_t m = 0; job->kind->begin && m < meshes->count; m++)
-        SKG_TRY(own_vertices(job, &then->meshes[m]));
+    for (int64_t p = 0; p < scene->count; p++) {
+        parts[p] = scene->parts[p];
+        parts[p].mesh = &then->meshes[meshes->of_part[p]];
+        parts[p].material = NULL; /* the model has what frames need of it */
+    }
+    SKG_TRY(skg_recipe_copy(job->recipe, &recipe));
+    then->scene = (skg_scene){.parts = parts, .count = scene->count, .volumes = scene->volumes};
+    recipe->scene = &then->scene;
+    then->given = job->recipe;
+    job->recipe = recipe;
+    for (int64_t m = 0; m < meshes->count; m++)
+        if (job->kind->begin || job->machine->geometry.layouts[m].flat)
+            SKG_TRY(own_vertices(job, &then->meshes[m]));
     return SKG_OK;
 }
 

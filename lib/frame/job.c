@@ -50,6 +50,7 @@ skg_status skg_job_divide(skg_job *job, int64_t steps) {
 
 void skg_job_empty(skg_job *done) {
     skg_context *context = done->machine->context;
+    skg_aside_end(&done->feeder);
     if (context->held == done) context->held = NULL;
     /* A submission that failed half way has no event to wait for, but may have enqueued what reads staged memory. */
     if (!done->finished) {
@@ -63,6 +64,7 @@ void skg_job_empty(skg_job *done) {
     for (int64_t o = 0; o < done->output_count; o++) skg_frame_output_release(&done->outputs[o]);
     skg_staging_release(&done->staging);
     skg_recipe_release(&done->recipe);
+    skg_recipe_release(&done->then.given);
     skg_plan_release(&done->plan);
     skg_free(&done->sentence);
     atomic_store(&done->over, 1);
@@ -80,8 +82,10 @@ void skg_job_release(skg_job **job) {
     *job = NULL;
     if (atomic_fetch_sub(&left->references, 1) > 1) return;
     if (!atomic_load(&left->over)) { /* nobody waits for it any more */
+        const skg_call begun = skg_call_begin(left->machine->context);
         atomic_store(&left->cancelled, 1);
         skg_job_empty(left);
+        (void)skg_call_end(begun, SKG_OK);
     }
     skg_free(&left);
 }

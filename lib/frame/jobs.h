@@ -10,12 +10,14 @@
 
 /* --- Work under way: what it is made with, what must stay until the device is done with it, and what is reported then. */
 
-/* The scene at the time of a submission, for frames that are enqueued later. All NULL: every frame was enqueued at once. */
+/* The scene at the time of a submission, for frames that are enqueued later, perhaps while the program changes it. All NULL: every
+ * frame was enqueued at once. */
 typedef struct {
+    skg_recipe *given; /* retained: that of the submission; the job's is a copy of it, for the scene below */
+    skg_scene scene;   /* its parts are copies, with the meshes below */
     /* [meshes] of the recipe: copies of the structs. Their arrays may have other contents by now, and the device has those of the
      * submission */
     skg_mesh *meshes;
-    double *poses;     /* [parts][16] */
     skg_frame *frames; /* [count - first] copies with arrays of their own; NULL: as plan and scene stood */
     int64_t first;     /* number of frames[0] */
 } skg_job_scene;
@@ -35,7 +37,7 @@ typedef struct {
 
 struct skg_job {
     skg_plan *plan;     /* retained; NULL: the caller keeps machine and outcome */
-    skg_recipe *recipe; /* retained: that of the submission */
+    skg_recipe *recipe; /* retained: that of the submission, or of then.scene */
     skg_machine *machine;
     skg_scatterer *scatterer; /* of the plan; NULL: images of the primary alone */
     const skg_job_kind *kind;
@@ -54,6 +56,7 @@ struct skg_job {
     skg_staging staging; /* host memory that the device reads or writes; the log of all frames */
     skg_results results; /* staged */
     cl_event last;       /* of the last command; NULL until all that will be enqueued was */
+    skg_aside *feeder;   /* goes on with the job while nobody asks; NULL: nothing does */
     int32_t finished;    /* 1: everything enqueued is done */
     int32_t of_plan;     /* 1: a plan that is made waits for it: skg_context_interrupt ends it */
     atomic_int cancelled, references;
@@ -99,6 +102,9 @@ extern const skg_job_kind skg_job_images;
 /* Enqueues a step of one output of a frame; of an undivided job all of it. index: of the frame */
 skg_status skg_frame_render_output(skg_job *job, const skg_frame_output *output, int64_t index,
                                    skg_frame_work *work);
+
+/* Counts the steps that are done, and gives the device others. */
+skg_status skg_job_look(skg_job *job);
 
 /* Enqueues frames that the device can be given by now, unless the job was cancelled. A failure is reported by skg_job_wait. */
 void skg_submission_continue(skg_job *job);

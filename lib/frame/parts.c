@@ -61,10 +61,6 @@ static double largest_weight(const skg_pass *pass, int64_t part) {
     return largest;
 }
 
-static const skg_mesh *mesh_of(const skg_recipe *recipe, const skg_frame_work *work, int64_t part) {
-    return work->meshes ? &work->meshes[recipe->meshes.of_part[part]] : recipe->scene->parts[part].mesh;
-}
-
 /* Where the parts lie, what they may contribute, and the scale that follows from both. */
 static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
                         skg_pass *pass) {
@@ -75,7 +71,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
     pass->parts = memory->parts;
     pass->extents = memory->extents;
     for (int64_t p = 0; p < scene->count; p++) {
-        const skg_mesh *mesh = mesh_of(recipe, work, p);
+        const skg_mesh *mesh = scene->parts[p].mesh;
         const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;
         const int64_t count = pass->first[p + 1] - pass->first[p];
         skg_extent *extent = &pass->extents[p];
@@ -107,13 +103,12 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
 
 /* The groups of parts that touch, unless they are known for these poses and meshes. Parts whose vertices move together go on touching:
  * of meshes that move, every sixteenth version is looked at, because that takes a twentieth of a frame. */
-static void find_groups(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
-                        const skg_pass *pass) {
+static void find_groups(const skg_recipe *recipe, const skg_pass_memory *memory, const skg_pass *pass) {
     enum { EVERY = 16 };
     int64_t count = 0;
     int known = 1;
     for (int64_t p = 0; p < pass->scene->count; p++) {
-        const skg_mesh *mesh = mesh_of(recipe, work, p);
+        const skg_mesh *mesh = recipe->scene->parts[p].mesh;
         const skg_mesh_layout *layout = &memory->geometry->layouts[recipe->meshes.of_part[p]];
         const double *pose = pass->parts[p].pose;
         if (!layout->flat) continue;
@@ -129,11 +124,10 @@ static void find_groups(const skg_recipe *recipe, const skg_frame_work *work, co
 
 /* Gives the parts that touch what they have in common. Near the plane of the source, coordinates of single precision have no rests
  * (fine.clh), and are better off with the part's own pixel. */
-static void find_touching(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass_memory *memory,
-                          skg_pass *pass) {
+static void find_touching(const skg_recipe *recipe, const skg_pass_memory *memory, skg_pass *pass) {
     const int is_double = recipe->options.precision == SKG_PRECISION_DOUBLE;
     const int apart = pass->kernels.source_plane && !is_double && !pass->camera.parallel;
-    find_groups(recipe, work, memory, pass);
+    find_groups(recipe, memory, pass);
     for (int64_t p = 0; p < pass->scene->count; p++) memory->groups[p].members = 0;
     for (int64_t p = 0; p < pass->scene->count; p++) {
         skg_geometry_part *part = &pass->parts[p];
@@ -144,7 +138,7 @@ static void find_touching(const skg_recipe *recipe, const skg_frame_work *work, 
             skg_touching_measure(&pass->camera, &own);
             part->shift = is_double ? 0x1p-44 * own.farthest : skg_touching_shift(&own, 0);
         } else {
-            const double noise = skg_touching_noise(&pass->camera, mesh_of(recipe, work, p), part->pose,
+            const double noise = skg_touching_noise(&pass->camera, recipe->scene->parts[p].mesh, part->pose,
                                                     &pass->extents[p].scale);
             skg_touching_join(&memory->groups[memory->group_of[p]], part->columns, part->rows, noise);
         }
@@ -203,7 +197,7 @@ skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, i
     SKG_TRY(list_contributions(recipe, work, pass));
     SKG_TRY(mix_planes(recipe, work, pass));
     place_parts(recipe, work, memory, pass);
-    find_touching(recipe, work, memory, pass);
+    find_touching(recipe, memory, pass);
     SKG_TRY(find_priorities(recipe, work, pass));
     kernels->precision = skg_recipe_kernel_precision(recipe);
     kernels->half = recipe->options.precision == SKG_PRECISION_HALF;

@@ -47,8 +47,8 @@ static skg_status move(skg_plan *plan, const skg_view *view) {
 }
 
 skg_status skg_plan_view_set(skg_plan *plan, const skg_view *view) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, move(plan, view));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, move(plan, view));
 }
 
 skg_status skg_plan_renew(skg_plan *plan) {
@@ -70,7 +70,7 @@ skg_status skg_plan_renew(skg_plan *plan) {
     return SKG_OK;
 }
 
-skg_error_handler skg_plan_call_begin(const skg_plan *plan) {
+skg_call skg_plan_call_begin(const skg_plan *plan) {
     return skg_call_begin(plan ? plan->context : NULL);
 }
 

@@ -85,7 +85,7 @@ static skg_status set_positions(skg_plan *plan, int64_t part, cl_mem buffer, int
 skg_status skg_plan_positions_set_cl(skg_plan *plan, int64_t part, cl_mem buffer, int64_t offset,
                                      const float *lowest, const float *highest, int32_t waits,
                                      const cl_event *wait_list, cl_event *done) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     const skg_caller_events events = {waits, wait_list, done};
-    return skg_call_end(handler, set_positions(plan, part, buffer, offset, lowest, highest, &events));
+    return skg_call_end(begun, set_positions(plan, part, buffer, offset, lowest, highest, &events));
 }

@@ -166,6 +166,6 @@ static skg_status predict_silently(skg_plan *plan, skg_scatter_prediction *predi
 }
 
 skg_status skg_plan_scatter_predict(skg_plan *plan, skg_scatter_prediction *prediction) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, predict_silently(plan, prediction));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, predict_silently(plan, prediction));
 }

@@ -7,7 +7,7 @@
 #include <skiagraph/types.h>
 
 /* skg_call_begin for a plan's context. plan: NULL has no handler. */
-skg_error_handler skg_plan_call_begin(const skg_plan *plan);
+skg_call skg_plan_call_begin(const skg_plan *plan);
 
 /* Sets whether the plan has already warned that nothing falls on the detector, and returns whether it had. */
 int32_t skg_plan_warned_unseen_set(skg_plan *plan, int32_t warned);

@@ -96,8 +96,8 @@ static skg_status create(skg_plan *plan, int64_t count, skg_scatter_series_funct
 
 skg_status skg_scatter_series_create(skg_plan *plan, int64_t count, skg_scatter_series_function function,
                                      void *user, skg_scatter_series **series) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, create(plan, count, function, user, series));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, create(plan, count, function, user, series));
 }
 
 skg_status skg_scatter_series_retain(skg_scatter_series *series) {

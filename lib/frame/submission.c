@@ -55,7 +55,7 @@ static skg_status submit_step(skg_job *job, const skg_frame *frames, const doubl
     int32_t *bad_vertex = job->results.bad_vertex + index;
     skg_view view;
     skg_frame frame;
-    skg_frame_work work = {.view = &view, .poses = poses, .meshes = job->then.meshes, .frame = &frame};
+    skg_frame_work work = {.view = &view, .poses = poses, .frame = &frame};
     SKG_TRY(skg_held_frame_read(job, frames, index, &frame, &view, poses, &work.noise));
     if (step == 0 && !job->kind->begin) /* what came before was projected for the first step, too */
         SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
@@ -74,10 +74,6 @@ static skg_status submit_steps(skg_job *job, const skg_frame *frames, int64_t en
     const double **poses = NULL;
     skg_status status = SKG_OK;
     if (job->enqueued >= end) return SKG_OK;
-    if (job->then.meshes && job->recipe->scene->structure != job->recipe->structure)
-        return skg_fail(SKG_STALE,
-                        "parts of the scene were added or put elsewhere before all frames of a job "
-                        "were given to the device; wait for the job first");
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
     while (status == SKG_OK && job->enqueued < end && !skg_job_is_cancelled(job))
         status = submit_step(job, frames, poses);

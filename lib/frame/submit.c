@@ -1,8 +1,8 @@
 /* The public calls that submit frames. */
 #include "core/text.h"
 #include "device/self_tests.h"
+#include "frame/feeder.h"
 #include "frame/given.h"
-#include "frame/jobs.h"
 
 #include <skiagraph/opencl.h>
 
@@ -60,24 +60,26 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
 
 skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
                            skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, submit("skg_plan_submit", plan, count, frames, 1, output, NULL, job));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(
+        begun, skg_feeder_start(submit("skg_plan_submit", plan, count, frames, 1, output, NULL, job), job));
 }
 
 skg_status skg_plan_outputs_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
                                    int64_t output_count, const skg_output *outputs, skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(
-        handler, submit("skg_plan_outputs_submit", plan, count, frames, output_count, outputs, NULL, job));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, skg_feeder_start(submit("skg_plan_outputs_submit", plan, count, frames,
+                                                       output_count, outputs, NULL, job),
+                                                job));
 }
 
 skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames, int64_t output_count,
                               const skg_output *outputs, int32_t waits, const cl_event *wait_list,
                               cl_event *done, skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     const skg_caller_events events = {waits, wait_list, done};
     return skg_call_end(
-        handler, submit("skg_plan_submit_cl", plan, count, frames, output_count, outputs, &events, job));
+        begun, submit("skg_plan_submit_cl", plan, count, frames, output_count, outputs, &events, job));
 }
 
 static skg_status make_image(skg_plan *plan, const skg_output *output) {
@@ -87,6 +89,6 @@ static skg_status make_image(skg_plan *plan, const skg_output *output) {
 }
 
 skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, make_image(plan, output));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, make_image(plan, output));
 }

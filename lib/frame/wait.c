@@ -61,9 +61,7 @@ static skg_status is_over(cl_event event, int *over) {
     return SKG_OK;
 }
 
-/* Counts the steps that are done, and gives the device others. */
-static skg_status look(skg_job *job) {
-    SKG_TRY(skg_context_enter(job->machine->context));
+skg_status skg_job_look(skg_job *job) {
     for (int over = 1; over && job->done < job->enqueued; job->done += over)
         SKG_TRY(is_over(job->ends[job->done], &over));
     skg_submission_continue(job);
@@ -81,7 +79,8 @@ static skg_status test(skg_job *job, int32_t *done) {
     SKG_NEEDS_OF("skg_job_test", done);
     *done = 1;
     if (atomic_load(&job->over)) return SKG_OK;
-    SKG_TRY(look(job));
+    SKG_TRY(skg_context_enter(job->machine->context));
+    SKG_TRY(skg_job_look(job));
     const int ends_early = job->failure != SKG_OK || skg_job_is_cancelled(job);
     if (job->last) SKG_TRY(is_over(job->last, &over));
     *done = job->last ? over : ends_early && job->done == job->enqueued;
@@ -89,21 +88,24 @@ static skg_status test(skg_job *job, int32_t *done) {
 }
 
 skg_status skg_job_test(skg_job *job, int32_t *done) {
-    const skg_error_handler handler = skg_call_begin(context_of(job));
-    return skg_call_end(handler, test(job, done));
+    const skg_call begun = skg_call_begin(context_of(job));
+    return skg_call_end(begun, test(job, done));
 }
 
 static skg_status progress(skg_job *job, int64_t *done, int64_t *total) {
     SKG_NEEDS_OF("skg_job_progress", job);
-    if (!atomic_load(&job->over)) SKG_TRY(look(job));
+    if (!atomic_load(&job->over)) {
+        SKG_TRY(skg_context_enter(job->machine->context));
+        SKG_TRY(skg_job_look(job));
+    }
     if (done) *done = job->done;
     if (total) *total = skg_job_steps(job);
     return SKG_OK;
 }
 
 skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total) {
-    const skg_error_handler handler = skg_call_begin(context_of(job));
-    return skg_call_end(handler, progress(job, done, total));
+    const skg_call begun = skg_call_begin(context_of(job));
+    return skg_call_end(begun, progress(job, done, total));
 }
 
 skg_status skg_job_cancel(skg_job *job) {
@@ -123,6 +125,6 @@ static skg_status wait_for(skg_job **job) {
 }
 
 skg_status skg_job_wait(skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(job ? context_of(*job) : NULL);
-    return skg_call_end(handler, wait_for(job));
+    const skg_call begun = skg_call_begin(job ? context_of(*job) : NULL);
+    return skg_call_end(begun, wait_for(job));
 }

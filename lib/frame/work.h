@@ -12,7 +12,6 @@
 typedef struct {
     const skg_view *view;
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
-    const skg_mesh *meshes;     /* [meshes] of the recipe, as the device has them; NULL: the scene's */
     const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
     int32_t shows;              /* enum skg_output_kind */
     int32_t kind;               /* of lengths: SKG_LENGTHS_...; of a component of the scatter: which */

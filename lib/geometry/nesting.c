@@ -307,6 +307,6 @@ cleanup:
 }
 
 skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh *mesh, skg_mesh **oriented) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create_oriented(context, mesh, oriented));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create_oriented(context, mesh, oriented));
 }

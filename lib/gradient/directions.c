@@ -1,6 +1,7 @@
 /* Derivatives of a plan's image along directions: the public calls. */
 #include "core/text.h"
 #include "device/self_tests.h"
+#include "frame/feeder.h"
 #include "gradient/refusals.h"
 #include "gradient/submit.h"
 #include "plan/rules.h"
@@ -149,32 +150,35 @@ cleanup:
 skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, int64_t count,
                                        const skg_direction *directions, double *derivatives,
                                        int64_t *saturated, skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, submit_derivatives("skg_plan_derivatives_submit", plan, frame, count,
-                                                    directions, derivatives, saturated, job));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun,
+                        skg_feeder_start(submit_derivatives("skg_plan_derivatives_submit", plan, frame, count,
+                                                            directions, derivatives, saturated, job),
+                                         job));
 }
 
 skg_status skg_plan_derivatives(skg_plan *plan, const skg_frame *frame, int64_t count,
                                 const skg_direction *directions, double *derivatives, int64_t *saturated) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     skg_job *job = NULL;
     const skg_status status = submit_derivatives("skg_plan_derivatives", plan, frame, count, directions,
                                                  derivatives, saturated, &job);
-    return skg_call_end(handler, skg_gradient_wait(status, &job));
+    return skg_call_end(begun, skg_gradient_wait(status, &job));
 }
 
 skg_status skg_plan_derivative_submit(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                       double *derivative, int64_t *saturated, skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, submit_derivatives("skg_plan_derivative_submit", plan, frame, 1, direction,
-                                                    derivative, saturated, job));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, skg_feeder_start(submit_derivatives("skg_plan_derivative_submit", plan, frame,
+                                                                   1, direction, derivative, saturated, job),
+                                                job));
 }
 
 skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
                                double *derivative, int64_t *saturated) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     skg_job *job = NULL;
     const skg_status status =
         submit_derivatives("skg_plan_derivative", plan, frame, 1, direction, derivative, saturated, &job);
-    return skg_call_end(handler, skg_gradient_wait(status, &job));
+    return skg_call_end(begun, skg_gradient_wait(status, &job));
 }

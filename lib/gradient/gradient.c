@@ -1,6 +1,7 @@
 /* Gradients of a plan: the public calls. */
 #include "core/text.h"
 #include "device/self_tests.h"
+#include "frame/feeder.h"
 #include "gradient/adjoint.h"
 #include "gradient/refusals.h"
 #include "gradient/submit.h"
@@ -63,15 +64,16 @@ cleanup:
 
 skg_status skg_plan_gradient_submit(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
                                     const skg_gradient *gradient, skg_job **job) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler,
-                        submit_gradient("skg_plan_gradient_submit", plan, frame, adjoint, gradient, job));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(
+        begun, skg_feeder_start(
+                   submit_gradient("skg_plan_gradient_submit", plan, frame, adjoint, gradient, job), job));
 }
 
 skg_status skg_plan_gradient(skg_plan *plan, const skg_frame *frame, const skg_adjoint *adjoint,
                              const skg_gradient *gradient) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     skg_job *job = NULL;
     const skg_status status = submit_gradient("skg_plan_gradient", plan, frame, adjoint, gradient, &job);
-    return skg_call_end(handler, skg_gradient_wait(status, &job));
+    return skg_call_end(begun, skg_gradient_wait(status, &job));
 }

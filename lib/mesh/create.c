@@ -202,8 +202,8 @@ static skg_status create(skg_context *context, const char *name, const skg_mesh_
 
 skg_status skg_mesh_create(skg_context *context, const char *name, const skg_mesh_source *source,
                            skg_mesh **mesh) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, name, source, mesh));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, name, source, mesh));
 }
 
 skg_status skg_mesh_retain(skg_mesh *mesh) {

@@ -281,12 +281,12 @@ static skg_status load(skg_context *context, const char *call, const char *path,
 
 skg_status skg_mesh_load_as(skg_context *context, const char *path, const skg_mesh_reading *reading,
                             skg_mesh **mesh) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, load(context, "skg_mesh_load_as", path, reading, mesh));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, load(context, "skg_mesh_load_as", path, reading, mesh));
 }
 
 skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh) {
     const skg_mesh_reading reading = {.size = sizeof reading, .unit_mm = unit_mm};
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, load(context, "skg_mesh_load", path, &reading, mesh));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, load(context, "skg_mesh_load", path, &reading, mesh));
 }

@@ -132,8 +132,8 @@ static skg_status create(skg_plan *plan, skg_part_table **table) {
 }
 
 skg_status skg_part_table_create(skg_plan *plan, skg_part_table **table) {
-    const skg_error_handler handler = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(handler, create(plan, table));
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, create(plan, table));
 }
 
 void skg_part_table_release(skg_part_table **table) {

@@ -37,8 +37,8 @@ static skg_status create(skg_context *context, skg_scene **scene) {
 }
 
 skg_status skg_scene_create(skg_context *context, skg_scene **scene) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, scene));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, scene));
 }
 
 skg_status skg_scene_retain(skg_scene *scene) {

@@ -109,8 +109,8 @@ cleanup:
 
 skg_status skg_scene_picture(skg_context *context, const skg_scene *scene, const skg_view *view,
                              const skg_look *look, uint8_t *rgba) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, draw(context, scene, view, look, rgba));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, draw(context, scene, view, look, rgba));
 }
 
 skg_status skg_scene_places_get(const skg_scene *scene, const skg_view *view, const skg_look *look,

@@ -152,7 +152,8 @@ START_TEST(a_job_that_is_not_done) {
     skg_plan_release(&plan);
     skg_scene_release(&scene);
     skg_context_release(&run_context);
-    ck_skg_fails(skg_job_wait(&jobs[1]), SKG_ERR_CANCELLED, "");
+    const skg_status status = skg_job_wait(&jobs[1]); /* it may have been done before it was cancelled */
+    ck_assert(status == SKG_OK || status == SKG_ERR_CANCELLED);
     ck_skg(skg_job_wait(&jobs[0]));
     ck_skg_fails(skg_job_wait(&jobs[0]), SKG_ERR_ARGUMENT, "skg_job_wait: no job");
     for (int64_t p = 0; p < parts; p++) {

@@ -87,8 +87,8 @@ static skg_status create(skg_context *context, const skg_body_options *options, 
 }
 
 skg_status skg_body_create(skg_context *context, const skg_body_options *options, skg_body **result) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, options, result));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, options, result));
 }
 
 static void free_organ(skg_body_organ *o) {

@@ -119,8 +119,8 @@ static skg_status create(skg_context *context, const skg_setup *setup, const skg
 
 skg_status skg_fit_create(skg_context *context, const skg_setup *setup, const skg_fit_options *options,
                           skg_fit **fit) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, setup, options, fit));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, setup, options, fit));
 }
 
 void skg_fit_release(skg_fit **fit) {

@@ -153,8 +153,8 @@ static skg_status create(skg_context *context, const skg_setup *setup, skg_motio
 }
 
 skg_status skg_motion_create(skg_context *context, const skg_setup *setup, skg_motion **result) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, setup, result));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, setup, result));
 }
 
 void skg_motion_release(skg_motion **motion) {

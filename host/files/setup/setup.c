@@ -248,8 +248,8 @@ static skg_status load(skg_context *context, const char *path, int64_t count, co
 
 skg_status skg_setup_load(skg_context *context, const char *path, int64_t count, const char *const *settings,
                           skg_setup **setup) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, load(context, path, count, settings, setup));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, load(context, path, count, settings, setup));
 }
 
 static skg_status create(skg_context *context, const skg_setup_source *source, skg_setup **setup) {
@@ -267,8 +267,8 @@ static skg_status create(skg_context *context, const skg_setup_source *source, s
 }
 
 skg_status skg_setup_create(skg_context *context, const skg_setup_source *source, skg_setup **setup) {
-    const skg_error_handler handler = skg_call_begin(context);
-    return skg_call_end(handler, create(context, source, setup));
+    const skg_call begun = skg_call_begin(context);
+    return skg_call_end(begun, create(context, source, setup));
 }
 
 void skg_setup_release(skg_setup **setup) {

@@ -90,8 +90,8 @@ cleanup:
 
 skg_status skg_scan_flat_fields_render(skg_plan *plan, const skg_scene *scene, skg_scan *scan,
                                        const skg_scan_run_options *options, int64_t count, void *images) {
-    const skg_error_handler handler = skg_plan_call_begin(plan);
-    return skg_call_end(handler, flat_fields(plan, scene, scan, options, count, images));
+    const skg_call begun = skg_plan_call_begin(plan);
+    return skg_call_end(begun, flat_fields(plan, scene, scan, options, count, images));
 }
 
 static skg_status dark_fields(const skg_plan *plan, const skg_scan *scan, const skg_scan_run_options *options,
@@ -125,6 +125,6 @@ static skg_status dark_fields(const skg_plan *plan, const skg_scan *scan, const 
 
 skg_status skg_scan_dark_fields_render(const skg_plan *plan, const skg_scan *scan,
                                        const skg_scan_run_options *options, int64_t count, void *images) {
-    const skg_error_handler handler = skg_plan_call_begin(plan);
-    return skg_call_end(handler, dark_fields(plan, scan, options, count, images));
+    const skg_call begun = skg_plan_call_begin(plan);
+    return skg_call_end(begun, dark_fields(plan, scan, options, count, images));
 }

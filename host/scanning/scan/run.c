@@ -145,8 +145,8 @@ static skg_status create(skg_plan *plan, skg_scan *scan, const skg_scan_run_opti
 
 skg_status skg_scan_run_create(skg_plan *plan, skg_scan *scan, const skg_scan_run_options *options,
                                skg_scan_run **result) {
-    const skg_error_handler handler = skg_plan_call_begin(plan);
-    return skg_call_end(handler, create(plan, scan, options, result));
+    const skg_call begun = skg_plan_call_begin(plan);
+    return skg_call_end(begun, create(plan, scan, options, result));
 }
 
 void skg_scan_run_release(skg_scan_run **run) {
