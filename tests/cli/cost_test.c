@@ -70,7 +70,7 @@ static void check_advice(json_t *study, size_t first, const char *extra) {
     json_t *advice;
     ck_assert_uint_eq(json_array_size(member(study, "advice")), 4);
     json_array_foreach(member(study, "advice"), index, advice) {
-        char reference[256];
+        char reference[1024];
         if (index < first) continue;
         json_t *rays = point_of(study, member(advice, "rays")), *whole = member(advice, "whole");
         json_t *setting = member(rays, "setting");
@@ -221,6 +221,37 @@ START_TEST(repair_of_an_open_mesh_is_swept) {
     ck_assert_int_eq(list_dial(study, "repair", "rms_open", rms), 3);
     ck_assert_double_gt(rms[0], rms[1]);
     ck_assert_double_gt(rms[1], 0);
+    check_advice(study, 3, bone);
+    json_decref(study);
+}
+END_TEST
+
+/* Two boxes of one mesh that share a third of their volume: united as the scene asks, and added, which its table and its sentence price. */
+START_TEST(a_union_has_its_price) {
+    static const char bone[] =
+        "--set Repair=union --set 'Samples.bone={\"Label\":\"bone\",\"Path\":\"boxes.obj\","
+        "\"Unit\":\"mm\",\"Material\":[\"HU\",900]}' "
+        "--set 'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'";
+    char boxes[2048] = "";
+    for (int k = 0, v = 1; k < 2; k++, v += 8) {
+        for (int n = 0; n < 8; n++)
+            sprintf(boxes + strlen(boxes), "v %d %d %d\n", n & 1 ? 6 : -6, (n & 2 ? 9 : -3) - 6 * k,
+                    n & 4 ? 6 : -6);
+        static const int quads[6][4] = {{0, 2, 3, 1}, {4, 5, 7, 6}, {0, 1, 5, 4},
+                                        {2, 6, 7, 3}, {0, 4, 6, 2}, {1, 3, 7, 5}};
+        for (int q = 0; q < 6; q++)
+            sprintf(boxes + strlen(boxes), "f %d %d %d %d\n", v + quads[q][0], v + quads[q][1],
+                    v + quads[q][2], v + quads[q][3]);
+    }
+    double worst[16];
+    write_text("boxes.obj", boxes);
+    ck_run(0, "cost 'small scene.json' --quick --within 3600 --json %s", bone);
+    json_t *study = said_json();
+    ck_assert_int_eq(list_dial(study, "repair", "max_open", worst), 2);
+    ck_assert_double_gt(worst[0], 0.01);
+    ck_assert(worst[1] == 0);
+    ck_assert_ptr_nonnull(
+        strstr(json_string_value(member(study, "summary")), "The union of components takes "));
     check_advice(study, 3, bone);
     json_decref(study);
 }
@@ -444,6 +475,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, errors_are_those_of_the_dials_and_advice_holds);
     tcase_add_test(tests, round_parts_are_swept);
     tcase_add_test(tests, repair_of_an_open_mesh_is_swept);
+    tcase_add_test(tests, a_union_has_its_price);
     tcase_add_test(tests, thorax_and_breath_are_swept);
     tcase_add_test(tests, table_csv_and_page_are_written);
     tcase_add_test(tests, advice_stops_at_a_tenth_of_the_noise);

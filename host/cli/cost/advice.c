@@ -46,11 +46,13 @@ static int choose_rays(const cost_study *study, double bar) {
     return fastest >= 0 ? fastest : best;
 }
 
-/* The first repair within a bar, otherwise the exact one; -1: no mesh is leaky. */
+/* The first repair within a bar, otherwise the best one; -1: there is nothing to repair or to unite. */
 static int choose_repair(const cost_study *study, double bar) {
     int best = -1;
     for (int i = 0; i < study->count; i++) { /* points stand in the order of their work */
-        if (study->points[i].reference != COST_OF_REPAIR) continue;
+        if (study->points[i].reference != COST_OF_REPAIR ||
+            cost_is_other_body(study, &study->points[i].setting))
+            continue;
         best = i;
         if (study->points[i].max_flat <= bar) return i;
     }
@@ -76,7 +78,7 @@ static cost_setting whole_of(const cost_study *study, const cost_advice *advice)
         setting.supersampling = study->points[advice->supersampling].setting.supersampling;
     if (advice->triangles >= 0) setting.meshing = study->points[advice->triangles].setting.meshing;
     if (advice->repair >= 0) setting.repair = study->points[advice->repair].setting.repair;
-    if (setting.repair == study->session.options.repair) setting.repair = -1;
+    if (setting.repair == cost_repair(study, &study->own)) setting.repair = -1;
     return setting;
 }
 

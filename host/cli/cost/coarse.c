@@ -48,7 +48,7 @@ static int choose_pair(const cost_study *study, int source, cost_setting *from, 
         to->supersampling *= 2;
         return 1;
     default:
-        to->repair = SKG_REPAIR_EXACT;
+        to->repair = cost_best_repair(study);
         return 1;
     }
 }

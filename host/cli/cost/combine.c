@@ -28,7 +28,8 @@ static void list(const cost_study *study, int reference, values *its) {
     *its = (values){0};
     for (int i = 0; i < study->count; i++) {
         const cost_point *point = &study->points[i];
-        if (point->reference != reference || point->state != COST_MEASURED || isnan(point->rms_flat))
+        if (point->reference != reference || point->state != COST_MEASURED || isnan(point->rms_flat) ||
+            cost_is_other_body(study, &point->setting))
             continue;
         const int dial = cost_changed_dial(study, &point->setting);
         /* Supersampling is measured with fewer source samples than the scene has. */

@@ -72,7 +72,11 @@ char *cost_command(const cost_study *study, const cost_setting *setting) {
     if (setting->samples > 0) fprintf(stream, " --set Source.Samples=%lld", (long long)setting->samples);
     if (setting->supersampling != study->own.supersampling)
         fprintf(stream, " --set Detector.Oversampling=%d", (int)setting->supersampling);
-    if (setting->repair >= 0) fprintf(stream, " --set Repair=%s", cost_repair_names[setting->repair]);
+    if (setting->repair >= COST_UNITE)
+        fprintf(stream, " --set 'Repair=[\"%s\",\"union\"]'",
+                cost_repair_names[setting->repair - COST_UNITE]);
+    else if (setting->repair >= 0)
+        fprintf(stream, " --set Repair=%s", cost_repair_names[setting->repair]);
     for (int64_t i = 0; meshing && i < meshing->setting_count; i++) {
         fputs(" --set", stream);
         put_word(stream, meshing->settings[i]);

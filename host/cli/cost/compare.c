@@ -75,7 +75,8 @@ int cost_compare(const cost_study *study, int64_t images, const double *image, c
 int cost_compare_shot(const cost_study *study, const double *image, cost_shot *shot) {
     const double *reference = study->references[COST_OF_ALL].image;
     double squares;
-    if (shot->small || !reference) return CLI_DONE; /* once is enough */
+    if (shot->small || !reference || cost_is_other_body(study, &shot->setting))
+        return CLI_DONE; /* once is enough */
     shot->total_max = worst_of_flat(study, study->pixels, image, reference, &squares);
     shot->total_rms = sqrt(squares / (double)study->pixels);
     shot->difference = shrink_difference(study, 1, image, reference);

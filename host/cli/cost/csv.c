@@ -18,7 +18,8 @@ static void put_setting(FILE *stream, const cost_study *study, const cost_settin
     fprintf(stream, "%s,%.6g,", cost_precision_name(setting), setting->tolerance);
     fprintf(stream, "%" PRId64 ",%" PRId64 ",%d,", setting->bins, setting->samples,
             (int)setting->supersampling);
-    fprintf(stream, "%s,%" PRId64 ",", study->has_leaky ? cost_repair_of(study, setting) : "",
+    fprintf(stream, "%s,%" PRId64 ",",
+            study->has_leaky || study->has_shells ? cost_repair_of(study, setting) : "",
             cost_triangles(study, setting));
     if (setting->relaxation < 0)
         fputs(",,", stream); /* empty: the setting has no breath */

@@ -25,7 +25,8 @@ static json_t *setting_json(const cost_study *study, const cost_setting *setting
                         setting->samples > 0 ? json_integer(setting->samples) : json_null());
     json_object_set_new(object, "supersampling", json_integer(setting->supersampling));
     json_object_set_new(object, "repair",
-                        study->has_leaky ? cli_json_text(cost_repair_of(study, setting)) : json_null());
+                        study->has_leaky || study->has_shells ? cli_json_text(cost_repair_of(study, setting))
+                                                              : json_null());
     json_object_set_new(object, "triangles", json_integer(cost_triangles(study, setting)));
     json_object_set_new(object, "relaxation", breathes ? json_integer(setting->relaxation) : json_null());
     json_object_set_new(object, "hysteresis", breathes ? json_real(setting->hysteresis) : json_null());

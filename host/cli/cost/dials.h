@@ -14,6 +14,9 @@ void cost_close(cost_study *study);
  * of it takes at most `max_ms`. */
 cost_setting cost_best_of_all(const cost_study *study, double max_ms);
 
+/* The repair that others are compared with. */
+int32_t cost_best_repair(const cost_study *study);
+
 /* Adds the points of all dials to the study, without measuring them, and the settings of their references. */
 void cost_choose_settings(cost_study *study);
 

@@ -53,7 +53,10 @@ skg_status cost_plan(cost_study *study, const cost_setting *setting, skg_scene *
     options.precision = setting->precision;
     options.tolerance = setting->tolerance;
     options.supersampling = setting->supersampling;
-    if (setting->repair >= 0) options.repair = setting->repair;
+    if (setting->repair >= 0) {
+        options.repair = setting->repair % COST_UNITE;
+        options.unite = setting->repair >= COST_UNITE;
+    }
     if (!study->noisy) {
         options.noise = 0;
         options.electronic_kev = options.quantum_step_kev = 0;

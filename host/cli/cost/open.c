@@ -23,6 +23,7 @@ static int look_at_scene(cost_study *study) {
     if (status == SKG_OK) status = skg_plan_channel_get(plan, 0, &channel);
     study->flat_field = channel.flat_field;
     study->has_leaky = report.leaky_parts > 0;
+    study->has_shells = options->unite != 0;
     study->triangles = report.triangles;
     study->has_spot = options->spot && options->spot->shape != SKG_SPOT_POINT && options->spot->grid == 0 &&
                       study->session.view.projection == SKG_PROJECTION_POINT;

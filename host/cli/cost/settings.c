@@ -132,12 +132,22 @@ static void add_supersampling(cost_study *study) {
     }
 }
 
-/* Repair of the pixels where the hits of a leaky mesh do not cancel, against the exact repair. */
+int32_t cost_best_repair(const cost_study *study) {
+    const int32_t own = study->session.options.repair;
+    return (study->has_leaky ? SKG_REPAIR_EXACT : own) + (study->has_shells ? COST_UNITE : 0);
+}
+
+/* Repair of the pixels where the hits of a leaky mesh do not cancel, against the exact repair; and whether components are united, if the
+ * scene has them united. */
 static void add_repair(cost_study *study) {
+    const int32_t best = cost_best_repair(study);
     cost_setting its = study->own;
-    for (its.repair = SKG_REPAIR_NONE; study->has_leaky && its.repair <= SKG_REPAIR_EXACT; its.repair++)
-        cost_add_point(study, COST_REPAIR, COST_OF_REPAIR, SOON, its);
-    its.repair = SKG_REPAIR_EXACT;
+    for (its.repair = SKG_REPAIR_NONE; its.repair <= best; its.repair++) {
+        const int is_own = its.repair % COST_UNITE == best % COST_UNITE;
+        if (study->has_leaky ? its.repair < COST_UNITE || is_own : study->has_shells && is_own)
+            cost_add_point(study, COST_REPAIR, COST_OF_REPAIR, SOON, its);
+    }
+    its.repair = best;
     study->references[COST_OF_REPAIR].setting = its;
 }
 
@@ -188,7 +198,7 @@ cost_setting cost_best_of_all(const cost_study *study, double max_ms) {
     const int64_t max_samples = study->quick ? 256 : 4096;
     cost_setting its = study->own;
     its.meshing = study->meshing_count - 1;
-    if (study->has_leaky) its.repair = SKG_REPAIR_EXACT;
+    if (study->has_leaky) its.repair = cost_best_repair(study);
     for (int grown = 1; grown;) {
         cost_setting more = its;
         grown = 0;

@@ -154,7 +154,7 @@ const char *cost_why_absent(const cost_study *study, int source) {
                    ? NULL
                    : "the source is a point or a parallel beam";
     case COST_SOURCE_REPAIR:
-        return study->has_leaky ? NULL : "no mesh is leaky";
+        return study->has_leaky || study->has_shells ? NULL : "no mesh is leaky";
     default:
         return NULL;
     }

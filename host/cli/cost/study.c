@@ -16,8 +16,13 @@ static const char *const dial_names[COST_DIALS + 1] = {
 const char *const cost_source_names[COST_SOURCES] = {"triangles", "precision",      "bins of the spectrum",
                                                      "tolerance", "source samples", "supersampling",
                                                      "repair",    "true surface",   "scatter"};
-const char *const cost_repair_names[3] = {
-    [SKG_REPAIR_NONE] = "none", [SKG_REPAIR_NEIGHBOURS] = "neighbours", [SKG_REPAIR_EXACT] = "exact"};
+const char *const cost_repair_names[2 * COST_UNITE] = {[SKG_REPAIR_NONE] = "none",
+                                                       [SKG_REPAIR_NEIGHBOURS] = "neighbours",
+                                                       [SKG_REPAIR_EXACT] = "exact",
+                                                       [SKG_REPAIR_NONE + COST_UNITE] = "none and union",
+                                                       [SKG_REPAIR_NEIGHBOURS + COST_UNITE] =
+                                                           "neighbours and union",
+                                                       [SKG_REPAIR_EXACT + COST_UNITE] = "exact and union"};
 const char *const cost_reference_names[COST_REFERENCES] = {
     "precision, tolerance, bins", "source samples",    "supersampling", "repair", "triangles",
     "relaxation, hysteresis",     "all dials together"};
@@ -40,12 +45,17 @@ const char *cost_dial_name(int dial) {
     return dial_names[dial];
 }
 
-static int32_t repair_of(const cost_study *study, const cost_setting *setting) {
-    return setting->repair >= 0 ? setting->repair : study->session.options.repair;
+int32_t cost_repair(const cost_study *study, const cost_setting *setting) {
+    const skg_plan_options *own = &study->session.options;
+    return setting->repair >= 0 ? setting->repair : own->repair + (own->unite ? COST_UNITE : 0);
+}
+
+int cost_is_other_body(const cost_study *study, const cost_setting *setting) {
+    return study->has_shells && cost_repair(study, setting) < COST_UNITE;
 }
 
 const char *cost_repair_of(const cost_study *study, const cost_setting *setting) {
-    return cost_repair_names[repair_of(study, setting)];
+    return cost_repair_names[cost_repair(study, setting)];
 }
 
 int64_t cost_triangles(const cost_study *study, const cost_setting *setting) {
@@ -55,7 +65,7 @@ int64_t cost_triangles(const cost_study *study, const cost_setting *setting) {
 int cost_is_same(const cost_study *study, const cost_setting *a, const cost_setting *b) {
     return a->precision == b->precision && a->supersampling == b->supersampling &&
            a->tolerance == b->tolerance && a->bins == b->bins && a->samples == b->samples &&
-           repair_of(study, a) == repair_of(study, b) && a->meshing == b->meshing &&
+           cost_repair(study, a) == cost_repair(study, b) && a->meshing == b->meshing &&
            a->relaxation == b->relaxation && a->hysteresis == b->hysteresis;
 }
 
@@ -66,7 +76,7 @@ int cost_changed_dial(const cost_study *study, const cost_setting *setting) {
                                      [COST_BINS] = setting->bins != own->bins,
                                      [COST_SAMPLES] = setting->samples != own->samples,
                                      [COST_SUPERSAMPLING] = setting->supersampling != own->supersampling,
-                                     [COST_REPAIR] = repair_of(study, setting) != repair_of(study, own),
+                                     [COST_REPAIR] = cost_repair(study, setting) != cost_repair(study, own),
                                      [COST_TRIANGLES] = setting->meshing != own->meshing,
                                      [COST_RELAXATION] = setting->relaxation != own->relaxation,
                                      [COST_HYSTERESIS] = setting->hysteresis != own->hysteresis};

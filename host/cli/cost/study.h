@@ -44,6 +44,7 @@ enum {
     COST_MESHINGS_MAX = 9,
     COST_TOLERANCES = 4
 };
+enum { COST_UNITE = 3 };          /* added to a repair: components are united */
 enum { COST_FINEST_BINS = 5000 }; /* the schema's largest: gives bins of 1 keV at every voltage */
 enum {
     COST_SEVERAL = COST_DIALS
@@ -55,7 +56,7 @@ typedef struct {
     int64_t bins;    /* MaxNumberOfEnergyBins of a tube; 0: as the scene has it */
     int64_t samples; /* of an extended source; 0: the source is a point or a grid */
     /* Negative: as the scene has it. */
-    int32_t repair, meshing; /* SKG_REPAIR_...; number in study->meshings */
+    int32_t repair, meshing; /* SKG_REPAIR_..., + COST_UNITE; number in study->meshings */
     int32_t relaxation;
     double hysteresis;
 } cost_setting;
@@ -169,7 +170,7 @@ typedef struct {
     int rays;   /* the fastest whose largest error is within the bar, otherwise the most accurate */
     /* The cheapest whose root mean square error is within the bar, otherwise the most accurate. */
     int samples, supersampling, triangles;
-    int repair; /* the cheapest whose largest error is within the bar, otherwise the exact one */
+    int repair; /* the cheapest whose largest error is within the bar, otherwise the best one */
     int rays_met, sampling_met; /* 1 or 0 */
     int whole_state;            /* COST_WHOLE_... */
     cost_point whole;           /* all of these together, against the best rays of the same number */
@@ -210,7 +211,7 @@ typedef struct {
     cost_setting own;  /* the scene's own setting */
     int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
     int has_processor_clock; /* 1: prices are processor times (clock.h) */
-    int has_tube, has_energies, has_spot, has_leaky, has_breath;
+    int has_tube, has_energies, has_spot, has_leaky, has_shells, has_breath;
     const skg_scatter *own_scatter; /* of the scene, whose images are computed without; NULL: it has none */
     cost_scattering scattering;
     int sensitive; /* 1: sensitivity is wanted */
@@ -258,7 +259,7 @@ typedef struct {
 } cost_study;
 
 extern const char *const cost_source_names[COST_SOURCES];
-extern const char *const cost_repair_names[3]; /* by SKG_REPAIR_ value */
+extern const char *const cost_repair_names[2 * COST_UNITE]; /* by the repair of a setting */
 extern const double cost_tolerances[COST_TOLERANCES];
 
 /* The dials that are compared with a reference: "precision, tolerance, bins". */
@@ -289,7 +290,11 @@ const char *cost_dial_name(int dial);
 void cost_describe_dial(const cost_study *study, const cost_setting *setting, int dial, char *text,
                         size_t size);
 
-/* The name of a setting's repair. */
+/* A setting's repair, which may be the scene's; and its name. */
+int32_t cost_repair(const cost_study *study, const cost_setting *setting);
+
+/* Whether a setting is priced and never recommended: components add where the scene unites them, which is another body. */
+int cost_is_other_body(const cost_study *study, const cost_setting *setting);
 const char *cost_repair_of(const cost_study *study, const cost_setting *setting);
 
 /* Triangles of a setting. */

@@ -206,6 +206,24 @@ static void state_here(cost_study *study) {
     cost_append(study->summary, sizeof study->summary, ".");
 }
 
+/* What it costs to unite components, which the scene asks for, and what images would be without. */
+static void price_union(cost_study *study) {
+    const cost_shot *here = &study->shots[study->here];
+    const int32_t apart = cost_repair(study, &study->own) - COST_UNITE;
+    char ms[64], percent[48];
+    for (int i = 0; study->has_shells && i < study->count; i++) {
+        const cost_point *point = &study->points[i];
+        if (point->reference != COST_OF_REPAIR || point->setting.repair != apart || point->shot < 0) continue;
+        const cost_shot *without = &study->shots[point->shot];
+        cost_append(study->summary, sizeof study->summary,
+                    " The union of components takes %s of it; without it the image differs by up to %s.",
+                    cost_ms(here->price_ms - without->price_ms,
+                            hypot(here->uncertainty_ms, without->uncertainty_ms), ms, sizeof ms),
+                    cost_percent(point->max_flat, percent, sizeof percent));
+        return;
+    }
+}
+
 void cost_summarise(cost_study *study) {
     const cost_shot *here = &study->shots[study->here];
     char percent[48];
@@ -214,6 +232,7 @@ void cost_summarise(cost_study *study) {
     if (study->buy >= 0 && study->shots[study->buy].price_ms < here->price_ms)
         study->saving = -1; /* it saves time as well */
     state_here(study);
+    price_union(study);
     name_largest(study);
     name_scatter(study);
     if (study->noise > 10 * here->total_rms) {
