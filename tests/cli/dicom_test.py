@@ -1,7 +1,9 @@
-"""DICOM files of `image` and `scan`, read back by pydicom, which shares nothing with the program that wrote them."""
+"""DICOM files of `image` and `scan`, read back by pydicom, which shares nothing with the program that wrote them; and those that
+`register` reads, among them what pydicom and DCMTK's compressors make of one."""
 
 import json
 import math
+import os
 import shutil
 import subprocess
 import sys
@@ -84,6 +86,93 @@ def check_scan(folder):
     assert len(list((folder / "films").iterdir())) == 3
 
 
+BODY = {
+    **SCENE,
+    "Source": {"Position": [0, -700, 0, "mm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "PhotonCount": 1000, "Unit": "keV"}]},
+    "Samples": [
+        {
+            "Label": "body",
+            "Cuboid": [7, 3, 2, "mm"],
+            "Material": ["mu", 0.5],
+            "Transform": [["Translation", 0.5, 0, 0.3, "mm"], ["Rotation", 20, 1, 2, 3]],
+        }
+    ],
+}
+
+
+def found(folder, file, *words):
+    run(folder, "register", "scene.json", "--image", file, "--part", "body", "-o", "found.json", "--quiet", "--json", *words)
+    scene = json.loads((folder / "found.json").read_text())
+    return np.array(scene["Samples"][0]["Transform"][-1][1:17] if scene["Samples"][0]["Transform"] else [], float)
+
+
+def written(folder, name, of, stored=None, **attributes):
+    """Another file, with other stored values and attributes."""
+    picture = pydicom.dcmread(folder / of)
+    for key, value in attributes.items():
+        if value is None:
+            delattr(picture, key)
+        else:
+            setattr(picture, key, value)
+    if stored is not None:
+        picture.PixelData = stored.tobytes()
+    picture.save_as(folder / name)
+    return name
+
+
+def check_register(folder):
+    """The same values in another file are the same search, but for the rounding of 16 bits."""
+    (folder / "truth.json").write_text(json.dumps(BODY))
+    BODY["Samples"][0]["Transform"][0][1] = 0.2
+    (folder / "scene.json").write_text(json.dumps(BODY))
+    run(folder, "image", "truth.json", "--quantity", "attenuation", "-o", "log.mha", "-o", "log.dcm")
+    run(folder, "image", "truth.json", "-o", "lin.mha", "-o", "lin.dcm")
+    right = found(folder, "log.mha")
+    assert right.size and np.isfinite(right).all(), right
+    near = {"atol": 2e-3}  # mm: 1/65535 of the attenuation is a 65535th of the body's edge, seen from all its pixels
+    assert np.allclose(found(folder, "log.dcm"), right, **near)
+    assert np.allclose(found(folder, "lin.dcm", "--flat", "60000"), found(folder, "lin.mha", "--flat", "60000"), **near)
+    for program in ("dcmcjpls", "dcmcrle"):
+        subprocess.run([program, folder / "log.dcm", folder / f"{program}.dcm"], check=True)
+        assert np.array_equal(found(folder, f"{program}.dcm"), found(folder, "log.dcm"))
+    # Twelve signed bits in the upper part of a word, and a picture of eight bits.
+    picture = pydicom.dcmread(folder / "log.dcm")
+    coarse = picture.pixel_array // 16
+    shifted = ((coarse.astype(np.int32) - 2048) * 16).astype("<i2")
+    signed = {"BitsStored": 12, "HighBit": 15, "PixelRepresentation": 1, "RescaleSlope": float(picture.RescaleSlope) * 16}
+    middle = float(picture.RescaleIntercept) + 2048 * 16 * float(picture.RescaleSlope)
+    twelve = written(folder, "twelve.dcm", "log.dcm", shifted, RescaleIntercept=float(f"{middle:.9g}"), **signed)
+    assert np.allclose(found(folder, twelve), right, atol=0.05)
+    bits = {"BitsAllocated": 8, "BitsStored": 8, "HighBit": 7, "RescaleSlope": float(f"{float(picture.RescaleSlope) * 256:.9g}")}
+    eight = written(folder, "eight.dcm", "log.dcm", (picture.pixel_array // 256).astype("u1"), **bits)
+    assert np.allclose(found(folder, eight), right, atol=0.2)
+    check_refusals(folder)
+
+
+def check_refusals(folder):
+    """What no number can be made of is said."""
+    def refused(file, *words):
+        return run(folder, "register", "scene.json", "--image", file, "--part", "body", "-o", "f.json", *words, code=3)
+
+    assert "to which base" in run(folder, "register", "scene.json", "--part", "body", "-o", "f.json", "--image",
+                                  written(folder, "a1.dcm", "log.dcm", Manufacturer="Other"))
+    assert "rise with" in refused(written(folder, "a2.dcm", "log.dcm", PixelIntensityRelationshipSign=1, Manufacturer="Other"))
+    assert "fall with" in refused(written(folder, "a3.dcm", "lin.dcm", PixelIntensityRelationshipSign=-1))
+    assert "in colour" in refused(written(folder, "a4.dcm", "lin.dcm", SamplesPerPixel=3))
+    assert "fewer pixels" in refused(written(folder, "a5.dcm", "lin.dcm", np.zeros(600, "<u2")))
+    assert "has no Rows" in refused(written(folder, "a6.dcm", "lin.dcm", Rows=None))
+    assert "29 x 41" in refused(written(folder, "a7.dcm", "lin.dcm", Rows=41, Columns=29))
+    (folder / "a8.dcm").write_text("no picture")
+    assert "no DICOM file" in refused("a8.dcm")
+    assert "cannot be read" in refused("a9.dcm")
+
+
+with tempfile.TemporaryDirectory() as name:
+    folder = Path(name)
+    (folder / "temporary").mkdir()
+    os.environ["TMPDIR"] = str(folder / "temporary")
+    check_register(folder)
+    assert not list((folder / "temporary").iterdir())
 with tempfile.TemporaryDirectory() as name:
     folder = Path(name)
     (folder / "scene.json").write_text(json.dumps(SCENE))

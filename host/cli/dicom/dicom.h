@@ -1,4 +1,4 @@
-/* Pictures as DICOM files (Computed Radiography Image Storage) by the program dump2dcm of DCMTK. Functions that return int return an
+/* Pictures as DICOM files (Computed Radiography Image Storage) by the programs of DCMTK. Functions that return int return an
  * exit status and print the error. */
 #ifndef SKG_CLI_DICOM_H
 #define SKG_CLI_DICOM_H
@@ -25,6 +25,13 @@ int cli_dicom_check(const char *path);
  *
  * step   result: the slope, which is at most the picture's range / 65535; may be NULL */
 int cli_dicom_save(const skg_picture *picture, const cli_dicom_facts *facts, const char *path, double *step);
+
+/* Reads a frame of a grey DICOM file as numbers (stored * slope + intercept), compressed by JPEG, JPEG-LS or run lengths, or not.
+ *
+ * page       0 <= page < contents->pages
+ * contents   prepared with skg_picture_contents_init; its quantity is -1 where the file does not say it
+ * values     [rows][columns]; NULL: only the contents */
+int cli_dicom_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
 
 /* Of a scene: kvp and patient_mm. */
 skg_status cli_dicom_facts_of(const skg_scene *scene, const skg_spectrum *spectrum, const skg_view *view,

@@ -3,7 +3,7 @@
 
 const cli_flag cli_flag_register_image = {
     "--image", "FILE[@K]",
-    "A radiograph: .mha, .mhd, .tif or .png. K is the projection of the scene's Scan that it was taken from, and the page of a file that "
+    "A radiograph: .mha, .mhd, .tif, .png or .dcm. K is the projection of the scene's Scan that it was taken from, and the page of a file that "
     "has several; without it the view is that of the scene's Source and Detector. May be given several times.",
     NULL, CLI_NAMES_FILE};
 const cli_flag cli_flag_register_part = {

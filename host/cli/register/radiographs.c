@@ -2,6 +2,7 @@
 #include "register/work.h"
 
 #include "common/say.h"
+#include "dicom/dicom.h"
 
 #include <inttypes.h>
 #include <stdlib.h>
@@ -48,13 +49,21 @@ static int find_view(const register_work *work, register_image *image) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
+/* values: NULL: only what the file holds. */
+static int read_file(const char *path, int64_t page, skg_picture_contents *contents, double *values) {
+    if (cli_dicom_is(path)) return cli_dicom_read(path, page, contents, values);
+    const skg_status status =
+        values ? skg_picture_load(path, page, values) : skg_picture_contents_get(path, contents);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
 /* Reads an image that has to have the size of the view. page: of a file that has several; otherwise its only one. */
 static int read_values(const char *path, const skg_view *view, int64_t page, double **values,
                        int32_t *quantity) {
     skg_picture_contents contents;
     skg_picture_contents_init(&contents);
-    skg_status status = skg_picture_contents_get(path, &contents);
-    if (status != SKG_OK) return cli_fail(status);
+    const int exit_status = read_file(path, 0, &contents, NULL);
+    if (exit_status != CLI_DONE) return exit_status;
     if (contents.columns != view->columns || contents.rows != view->rows)
         return cli_error(CLI_INPUT,
                          "%s: has %" PRId64 " x %" PRId64 " pixels, and its view has %" PRId64 " x %" PRId64
@@ -66,9 +75,8 @@ static int read_values(const char *path, const skg_view *view, int64_t page, dou
                          contents.pages);
     *values = malloc((size_t)(view->columns * view->rows) * sizeof **values);
     if (!*values) return cli_error(CLI_DEVICE, "out of host memory");
-    status = skg_picture_load(path, contents.pages > 1 ? page : 0, *values);
     if (quantity) *quantity = contents.quantity;
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+    return read_file(path, contents.pages > 1 ? page : 0, &contents, *values);
 }
 
 static int count_values(const cli_arguments *arguments, const cli_flag *flag) {
