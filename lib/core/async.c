@@ -10,6 +10,7 @@ static void *run(void *given) {
 }
 
 void skg_async_begin(skg_async *async, void (*work)(void *user), void *user) {
+    SKG_ASSERT(!async->begun);
     *async = (skg_async){.work = work, .user = user, .begun = 1};
     async->has_thread = skg_thread_limit() > 1 && skg_thread_start(&async->thread, run, async) == 0;
 }

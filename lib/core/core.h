@@ -39,6 +39,15 @@ void skg_one_line(char *sentence);
         if (status != SKG_OK) goto cleanup;                                                                  \
     } while (0)
 
+/* A precondition of a private call: what its comment asks of the caller, and no input can break. Builds with SKG_ASSERTIONS, as
+ * ./check's, end the process with the place where it does not hold; in others the condition is read and not computed. */
+#ifdef SKG_ASSERTIONS
+_Noreturn void skg_assertion_failed(const char *condition, const char *file, int line);
+#define SKG_ASSERT(condition) ((condition) ? (void)0 : skg_assertion_failed(#condition, __FILE__, __LINE__))
+#else
+#define SKG_ASSERT(condition) ((void)sizeof(!(condition)))
+#endif
+
 /* Stores the address of count * size zeroed bytes in the pointer at pointer_address, which may be of any object type.
  * The product is checked. A count of 0 gives a pointer that can be freed. what: for the message. */
 skg_status skg_alloc(int64_t count, size_t size, const char *what, void *pointer_address);

@@ -3,6 +3,7 @@
 
 #include <stdarg.h>
 #include <stdio.h>
+#include <stdlib.h>
 
 /* Long enough for an OpenCL build log of ordinary length; longer ones are cut at the end. */
 static _Thread_local char last_error[16384];
@@ -39,6 +40,13 @@ void skg_one_line(char *sentence) {
     for (; *sentence; sentence++)
         if ((unsigned char)*sentence < ' ' || *sentence == 0x7f) *sentence = '?';
 }
+
+#ifdef SKG_ASSERTIONS
+void skg_assertion_failed(const char *condition, const char *file, int line) {
+    fprintf(stderr, "%s:%d: %s does not hold\n", file, line, condition);
+    abort();
+}
+#endif
 
 skg_status skg_fail(skg_status status, const char *format, ...) {
     /* The arguments may quote the last error, so the sentence is formatted in a buffer of its own. */

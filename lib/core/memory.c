@@ -63,9 +63,13 @@ void skg_refs_init(skg_refs *refs) {
 }
 
 void skg_ref(skg_refs *refs) {
-    atomic_fetch_add_explicit(&refs->owners, 1, memory_order_relaxed);
+    const int before = atomic_fetch_add_explicit(&refs->owners, 1, memory_order_relaxed);
+    SKG_ASSERT(before > 0);
+    (void)before;
 }
 
 int skg_unref(skg_refs *refs) {
-    return atomic_fetch_sub_explicit(&refs->owners, 1, memory_order_acq_rel) == 1;
+    const int before = atomic_fetch_sub_explicit(&refs->owners, 1, memory_order_acq_rel);
+    SKG_ASSERT(before > 0);
+    return before == 1;
 }

@@ -59,6 +59,7 @@ int skg_turn_take(skg_turn *turn, const int32_t *stop) {
 void skg_turn_give(skg_turn *turn) {
     if (!skg_turn_is_here(turn)) return;
     pthread_mutex_lock(&turn->lock);
+    SKG_ASSERT(turn->depth > 0 && pthread_equal(turn->owner, pthread_self()));
     if (--turn->depth == 0) pthread_cond_broadcast(&turn->given);
     pthread_mutex_unlock(&turn->lock);
 }

@@ -44,6 +44,7 @@ cleanup:
 }
 
 skg_status skg_job_divide(skg_job *job, int64_t steps) {
+    SKG_ASSERT(job->enqueued == 0 && steps >= 1);
     job->steps = steps;
     return skg_staging_take(&job->staging, job->count * steps, sizeof *job->ends, "events", &job->ends);
 }

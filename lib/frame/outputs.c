@@ -171,6 +171,7 @@ void skg_frame_output_release(skg_frame_output *output) {
 skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view *view, skg_machine *machine,
                                   int64_t frame, skg_image_place *place) {
     const skg_output *to = &output->to;
+    SKG_ASSERT(frame >= 0 && view->rows > 0 && view->columns > 0);
     *place = (skg_image_place){.memory = to->buffer,
                                .output_double = to->type == SKG_TYPE_FLOAT64,
                                .offset = output->first + frame * to->frame_stride,

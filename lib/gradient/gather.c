@@ -173,6 +173,7 @@ skg_status skg_gather_batches(const skg_gather_run *run) {
 skg_status skg_gather_clear(const skg_gather_run *run, int64_t first, int64_t end) {
     const size_t size = sizeof(int64_t);
     const cl_int none = 0;
+    SKG_ASSERT(0 <= first && first <= end);
     SKG_TRY(skg_gather_reserve(run, &run->memory->moments, end * (int64_t)size));
     if (first < end)
         SKG_CL_TRY(clEnqueueFillBuffer(run->context->device->queue, run->memory->moments.memory, &none,

@@ -97,6 +97,7 @@ skg_status skg_mesh_layout_part(const skg_mesh *mesh, skg_mesh_layout *layout) {
     skg_status status = SKG_OK;
     int32_t sorted = 0, *of = NULL;
     const int64_t vertices = layout->vertices + layout->copies;
+    SKG_ASSERT(!layout->corners && (layout->source || layout->copies == 0));
     SKG_TRY_CLEANUP(skg_alloc(3 * mesh->triangles, sizeof *layout->corners, mesh->name, &layout->corners));
     SKG_TRY_CLEANUP(skg_alloc(vertices, sizeof *of, mesh->name, &of));
     SKG_TRY_CLEANUP(skg_mesh_sorted_corners(mesh, layout->corners, &sorted));

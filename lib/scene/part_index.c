@@ -26,6 +26,7 @@ skg_status skg_part_index_reserve(skg_part_index *index) {
 
 void skg_part_index_add(skg_part_index *index, uint64_t hash, int64_t part) {
     int64_t step = 0;
+    SKG_ASSERT(2 * (index->used + 1) <= index->capacity); /* else the search for a free slot need not end */
     while (index->slots[slot_of(index, hash, step)].part >= 0) step++;
     index->slots[slot_of(index, hash, step)] = (skg_part_slot){hash, part};
     index->used++;

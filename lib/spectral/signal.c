@@ -6,6 +6,7 @@
 skg_status skg_signal_oblique_get(const skg_plan_options *options, double energy_kev, double oblique,
                                   double *signal) {
     const int counts = skg_quantity_counts(options);
+    SKG_ASSERT(oblique >= 1);
     *signal = counts ? 1 : energy_kev;
     if (!options->response) return SKG_OK;
     return skg_response_get(options->response, energy_kev, oblique, counts ? NULL : signal,

@@ -152,21 +152,27 @@ static int is_first(const skg_attenuator *attenuator, const kernel_key *key) {
     return is_same(key, &first) && skg_kernels_are_first(attenuator->context, &key->options);
 }
 
+enum { GENERAL = 1, WEIGHED = 2 };
+
 /* weighed: 0, or with the kernel skg_weights: its option SKG_WEIGHED. */
 static skg_status get_files(const skg_attenuator *attenuator, const kernel_key *key, int64_t weighed,
                             cl_program *program) {
+    static const struct {
+        const char *name;
+        int of; /* GENERAL: noise and shades; WEIGHED: weights; 0: any */
+    } all[] = {{"exponential.clh", 0},  {"random.clh", GENERAL}, {"noise.clh", GENERAL},
+               {"shades.clh", GENERAL}, {"planes.clh", 0},       {"quantum.clh", GENERAL},
+               {"attenuate.cl", 0},     {"weights.cl", WEIGHED}};
+    enum { FILES = sizeof all / sizeof *all };
     skg_define defines[DEFINE_COUNT + 1];
-    const int64_t general = key->defines[DEFINE_GENERAL].value;
-    const char *files[8] = {"exponential.clh"};
-    int count = 1;
-    if (general) files[count++] = "random.clh", files[count++] = "noise.clh", files[count++] = "shades.clh";
-    files[count++] = "planes.clh";
-    if (general) files[count++] = "quantum.clh";
-    files[count++] = "attenuate.cl";
+    const char *files[FILES];
+    int count = 0;
+    const int has = (key->defines[DEFINE_GENERAL].value ? GENERAL : 0) | (weighed ? WEIGHED : 0);
+    for (int f = 0; f < FILES; f++)
+        if ((all[f].of & has) == all[f].of) files[count++] = all[f].name;
     if (weighed == 0)
         return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(key->defines),
                                program);
-    files[count++] = "weights.cl";
     memcpy(defines, key->defines, sizeof key->defines);
     defines[DEFINE_COUNT] = (skg_define){"SKG_WEIGHED", weighed};
     return skg_kernels_get(attenuator->context, &key->options, count, files, SKG_DEFINES(defines), program);

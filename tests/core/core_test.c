@@ -6,6 +6,7 @@
 #include "core/text.h"
 #include "suite.h"
 
+#include <signal.h>
 #include <string.h>
 #include <sys/wait.h>
 #include <unistd.h>
@@ -257,7 +258,23 @@ START_TEST(arrays_step_by_their_first_element) {
 }
 END_TEST
 
+#ifdef SKG_ASSERTIONS
+/* An owner too many ends the process, instead of a second free later. */
+START_TEST(a_precondition_that_does_not_hold) {
+    skg_refs refs;
+    skg_refs_init(&refs);
+    skg_ref(&refs);
+    ck_assert_int_eq(skg_unref(&refs), 0);
+    ck_assert_int_eq(skg_unref(&refs), 1);
+    (void)skg_unref(&refs);
+}
+END_TEST
+#endif
+
 static void add_tests(TCase *tests) {
+#ifdef SKG_ASSERTIONS
+    tcase_add_test_raise_signal(tests, a_precondition_that_does_not_hold, SIGABRT);
+#endif
     tcase_add_test(tests, every_status_has_name_and_text);
     tcase_add_test(tests, errors_are_failures_and_answers_are_none);
     tcase_add_test(tests, last_error_may_quote_itself);
