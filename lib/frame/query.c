@@ -20,8 +20,10 @@ void skg_plan_report_init_sized(void *report, int32_t size) {
 
 skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report) {
     SKG_NEEDS(plan);
+    skg_turn_take(plan->context->turn, NULL); /* frames that are handed over meanwhile write it */
     skg_plan_report ours = plan->outcome.report;
     ours.device_bytes = skg_machine_bytes(&plan->machine) + skg_scatterer_bytes(&plan->scatterer);
+    skg_turn_give(plan->context->turn);
     return skg_struct_write(&ours, sizeof ours, "skg_plan_report", report);
 }
 

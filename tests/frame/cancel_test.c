@@ -342,6 +342,9 @@ START_TEST(nobody_asks) {
     for (int64_t i = 0; i < 3 * vertices; i++) positions[i] = 1.5 * positions[i] + 100;
     ck_skg(skg_mesh_positions_set(ball, positions, 0));
     free(positions);
+    skg_plan_report report;
+    skg_plan_report_init(&report);
+    ck_skg(skg_plan_report_get(_i ? slow : plan, &report));
     look_only(_i ? pixels + PIXELS - 1 : pixels + (frames - 1) * PIXELS);
     ck_skg(skg_job_wait(&job));
     if (_i)
