@@ -117,6 +117,9 @@ skg_status skg_registration_image_add(skg_registration *registration, const skg_
     snprintf(image.name, sizeof image.name, "%s", given.name ? given.name : "");
     if (!given.name) snprintf(image.name, sizeof image.name, "radiograph %" PRId64, r->image_count + 1);
     SKG_TRY(skg_view_check(&image.view));
+    if (image.view.radius > 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "a radiograph on a curved detector is not registered; give one on a flat detector");
     if (image.view.rows < LEAST_SIDE || image.view.columns < LEAST_SIDE)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "%s: %" PRId64 " x %" PRId64 " pixels; a registration needs %d along each side",

@@ -2,6 +2,7 @@
 #include "show/drawing.h"
 
 #include "core/maths.h"
+#include "scene/curve.h"
 
 #include <cglm/cglm.h>
 
@@ -36,9 +37,13 @@ static void frame_point(frame *f, const double point[3]) {
     f->far = fmin(f->far, z);
 }
 
-void skg_show_detector_corner(const skg_view *view, int column, int row, double corner[3]) {
-    skg_add_scaled(view->centre, (column - 0.5) * (double)view->columns, view->column_step, corner);
-    skg_add_scaled(corner, (row - 0.5) * (double)view->rows, view->row_step, corner);
+void skg_show_detector_place(const skg_view *view, double column, double row, double place[3]) {
+    if (view->radius > 0) {
+        skg_view_pixel(view, column * (double)view->columns - 0.5, row * (double)view->rows - 0.5, place);
+        return;
+    }
+    skg_add_scaled(view->centre, (column - 0.5) * (double)view->columns, view->column_step, place);
+    skg_add_scaled(place, (row - 0.5) * (double)view->rows, view->row_step, place);
 }
 
 void skg_show_beam_start(const skg_view *view, const double low[3], const double high[3], const double at[3],
@@ -61,7 +66,10 @@ void skg_show_beam_start(const skg_view *view, const double low[3], const double
 }
 
 skg_status skg_show_beam_corners(const skg_view *view, const skg_look *look, double corners[4][3]) {
-    return skg_collimation_corners_get(look->collimation, view, 0, corners[0]);
+    static const double turn[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
+    if (!(view->radius > 0)) return skg_collimation_corners_get(look->collimation, view, 0, corners[0]);
+    for (int i = 0; i < 4; i++) skg_show_detector_place(view, turn[i][0], turn[i][1], corners[i]);
+    return SKG_OK;
 }
 
 /* A direction of length 1 across another one of length 1: `wanted` if that is across enough, otherwise any. */
@@ -114,7 +122,7 @@ static void frame_everything(frame *f, const skg_view *view, const skg_look *loo
         frame_point(f, point);
     }
     for (int corner = 0; corner < 4; corner++) {
-        skg_show_detector_corner(view, corner & 1, corner >> 1, point);
+        skg_show_detector_place(view, corner & 1, corner >> 1, point);
         skg_show_beam_start(view, low, high, beam[corner], start);
         frame_point(f, point);
         frame_point(f, beam[corner]);
