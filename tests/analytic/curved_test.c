@@ -267,6 +267,73 @@ START_TEST(effects_of_the_beam) {
 }
 END_TEST
 
+/* Heel effect and bow-tie filter differ from ray to ray, and are counted from the central ray: a flat detector about the same middle, whose
+ * last column has the rays of column k. angle: of the column on a cylinder about the source; far: from the source. */
+static skg_view flat_of(const skg_view *view, double angle, double far) {
+    skg_view flat = *view;
+    flat.radius = 0, flat.columns = 3;
+    for (int n = 0; n < 3; n++) {
+        flat.column_step[n] = view->column_step[n] / 4.1 * far * tan(angle); /* 4.1 mm: a column */
+        flat.row_step[n] = view->row_step[n] / cos(angle);
+    }
+    return flat;
+}
+
+static skg_plan *filtered_plan(const skg_view *view, int has_heel) {
+    static const double angles[5] = {-30, -8, 0, 8, 30}, paths[5] = {30, 9, 4, 9, 30};
+    skg_plan_options options;
+    skg_spectrum *spectrum = NULL;
+    skg_plan *plan = NULL;
+    skg_heel heel;
+    skg_bowtie bowtie;
+    solid box = solid_box(90, 70, 60);
+    skg_scene *scene = run_scene(&box, NULL);
+    skg_plan_options_init(&options);
+    skg_heel_init(&heel);
+    heel.kvp = 90, heel.angle_deg = 25, heel.direction[0] = 1, heel.direction[1] = 0.3;
+    skg_bowtie_init(&bowtie);
+    ck_skg(skg_material_create_named("Al", &bowtie.material));
+    bowtie.count = 5, bowtie.angle_deg = angles, bowtie.path_mm = paths;
+    options.bowtie = &bowtie, options.heel = has_heel ? &heel : NULL;
+    ck_skg(skg_spectrum_create_mono(70, 1, &spectrum));
+    ck_skg(skg_plan_create(run_context, scene, view, spectrum, &options, &plan));
+    skg_spectrum_release(&spectrum);
+    skg_material_release(&bowtie.material);
+    skg_scene_release(&scene);
+    solid_free(&box);
+    return plan;
+}
+
+START_TEST(filters_in_the_beam) {
+    const double far = 1200;
+    skg_view view = view_of(&geometries[0], _i % 2);
+    for (int k = 0; k < 3; k++) /* the axis goes through the source: it is straight above the middle */
+        view.source[k] = view.centre[k];
+    const double *c = view.column_step, *r = view.row_step;
+    for (int k = 0; k < 3; k++) {
+        const int a = (k + 1) % 3, b = (k + 2) % 3;
+        view.source[k] -= (_i % 2 ? -1 : 1) * far * (c[a] * r[b] - c[b] * r[a]) / (4.1 * 3.3);
+    }
+    skg_plan *plan = filtered_plan(&view, _i / 2);
+    double *got = run_image(plan, &view);
+    for (int64_t k = 1; k < COLUMNS; k += 8) {
+        const double angle = ((double)k - (COLUMNS - 1) / 2.0) * 4.1 / far;
+        const skg_view flat = flat_of(&view, angle, far);
+        skg_plan *other = filtered_plan(&flat, _i / 2);
+        double *want = run_image(other, &flat);
+        for (int64_t row = 0; row < ROWS; row++)
+            /* Polynomials of the heel effect are fitted to the angles of each detector, to 1e-4 of the intensity. */
+            ck_assert_msg(fabs(got[row * COLUMNS + k] - want[row * 3 + 2]) <= 3e-4 * want[row * 3 + 2],
+                          "column %d, row %d: %.9g instead of %.9g", (int)k, (int)row, got[row * COLUMNS + k],
+                          want[row * 3 + 2]);
+        free(want);
+        skg_plan_release(&other);
+    }
+    free(got);
+    skg_plan_release(&plan);
+}
+END_TEST
+
 START_TEST(refusals) {
     skg_view view = view_of(&geometries[0], 0), other = view;
     view.radius = -5;
@@ -315,6 +382,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, soup);
     tcase_add_test(tests, no_seams);
     tcase_add_test(tests, effects_of_the_beam);
+    tcase_add_loop_test(tests, filters_in_the_beam, 0, 4);
     tcase_add_test(tests, refusals);
 }
 
