@@ -66,10 +66,7 @@ void skg_show_beam_start(const skg_view *view, const double low[3], const double
 }
 
 skg_status skg_show_beam_corners(const skg_view *view, const skg_look *look, double corners[4][3]) {
-    static const double turn[4][2] = {{0, 0}, {1, 0}, {1, 1}, {0, 1}};
-    if (!(view->radius > 0)) return skg_collimation_corners_get(look->collimation, view, 0, corners[0]);
-    for (int i = 0; i < 4; i++) skg_show_detector_place(view, turn[i][0], turn[i][1], corners[i]);
-    return SKG_OK;
+    return skg_collimation_corners_get(look->collimation, view, 0, corners[0]);
 }
 
 /* A direction of length 1 across another one of length 1: `wanted` if that is across enough, otherwise any. */
