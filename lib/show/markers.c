@@ -217,7 +217,7 @@ static skg_status add_detector(skg_show_model *model, const skg_view *view, cons
         const int64_t first = model->vertices;
         double at[4][2], corner[3];
         for (int i = 0; i < 4; i++) {
-            at[i][0] = (s + turn[i][0]) / strips, at[i][1] = turn[i][1];
+            at[i][0] = (double)(s + turn[i][0]) / strips, at[i][1] = turn[i][1];
             skg_show_detector_place(view, at[i][0], at[i][1], corner);
             skg_show_model_add_vertex(model, corner);
         }

@@ -199,6 +199,27 @@ START_TEST(filters_in_the_beam) {
 }
 END_TEST
 
+/* The corners of the field are those of the detector, on the cylinder: here 1200 mm about the source, 61 rows of 2 mm high. */
+START_TEST(corners_of_the_field) {
+    skg_view view = run_view(61, 2);
+    double corners[12];
+    view.radius = 1200;
+    ck_skg(skg_collimation_corners_get(NULL, &view, 0, corners));
+    for (int c = 0; c < 4; c++) {
+        const double *at = corners + 3 * c, angle = 61 / 1200.0;
+        ck_assert_double_eq_tol(at[0], (c == 1 || c == 2 ? 1200 : -1200) * sin(angle),
+                                1e-9);                                  /* roundings of 2^-53 */
+        ck_assert_double_eq_tol(at[1], c >= 2 ? 61 : -61, 1e-9);        /* the same */
+        ck_assert_double_eq_tol(at[2], 1200 * cos(angle) - 1000, 1e-9); /* the same */
+    }
+    skg_collimation jaws;
+    skg_collimation_init(&jaws);
+    jaws.kind = SKG_COLLIMATION_DETECTOR, jaws.margin_mm = -5;
+    ck_skg_fails(skg_collimation_corners_get(&jaws, &view, 0, corners), SKG_ERR_UNSUPPORTED,
+                 "curved detector");
+}
+END_TEST
+
 START_TEST(refusals) {
     skg_view view = view_of(&geometries[0], 0), other = view;
     view.radius = -5;
@@ -245,6 +266,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, effects_of_the_beam);
     tcase_add_test(tests, finer_rays_and_holes);
     tcase_add_loop_test(tests, filters_in_the_beam, 0, 4);
+    tcase_add_test(tests, corners_of_the_field);
     tcase_add_test(tests, refusals);
 }
 
