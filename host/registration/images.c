@@ -113,10 +113,15 @@ skg_status skg_registration_image_add(skg_registration *registration, const skg_
     if (r->image_count == REG_IMAGES)
         return skg_fail(SKG_ERR_UNSUPPORTED, "registration: at most %d radiographs can be registered at once",
                         REG_IMAGES);
-    reg_image image = {.view = *given.view};
+    reg_image image = {0};
+    skg_view_init(&image.view);
     snprintf(image.name, sizeof image.name, "%s", given.name ? given.name : "");
     if (!given.name) snprintf(image.name, sizeof image.name, "radiograph %" PRId64, r->image_count + 1);
-    SKG_TRY(skg_view_check(&image.view));
+    SKG_TRY(skg_view_check(given.view));
+    SKG_TRY(skg_struct_read(given.view, "skg_view", &image.view, sizeof image.view));
+    if (image.view.radius > 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "a radiograph on a curved detector is not registered; give one on a flat detector");
     if (image.view.rows < LEAST_SIDE || image.view.columns < LEAST_SIDE)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "%s: %" PRId64 " x %" PRId64 " pixels; a registration needs %d along each side",

@@ -201,8 +201,8 @@ static skg_realv skg_flat_field(const skg_strip *strip, const skg_realv *amounts
 static skg_realv skg_factor_v(const skg_strip *strip, int r) {
     const skg_realv factor = (skg_realv)(strip->args.factor);
     if (!strip->args.falloff) return factor;
-    const skg_realv near =
-        strip->args.foot / skg_ray_lengths_v(&strip->args.ray, strip->column + r * SKG_WIDE, strip->row);
+    const skg_real foot = SKG_CURVED ? SKG_LINES_FALL(strip) : strip->args.foot;
+    const skg_realv near = foot / skg_lengths_of(strip, strip->column + r * SKG_WIDE);
     return near * near * near * factor;
 }
 
@@ -278,6 +278,22 @@ static void skg_collimate(const skg_strip *strip, skg_pixels *pixels) {
     }
 }
 
+#if SKG_CURVED
+/* Rows of the raster are columns of the image, whose pixels lie apart. */
+static void skg_show_apart(const skg_realv *values, const skg_strip *strip, const skg_storing *storing, int channel) {
+    const size_t step = (size_t)strip->args.image.row_stride;
+    __global skg_out *place = strip->output + strip->args.image.offset + channel * strip->args.image.channel_stride +
+                              strip->row + (size_t)strip->column * step;
+    const int pixels = strip->args.layout.columns - strip->column;
+    for (int r = 0; r * SKG_WIDE < pixels && r < SKG_RUNS; r++) {
+        skg_out lanes[SKG_WIDE];
+        skg_of_image(values[r], storing->half_unit, lanes);
+        for (int k = 0; k < min(pixels - r * SKG_WIDE, SKG_WIDE); k++, place += step)
+            *place = storing->add ? *place + lanes[k] : lanes[k];
+    }
+}
+#endif
+
 /* Writes the values of a channel of the runs. */
 static void skg_show_channel(const skg_strip *strip, const skg_realv *values, int channel) {
     __global skg_out *place = strip->output + strip->args.image.offset + channel * strip->args.image.channel_stride +
@@ -285,7 +301,12 @@ static void skg_show_channel(const skg_strip *strip, const skg_realv *values, in
     const int left = strip->args.layout.columns - strip->column;
     const skg_storing storing = skg_storing_of(strip);
     skg_count_infinite(values, storing.half_unit, left, strip->negative + 2);
-#if SKG_FINE > 1
+#if SKG_CURVED
+    skg_realv kept[SKG_RUNS];
+    SKG_EACH_RUN kept[r] = values[r];
+    (void)place;
+    skg_show_apart(kept, strip, &storing, channel);
+#elif SKG_FINE > 1
     skg_show_rays(values, storing, place, strip->row % SKG_FINE, left / SKG_FINE);
 #else
     skg_show(values, storing, place, left);
@@ -368,7 +389,7 @@ SKG_APART void skg_attenuate_strip(const skg_strip *whole) {
  * lists          [args.sums accumulators][summed planes]: a unit of accumulator s adds lists[s][p] to plane p
  * range          [planes][2] mm: negative[1] counts the pixels that have a plane outside its range; NULL unless args.ranged
  * polynomials    [shades of heel and oblique scintillator][SKG_TERMS] coefficients of 1, z, z^2, ...
- * tables         of bow-tie and grid (lib/spectral/shading.h)
+ * tables         of bow-tie and grid (lib/spectral/shading.h); of a curved detector, its lines stand before them
  * negative       negative[0] counts the pixels in which the power of two of the first node exceeds `args.limit` (the exponent
  *                is below -limit): more was subtracted for children than their parent has there
  *                negative[2] counts the values that are not finite
@@ -393,6 +414,10 @@ __kernel void skg_attenuate(skg_attenuate_args args, __global const skg_sum *cop
     strip.range = range;
     strip.polynomials = polynomials;
     strip.tables = tables;
+#if SKG_CURVED
+    strip.lines = tables;
+    strip.tables = tables + SKG_LINES_SIZE(args.layout.rows);
+#endif
     strip.negative = negative;
     strip.output = output;
     skg_attenuate_strip(&strip);

@@ -213,7 +213,7 @@ __kernel void skg_gradient_faces(skg_gradient_args args, __global const int *cor
 #else
     const int4 window = skg_window(&range, 0, 0, args.layout.columns, args.layout.rows);
 #endif
-    if (!skg_bounds(a, b, c, window, range.shift, &box)) return;
+    if (!skg_bounds(&range, a, b, c, window, &box)) return;
     skg_gathering g;
     g.contributions = contributions;
     g.weights = weights;

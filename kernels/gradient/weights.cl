@@ -248,7 +248,7 @@ static void skg_weigh_runs(const skg_strip *strip, const skg_weighing *weighing,
     }
     SKG_EACH_RUN {
         const int at = min(strip->column + r * SKG_WIDE, strip->args.layout.columns - 1);
-        length[r] = skg_ray_lengths_v(&strip->args.ray, at, strip->row);
+        length[r] = skg_lengths_of(strip, at);
         unit[r] = length[r] * strip->args.ray.unit;
     }
     skg_put_rays(strip, weighing, length, path, shown, found);

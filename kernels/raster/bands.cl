@@ -28,7 +28,7 @@ SKG_APART void skg_sort_bands(const skg_raster_layout *layout, __global const in
                 met[triangle - start] = 0;
                 if (range.contributions == 0) continue;
                 skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-                if (!skg_bounds(a, b, c, window, range.shift, &box)) continue;
+                if (!skg_bounds(&range, a, b, c, window, &box)) continue;
                 const int from = (box.j0 + range.pixel_j) / layout->tile_rows;
                 const int to = (box.j1 - 1 + range.pixel_j) / layout->tile_rows;
                 if (to - from >= SKG_TILES_MAX) {

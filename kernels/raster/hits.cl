@@ -90,7 +90,7 @@ __kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __g
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, range.first + item - runs[3 * run], &a, &b, &c);
-    if (!skg_bounds(a, b, c, skg_window(&range, args.window[0], args.window[1], args.window[2], args.window[3]), range.shift, &box)) return;
+    if (!skg_bounds(&range, a, b, c, skg_window(&range, args.window[0], args.window[1], args.window[2], args.window[3]), &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {

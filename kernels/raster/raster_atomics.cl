@@ -21,7 +21,7 @@ __kernel void skg_raster_atomics(skg_raster_layout layout, __global const int *c
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, layout.columns, layout.rows), range.shift, &box)) return;
+    if (range.contributions == 0 || !skg_bounds(&range, a, b, c, skg_window(&range, 0, 0, layout.columns, layout.rows), &box)) return;
     if ((box.i1 - box.i0) * (box.j1 - box.j0) > SKG_LARGE) {
         const int rows = skg_strip_rows(&box), strips = (box.j1 - box.j0 + rows - 1) / rows;
         const int first = atomic_add(&queue[0], strips), kept = clamp(layout.queue - first, 0, strips);
@@ -49,7 +49,7 @@ skg_raster_queue(skg_raster_layout layout, __global const int *corners, __global
         skg_real4 a, b, c;
         skg_box box;
         skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-        if (!skg_bounds(a, b, c, skg_window(&range, 0, 0, layout.columns, layout.rows), range.shift, &box)) continue;
+        if (!skg_bounds(&range, a, b, c, skg_window(&range, 0, 0, layout.columns, layout.rows), &box)) continue;
         const int rows = skg_strip_rows(&box), columns = box.i1 - box.i0;
         box.j0 += strip * rows;
         box.j1 = min(box.j1, box.j0 + rows);

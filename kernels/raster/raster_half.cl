@@ -27,7 +27,7 @@ __kernel void skg_raster_half(skg_raster_layout layout, __global const int *corn
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, layout.columns, layout.rows), range.shift, &box)) return;
+    if (range.contributions == 0 || !skg_bounds(&range, a, b, c, skg_window(&range, 0, 0, layout.columns, layout.rows), &box)) return;
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
     for (int row = box.j0; row < box.j1; row++) {

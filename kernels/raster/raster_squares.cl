@@ -22,7 +22,7 @@ skg_raster_squares(skg_raster_layout layout, __global const int *corners, __glob
         skg_real4 a, b, c;
         skg_box box;
         skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-        if (skg_bounds(a, b, c, skg_window(&range, left, top, right, bottom), range.shift, &box)) {
+        if (skg_bounds(&range, a, b, c, skg_window(&range, left, top, right, bottom), &box)) {
             skg_face f;
             skg_face_of(&range, a, b, c, &f);
             skg_draw_local(local_sums, layout.tile_columns, plane,

@@ -11,7 +11,7 @@ static int skg_tiles_of(const skg_raster_layout *layout, __global const int *cor
     skg_real4 a, b, c;
     skg_box box;
     skg_corners(corners, projected, &range, triangle, &a, &b, &c);
-    if (range.contributions == 0 || !skg_bounds(a, b, c, skg_window(&range, 0, 0, layout->columns, layout->rows), range.shift, &box))
+    if (range.contributions == 0 || !skg_bounds(&range, a, b, c, skg_window(&range, 0, 0, layout->columns, layout->rows), &box))
         return 0;
     tiles->x = (box.i0 + range.pixel_i) / layout->tile_columns;
     tiles->y = (box.j0 + range.pixel_j) / layout->tile_rows;

@@ -75,7 +75,18 @@
     SKG_INT turned; /* 0, or -1: handedness of the projection, of the pose and of the mesh together */       \
     SKG_INT first_contribution, contributions;                                                               \
     SKG_INT                                                                                                  \
-    fine; /* 1: behind the mesh's vertices stands what rounding them to floats has lost, and it counts */
+    fine; /* 1: behind the mesh's vertices stands what rounding them to floats has lost, and it counts */    \
+    SKG_INT lines;    /* curved: reals from this entry to the table of lines (SKG_LINES_...) */              \
+    SKG_INT reserved; /* 0 */
+
+/* A curved detector (lib/geometry/curve.c). Rows of the raster are its columns, and columns of the raster its rows. On the plane that
+ * touches its middle, row k is the line y = y_high + y_low, on which column i stands at x = i + more (i - middle) + moved. A ray ends
+ * at path parameter t. The table begins with the number of rows, the row before which `more` and `moved` turn, and the two parts of
+ * `middle`; then each row has y_high, which is a whole number, y_low, more, moved, 1 / t (parallel: t - 1), what intensities fall by
+ * (the cube of fall / |ray|), t, and 0. */
+#define SKG_LINES_HEAD 4
+#define SKG_LINES_ROW 8
+#define SKG_LINES_SIZE(rows) (SKG_LINES_HEAD + SKG_LINES_ROW * (rows))
 
 /* What a hit of a part adds to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count
  * plane has weight 0 and bias 1. */
@@ -421,8 +432,8 @@ typedef struct {
 typedef struct {
     SKG_CONTRIBUTION_MEMBERS(double)
 } skg_contribution_double;
-_Static_assert(sizeof(skg_part_float) == 36 * 4 + 12 * 4, "layout of a part, single");
-_Static_assert(sizeof(skg_part_double) == 36 * 8 + 12 * 4, "layout of a part, double");
+_Static_assert(sizeof(skg_part_float) == 36 * 4 + 14 * 4, "layout of a part, single");
+_Static_assert(sizeof(skg_part_double) == 36 * 8 + 14 * 4, "layout of a part, double");
 _Static_assert(sizeof(skg_contribution_float) == 16 && sizeof(skg_contribution_double) == 24,
                "layout of a contribution");
 _Static_assert(sizeof(skg_ray_float) == 12 * 4 && sizeof(skg_ray_double) == 12 * 8, "layout of a ray");

@@ -247,6 +247,9 @@ static skg_status create(skg_plan *plan, const skg_dose_options *given, skg_dose
     SKG_TRY(check(&options));
     SKG_TRY(skg_context_enter(plan->context));
     SKG_TRY(skg_plan_renew(plan));
+    if (plan->recipe->view.radius > 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "dose: the field of a curved detector is not computed; take a flat one");
     const double begun = skg_seconds();
     SKG_TRY(skg_alloc(1, sizeof *made, "dose", &made));
     skg_refs_init(&made->refs);

@@ -176,6 +176,20 @@ static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work
     return SKG_OK;
 }
 
+/* Fails if the detector is curved and a part reaches the plane of a point source, where a vertex has no place on a line. */
+static skg_status check_curved(const skg_pass *pass) {
+    if (!skg_camera_is_curved(&pass->camera) || pass->camera.parallel || !pass->kernels.source_plane)
+        return SKG_OK;
+    for (int64_t p = 0; p < pass->scene->count; p++)
+        if (pass->extents[p].near_source)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "part %s reaches the plane of the source, which is not computed with a curved detector; "
+                "move it, or take a flat one",
+                pass->scene->parts[p].label);
+    return skg_fail(SKG_ERR_INTERNAL, "a curved detector without a part at the source");
+}
+
 /* Which pixels the jaws leave. */
 static skg_status find_window(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
     const skg_collimation *collimation = recipe->options.collimation;
@@ -199,10 +213,12 @@ skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, i
     place_parts(recipe, work, memory, pass);
     find_touching(recipe, memory, pass);
     SKG_TRY(find_priorities(recipe, work, pass));
+    SKG_TRY(check_curved(pass));
     kernels->precision = skg_recipe_kernel_precision(recipe);
     kernels->half = recipe->options.precision == SKG_PRECISION_HALF;
     kernels->bits = kernels->half ? 32 : pass->scale.bits; /* half: units of 2^-24 m, whatever the scene */
     kernels->parallel = pass->camera.parallel;
+    kernels->curved = skg_camera_is_curved(&pass->camera);
     kernels->seams = recipe->scene->count > 1;
     kernels->listed = kernels->half || has_lists(pass, recipe->scene->count);
     return SKG_OK;

@@ -25,7 +25,7 @@ static int32_t passes_together(const skg_recipe *recipe, const skg_machine *mach
                                                        pass->planes * pass->kernels.bits / 8};
     const int alone = number < 0 || recipe->leaky_count > 0 || machine->volumes.count > 0 ||
                       recipe->priority_possible || (pass->kernels.source_plane && !pass->kernels.parallel) ||
-                      pass->kernels.half;
+                      pass->kernels.half || pass->kernels.curved;
     *side = 1;
     return alone ? 1 : skg_passes_choose(&request, side);
 }

@@ -28,8 +28,8 @@ static void parallel_start(const skg_view *view, const double pixel[3], skg_came
     double from[3];
     for (int k = 0; k < 3; k++) from[k] = pixel[k] - view->source[k];
     camera->start[0] = 1 - skg_dot(from, d) / square;
-    camera->start[1] = -skg_dot(view->column_step, d) / square;
-    camera->start[2] = -skg_dot(view->row_step, d) / square;
+    camera->start[1] = -skg_dot(camera->column, d) / square;
+    camera->start[2] = -skg_dot(camera->row, d) / square;
 }
 
 /* Nothing is rounded here. A direction from infinity is scaled to a length near 1 by a power of two. */
@@ -45,15 +45,20 @@ static void parallel_direction(const skg_view *view, double direction[3]) {
 
 skg_status skg_camera_make(const skg_view *view, const double *source, double shift_column, double shift_row,
                            skg_camera *camera) {
-    *camera = (skg_camera){.columns = view->columns, .rows = view->rows};
-    const double column = shift_column - 0.5 * (double)(view->columns - 1);
-    const double row = shift_row - 0.5 * (double)(view->rows - 1);
+    skg_view flat = *view;
+    *camera = (skg_camera){.parallel = view->projection != SKG_PROJECTION_POINT};
+    if (view->radius > 0) {
+        skg_bends_find(view, source, shift_column, shift_row, &flat, &camera->bends);
+        shift_column = shift_row = 0; /* they are in the places of the lines */
+    }
+    camera->columns = flat.columns, camera->rows = flat.rows;
+    const double column = shift_column - 0.5 * (double)(flat.columns - 1);
+    const double row = shift_row - 0.5 * (double)(flat.rows - 1);
     double pixel[3];
-    camera->parallel = view->projection != SKG_PROJECTION_POINT;
     for (int k = 0; k < 3; k++) {
-        camera->column[k] = view->column_step[k];
-        camera->row[k] = view->row_step[k];
-        pixel[k] = view->centre[k] + column * view->column_step[k] + row * view->row_step[k];
+        camera->column[k] = flat.column_step[k];
+        camera->row[k] = flat.row_step[k];
+        pixel[k] = flat.centre[k] + column * flat.column_step[k] + row * flat.row_step[k];
     }
     const double *seen_from = source ? source : view->source;
     for (int k = 0; k < 3; k++) {
@@ -205,6 +210,7 @@ void skg_camera_part(const skg_camera *camera, const skg_camera_place *place, sk
 
 double skg_camera_pixel_area(const skg_camera *camera) {
     double across[3];
+    if (skg_camera_is_curved(camera)) return camera->bends.area;
     skg_cross(camera->column, camera->row, across);
     return skg_length(across);
 }

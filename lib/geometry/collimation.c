@@ -98,17 +98,34 @@ static void carry(const skg_view *view, double at[3]) {
     skg_add_scaled(view->source, skg_dot(axis, normal) / skg_dot(ray, normal), ray, at);
 }
 
+/* Of a curved detector: its own corners. */
+static skg_status find_curved_corners(const skg_collimation *collimation, const skg_view *view,
+                                      double *corners) {
+    if (skg_collimation_limits(collimation))
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "the field of jaws before a curved detector is not computed; leave the collimation out");
+    for (int corner = 0; corner < 4; corner++)
+        skg_view_pixel(view, corner == 1 || corner == 2 ? (double)view->columns - 0.5 : -0.5,
+                       corner >= 2 ? (double)view->rows - 0.5 : -0.5, corners + 3 * corner);
+    return SKG_OK;
+}
+
 skg_status skg_collimation_corners_get(const skg_collimation *collimation, const skg_view *view,
                                        int32_t on_jaws, double *corners) {
     skg_collimation ours;
     skg_field field;
+    skg_view seen;
     skg_collimation_init(&ours);
     SKG_PLAIN;
     SKG_NEEDS(view);
     SKG_NEEDS(corners);
     SKG_TRY(skg_view_check(view));
+    skg_view_init(&seen);
+    SKG_TRY(skg_struct_read(view, "skg_view", &seen, sizeof seen));
     if (collimation) SKG_TRY(skg_struct_read(collimation, "skg_collimation", &ours, sizeof ours));
     SKG_TRY(skg_collimation_check(&ours));
+    if (seen.radius > 0) return find_curved_corners(&ours, &seen, corners);
     SKG_TRY(skg_field_make(&ours, view, &field));
     for (int corner = 0; corner < 4; corner++) {
         const double column = corner == 1 || corner == 2 ? field.high[0] : field.low[0];

@@ -100,6 +100,14 @@ static void widen(range *t, double rounding) {
     if (t->low <= t->last && t->high > t->first && t->last - low > 2 * (high - low)) t->high = t->last;
 }
 
+/* From places on the plane of the camera to pixels of a curved detector. */
+static void bend(const skg_camera *camera, skg_scale_part *part) {
+    double columns[2] = {part->low_column, part->high_column}, rows[2] = {part->low_row, part->high_row};
+    skg_bends_extent(camera, columns, rows);
+    part->low_column = columns[0], part->high_column = columns[1];
+    part->low_row = rows[0], part->high_row = rows[1];
+}
+
 void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, const float lowest[3],
                             const float highest[3], const double *pose, double last_bit, int64_t layers,
                             skg_extent *extent) {
@@ -129,6 +137,7 @@ void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, cons
         part->low_column = part->low_row = -HUGE_VAL;
         part->high_column = part->high_row = HUGE_VAL;
     }
+    if (skg_camera_is_curved(camera)) bend(camera, part);
     /* The part of the mesh before the start of the rays or behind the detector adds nothing. */
     clamp_to_path(&t, &part->low_depth, &part->high_depth);
     extent->on_way = t.high > fmin(t.first, 1) && t.low < 1;

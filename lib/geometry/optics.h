@@ -3,6 +3,7 @@
 #define SKG_OPTICS_H
 
 #include "core/core.h"
+#include "scene/curve.h"
 #include "skg_shared.h"
 
 #include <skiagraph/collimation.h>
@@ -15,6 +16,15 @@
  * where t is 0 at the source and 1 at the pixel. For a parallel beam along d, h = [Du Dv d]^-1 (V - D0) =
  * (i, j, t - 1). */
 
+/* How a curved detector lies on the flat one of its camera (geometry/curve.c). */
+typedef struct {
+    skg_curvature curve;              /* radius 0: the detector is flat */
+    double middle_column, middle_row; /* of the detector: that of its middle, with the shift of the rays */
+    double first_line, line_step;     /* mm: the edge of the camera's first row; from one to the next */
+    double first_place, place_step;   /* mm: of its columns */
+    double area;                      /* of a pixel, mm2 */
+} skg_bends;
+
 typedef struct {
     int32_t parallel; /* 1 or 0 */
     int64_t columns, rows;
@@ -25,7 +35,33 @@ typedef struct {
     double column[3], row[3];
     double corner[3]; /* from the detector's centre to the centre of pixel (0, 0) */
     double start[3];  /* parallel: paths start at t = start[0] + start[1] i + start[2] j */
+    skg_bends bends;  /* curved: the camera's rows are the columns of the detector */
 } skg_camera;
+
+/* Whether the detector is curved. */
+static inline int skg_camera_is_curved(const skg_camera *camera) {
+    return camera->bends.curve.radius > 0;
+}
+
+/* Finds the flat detector of a curved one's camera: its columns are the rows of the view. */
+void skg_bends_find(const skg_view *view, const double *source, double shift_column, double shift_row,
+                    skg_view *flat, skg_bends *bends);
+
+/* The line of a row of a curved detector's camera: y, in rows; how column i stands on it, at i + more (i - middle) + moved; t of its
+ * pixels; and what intensities fall by (skg_shared.h). */
+typedef struct {
+    double y, more, moved, t, fall;
+} skg_bent_line;
+void skg_bends_row(const skg_camera *camera, double row, skg_bent_line *line);
+
+/* The column about which rows are stretched. */
+double skg_bends_middle(const skg_camera *camera);
+
+/* Writes the table of the kernels: SKG_LINES_SIZE(rows) numbers, double or float. */
+void skg_bends_table(const skg_camera *camera, int is_double, void *lines);
+
+/* Turns places on the camera's flat detector, from and to, into columns and rows of the raster that may see them. */
+void skg_bends_extent(const skg_camera *camera, double columns[2], double rows[2]);
 
 /* Makes the camera of a view.
  *

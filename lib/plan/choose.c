@@ -141,6 +141,8 @@ int64_t skg_fine_choose(const skg_fine_request *request, const char **why) {
     if (request->shifts == 1) return 1;
     *why = "each in a pass of its own: leaky meshes are judged and repaired in pixels of the image";
     if (request->leaky) return 1;
+    *why = "each in a pass of its own: the detector is curved";
+    if (request->curved) return 1;
     *why = "each in a pass of its own: the sums of all at once would take more than 256 MiB";
     if (bytes > BYTES_MAX) return 1;
     *why = "each in a pass of its own: the image is large and its triangles are not small";

@@ -107,6 +107,7 @@ skg_status skg_decide_view(const skg_recipe *recipe, const skg_view *view) {
                         " x %" PRId64 "; make a plan for it",
                         recipe->view.columns, recipe->view.rows, view->columns, view->rows);
     SKG_TRY(check_distance(recipe, view));
+    SKG_TRY(skg_curved_check_view(recipe, view, SKG_STALE));
     SKG_TRY(skg_counting_check_pixels(recipe, view, SKG_STALE));
     SKG_TRY(skg_blur_check_pixels(recipe, view, SKG_STALE));
     SKG_TRY(skg_heel_covers(&recipe->model.shades, view, &recipe->options));

@@ -98,6 +98,7 @@ typedef struct {
     int64_t triangles;     /* of a frame */
     int32_t precision;     /* SKG_PRECISION_... */
     int32_t leaky;         /* 1: some mesh is leaky */
+    int32_t curved;        /* 1: the detector is curved */
 } skg_fine_request;
 
 /* How many pixels the passes have along each side of a pixel of the image: `shifts`, so that one pass makes all rays of a

@@ -78,6 +78,7 @@ static skg_fine_request fine_request(const skg_recipe *recipe, int64_t accumulat
         .triangles = skg_scene_triangles(recipe->scene),
         .precision = recipe->options.precision,
         .leaky = recipe->leaky_count > 0,
+        .curved = recipe->view.radius > 0,
     };
 }
 
@@ -183,6 +184,9 @@ static skg_status decide(skg_recipe *recipe, const skg_device_info *device, cons
         skg_priority_possible(recipe->scene, skg_priority_rules(options->clip, options->unite));
     SKG_TRY(check_half(recipe));
     SKG_TRY(skg_volumes_check(recipe));
+    SKG_TRY(skg_curved_check(recipe));
+    for (int64_t v = 0; v < options->view_count; v++)
+        SKG_TRY(skg_curved_check_view(recipe, &options->views[v], SKG_ERR_SCENE));
     SKG_TRY(skg_scatter_check(recipe));
     return choose_layout(recipe, device);
 }

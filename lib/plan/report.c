@@ -67,7 +67,10 @@ static void report_bad(const skg_recipe *recipe, const skg_context *context, int
         [SKG_REPAIR_NEIGHBOURS] = "it has the mean of its nearest valid pixels there",
         [SKG_REPAIR_EXACT] = "these rays were traced again through the mesh with its holes capped",
     };
-    const int64_t columns = recipe->view.columns, all = columns * recipe->view.rows;
+    const int64_t all = recipe->view.columns * recipe->view.rows;
+    const int curved =
+        recipe->view.radius > 0; /* places are those of the raster, whose rows are the columns */
+    const int64_t columns = curved ? recipe->view.rows : recipe->view.columns;
     const int hopeless = recipe->options.repair == SKG_REPAIR_NEIGHBOURS && bad[0] == all;
     const int32_t repair = hopeless ? SKG_REPAIR_NONE : recipe->options.repair;
     outcome->report.bad_pixels += bad[0];
@@ -77,7 +80,8 @@ static void report_bad(const skg_recipe *recipe, const skg_context *context, int
     size_t length = 0;
     for (int32_t k = 0; k < bad[0] && k < SKG_FIRST_BAD; k++)
         length += (size_t)snprintf(places + length, sizeof places - length, "%s(%" PRId64 ", %" PRId64 ")",
-                                   k ? ", " : "", bad[1 + k] % columns, bad[1 + k] / columns);
+                                   k ? ", " : "", curved ? bad[1 + k] / columns : bad[1 + k] % columns,
+                                   curved ? bad[1 + k] % columns : bad[1 + k] / columns);
     skg_log(context, SKG_LOG_WARNING,
             "part %s is leaky: at %" PRId32
             " %s its rays do not leave it as often as they enter it; %s; first at (column, row) %s; close "

@@ -95,7 +95,7 @@ typedef struct {
     X(energies) X(source) X(supersampling) X(world) X(response) X(falloff) X(compression) \
     X(nesting) X(leaky) X(repair) X(source_plane) X(overlaps) \
     X(noise) X(blur) X(electronic) X(quantisation) X(priority) X(volumes) \
-    X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(grid) X(oblique) X(escape) X(deposition) X(depths) X(dqe) \
+    X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(grid) X(oblique) X(curved) X(escape) X(deposition) X(depths) X(dqe) \
     X(counting) X(cloud) X(pixel_lines) X(anti_coincidence) X(pile_up)
 /* clang-format on */
 
@@ -129,6 +129,11 @@ skg_status skg_blur_take_pixels(const skg_detector_blur *blurs, int64_t index, d
  * is `status`. */
 skg_status skg_blur_check(const skg_recipe *recipe);
 skg_status skg_blur_check_pixels(const skg_recipe *recipe, const skg_view *view, skg_status status);
+
+/* Fails if the detector is curved and something is called for that is computed for flat ones alone; if another view is
+ * curved and the plan's is not, or the other way round, whose refusal is `status`. */
+skg_status skg_curved_check(const skg_recipe *recipe);
+skg_status skg_curved_check_view(const skg_recipe *recipe, const skg_view *view, skg_status status);
 
 /* Fails if volumes of cells stand beside what is not computed with them. */
 skg_status skg_volumes_check(const skg_recipe *recipe);

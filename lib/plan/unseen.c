@@ -36,11 +36,13 @@ void skg_warn_unseen(const skg_context *context, const skg_scene *scene, const s
         return;
     }
     const double *step = fabs(across) >= fabs(down) ? camera->column : camera->row;
+    const int curved = skg_camera_is_curved(camera); /* the camera's rows are the detector's columns */
     const double pixels = fmax(fabs(across), fabs(down));
     skg_log(
         context, SKG_LOG_WARNING,
         "nothing falls on the detector: the shadow of %s, which comes nearest, lies %.4g pixels (%.4g mm on the "
         "detector) %s",
         scene->parts[part].label, pixels / fine,
-        pixels * sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]), direction(across, down));
+        pixels * sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]),
+        curved ? direction(down, across) : direction(across, down));
 }

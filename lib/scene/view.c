@@ -1,6 +1,7 @@
 /* Views: source, detector and projection, checked. */
 #include "core/core.h"
 #include "core/maths.h"
+#include "scene/curve.h"
 
 #include <skiagraph/scene.h>
 
@@ -143,6 +144,7 @@ skg_status skg_view_check(const skg_view *view) {
     SKG_TRY(skg_struct_read(view, "skg_view", &ours, sizeof ours));
     SKG_TRY(check_numbers(&ours));
     SKG_TRY(check_detector(&ours, &plane));
-    return ours.projection == SKG_PROJECTION_POINT ? check_point(&ours, &plane)
-                                                   : check_parallel(&ours, &plane);
+    SKG_TRY(ours.projection == SKG_PROJECTION_POINT ? check_point(&ours, &plane)
+                                                    : check_parallel(&ours, &plane));
+    return ours.radius == 0 ? SKG_OK : skg_curvature_check(&ours);
 }

@@ -2,6 +2,7 @@
 #include "show/drawing.h"
 
 #include "core/maths.h"
+#include "scene/curve.h"
 
 #include <cglm/cglm.h>
 
@@ -36,9 +37,13 @@ static void frame_point(frame *f, const double point[3]) {
     f->far = fmin(f->far, z);
 }
 
-void skg_show_detector_corner(const skg_view *view, int column, int row, double corner[3]) {
-    skg_add_scaled(view->centre, (column - 0.5) * (double)view->columns, view->column_step, corner);
-    skg_add_scaled(corner, (row - 0.5) * (double)view->rows, view->row_step, corner);
+void skg_show_detector_place(const skg_view *view, double column, double row, double place[3]) {
+    if (view->radius > 0) {
+        skg_view_pixel(view, column * (double)view->columns - 0.5, row * (double)view->rows - 0.5, place);
+        return;
+    }
+    skg_add_scaled(view->centre, (column - 0.5) * (double)view->columns, view->column_step, place);
+    skg_add_scaled(place, (row - 0.5) * (double)view->rows, view->row_step, place);
 }
 
 void skg_show_beam_start(const skg_view *view, const double low[3], const double high[3], const double at[3],
@@ -114,7 +119,7 @@ static void frame_everything(frame *f, const skg_view *view, const skg_look *loo
         frame_point(f, point);
     }
     for (int corner = 0; corner < 4; corner++) {
-        skg_show_detector_corner(view, corner & 1, corner >> 1, point);
+        skg_show_detector_place(view, corner & 1, corner >> 1, point);
         skg_show_beam_start(view, low, high, beam[corner], start);
         frame_point(f, point);
         frame_point(f, beam[corner]);

@@ -25,8 +25,8 @@ typedef struct {
 void skg_show_beam_start(const skg_view *view, const double low[3], const double high[3], const double at[3],
                          double start[3]);
 
-/* A corner of the detector's area: of the edge of pixels, not of their centres. column, row: 0 or 1. */
-void skg_show_detector_corner(const skg_view *view, int column, int row, double corner[3]);
+/* A place on the detector's area, in widths and heights: 0 and 1 are the edges of pixels, not their centres. */
+void skg_show_detector_place(const skg_view *view, double column, double row, double place[3]);
 
 /* Where the edges of the beam meet the plane of the detector, in turn around it. Errors: of skg_collimation_corners_get. */
 skg_status skg_show_beam_corners(const skg_view *view, const skg_look *look, double corners[4][3]);

@@ -183,24 +183,49 @@ static skg_status add_path(skg_show_model *model, const skg_look *look, const sk
     return SKG_OK;
 }
 
-/* The frame of the detector. */
-static skg_status add_frame(skg_show_model *model, const skg_look *look, const skg_show_camera *camera,
-                            double corners[4][3]) {
+/* How many flat strips a detector is drawn as, side by side. */
+static int strips_of(const skg_view *view) {
+    enum { STRIPS = 24 };
+    return view->radius > 0 ? STRIPS : 1;
+}
+
+/* The frame of the detector: each side in turn, those along rows from strip to strip. */
+static skg_status add_frame(skg_show_model *model, const skg_view *view, const skg_look *look,
+                            const skg_show_camera *camera) {
+    const int strips = strips_of(view);
     for (int i = 0; i < 4; i++)
-        SKG_TRY(add_line(model, camera, corners[i], corners[(i + 1) % 4], FRAME_RADIUS, FRAME_RADIUS,
-                         frame_colour(look)));
+        for (int s = 0; s < (i % 2 ? 1 : strips); s++) {
+            const int *from = turn[i], *to = turn[(i + 1) % 4];
+            const double first = (double)s / strips, last = i % 2 ? 1 : (double)(s + 1) / strips;
+            double ends[2][3];
+            skg_show_detector_place(view, from[0] + first * (to[0] - from[0]),
+                                    from[1] + first * (to[1] - from[1]), ends[0]);
+            skg_show_detector_place(view, from[0] + last * (to[0] - from[0]),
+                                    from[1] + last * (to[1] - from[1]), ends[1]);
+            SKG_TRY(
+                add_line(model, camera, ends[0], ends[1], FRAME_RADIUS, FRAME_RADIUS, frame_colour(look)));
+        }
     return SKG_OK;
 }
 
 /* Its area: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) in widths and heights. */
-static skg_status add_detector(skg_show_model *model, const skg_show_camera *camera, double corners[4][3]) {
-    const int64_t first = model->vertices, before = model->triangles;
-    SKG_TRY(skg_show_model_reserve(model, 4, 2));
-    for (int i = 0; i < 4; i++) skg_show_model_add_vertex(model, corners[i]);
-    for (int t = 0; t < 2; t++) {
-        double places[3][2];
-        for (int k = 0; k < 6; k++) places[k / 2][k % 2] = turn[k / 2 > 0 ? k / 2 + t : 0][k % 2];
-        skg_show_model_add_image(model, (const int64_t[3]){first, first + t + 1, first + t + 2}, places);
+static skg_status add_detector(skg_show_model *model, const skg_view *view, const skg_show_camera *camera) {
+    const int64_t before = model->triangles;
+    const int strips = strips_of(view);
+    SKG_TRY(skg_show_model_reserve(model, 4 * strips, 2 * strips));
+    for (int s = 0; s < strips; s++) {
+        const int64_t first = model->vertices;
+        double at[4][2], corner[3];
+        for (int i = 0; i < 4; i++) {
+            at[i][0] = (double)(s + turn[i][0]) / strips, at[i][1] = turn[i][1];
+            skg_show_detector_place(view, at[i][0], at[i][1], corner);
+            skg_show_model_add_vertex(model, corner);
+        }
+        for (int t = 0; t < 2; t++) {
+            double places[3][2];
+            for (int k = 0; k < 6; k++) places[k / 2][k % 2] = at[k / 2 > 0 ? k / 2 + t : 0][k % 2];
+            skg_show_model_add_image(model, (const int64_t[3]){first, first + t + 1, first + t + 2}, places);
+        }
     }
     SKG_TRY(skg_show_clip_near(model, camera, before));
     model->images = model->triangles - before;
@@ -210,12 +235,10 @@ static skg_status add_detector(skg_show_model *model, const skg_show_camera *cam
 skg_status skg_show_markers_add(skg_show_model *model, const skg_view *view, const skg_look *look,
                                 const skg_show_camera *camera, const double low[3], const double high[3]) {
     const int64_t first = model->triangles;
-    double corners[4][3];
-    for (int i = 0; i < 4; i++) skg_show_detector_corner(view, turn[i][0], turn[i][1], corners[i]);
     SKG_TRY(add_beam(model, view, look, camera, low, high));
     SKG_TRY(add_axes(model, camera, low, high));
     SKG_TRY(add_path(model, look, camera));
-    SKG_TRY(add_frame(model, look, camera, corners));
+    SKG_TRY(add_frame(model, view, look, camera));
     SKG_TRY(skg_show_clip_near(model, camera, first));
-    return add_detector(model, camera, corners);
+    return add_detector(model, view, camera);
 }

@@ -80,6 +80,13 @@ static skg_status prepare(const skg_scene *scene, const skg_view *view, skg_look
     return skg_show_camera_make(view, look, low, high, camera);
 }
 
+/* Checks the caller's view, whose program may know fewer fields. */
+static skg_status read_view(const skg_view *view, skg_view *ours) {
+    skg_view_init(ours);
+    SKG_TRY(skg_view_check(view));
+    return skg_struct_read(view, "skg_view", ours, sizeof *ours);
+}
+
 static skg_status draw(skg_context *context, const skg_scene *scene, const skg_view *view,
                        const skg_look *look, uint8_t *rgba) {
     SKG_PLAIN;
@@ -89,18 +96,20 @@ static skg_status draw(skg_context *context, const skg_scene *scene, const skg_v
     SKG_NEEDS_OF("skg_scene_picture", view);
     SKG_NEEDS_OF("skg_scene_picture", rgba);
     skg_look ours;
+    skg_view seen;
     uint8_t *colours = NULL;
     double low[3], high[3];
     skg_show_camera camera;
     skg_show_model model = {0};
     SKG_TRY(read_look(look, &ours));
+    SKG_TRY(read_view(view, &seen));
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(prepare(scene, view, &ours, &colours, low, high, &camera));
+    SKG_TRY_CLEANUP(prepare(scene, &seen, &ours, &colours, low, high, &camera));
     for (int k = 0; k < 3; k++) model.centre[k] = camera.centre[k];
     SKG_TRY_CLEANUP(skg_show_parts_add(&model, scene, &ours, &camera));
-    SKG_TRY_CLEANUP(skg_show_markers_add(&model, view, &ours, &camera, low, high));
-    SKG_TRY_CLEANUP(skg_show_draw(context, &model, &camera, &ours, ours.image ? view->columns : 1,
-                                  ours.image ? view->rows : 1, ours.image ? ours.image : &PLAIN, rgba));
+    SKG_TRY_CLEANUP(skg_show_markers_add(&model, &seen, &ours, &camera, low, high));
+    SKG_TRY_CLEANUP(skg_show_draw(context, &model, &camera, &ours, ours.image ? seen.columns : 1,
+                                  ours.image ? seen.rows : 1, ours.image ? ours.image : &PLAIN, rgba));
 cleanup:
     skg_show_model_free(&model);
     skg_free(&colours);
@@ -123,11 +132,13 @@ skg_status skg_scene_places_get(const skg_scene *scene, const skg_view *view, co
         SKG_NEEDS(places);
     }
     skg_look ours;
+    skg_view seen;
     uint8_t *colours = NULL;
     double low[3], high[3];
     skg_show_camera camera;
     SKG_TRY(read_look(look, &ours));
-    const skg_status status = prepare(scene, view, &ours, &colours, low, high, &camera);
+    SKG_TRY(read_view(view, &seen));
+    const skg_status status = prepare(scene, &seen, &ours, &colours, low, high, &camera);
     skg_free(&colours);
     for (int64_t i = 0; status == SKG_OK && i < count; i++)
         skg_show_camera_place(&camera, &ours, points + 3 * i, places + 2 * i);

@@ -41,7 +41,10 @@ static const double ALONG = 1e-9;
 
 int skg_shade_axes(const skg_camera *camera, const double toward[3], double central[3], double across[3]) {
     double frame[3][3];
-    skg_detector_frame(camera->column, camera->row, frame);
+    if (skg_camera_is_curved(camera)) /* its camera's columns are the rows of the detector */
+        skg_detector_frame(camera->row, camera->column, frame);
+    else
+        skg_detector_frame(camera->column, camera->row, frame);
     memcpy(central, camera->first, 3 * sizeof *central);
     if (!camera->parallel) {
         skg_add_scaled(central, 0.5 * (double)(camera->columns - 1), camera->column, central);
@@ -71,8 +74,8 @@ static skg_status see_view(const skg_view *view, const double *source, int side,
     skg_camera camera;
     SKG_TRY(skg_camera_make(view, source, 0, 0, &camera));
     for (int k = 0; k < side * side; k++) {
-        const double column = (k % side) / (side - 1.0) * (double)(view->columns - 1);
-        const double row = (k / side) / (side - 1.0) * (double)(view->rows - 1);
+        const double column = (k % side) / (side - 1.0) * (double)(camera.columns - 1);
+        const double row = (k / side) / (side - 1.0) * (double)(camera.rows - 1);
         double ray[3];
         memcpy(ray, camera.first, sizeof ray);
         if (!camera.parallel) {

@@ -53,6 +53,9 @@ struct skg_attenuator {
     int32_t count, next;
     kernel_key keys[KERNELS_MAX];
     cl_kernel kernels[KERNELS_MAX];
+    skg_buffer lines; /* of a curved detector, and behind them the tables of shades */
+    double *sent;     /* the numbers that `lines` holds; NULL: none */
+    int64_t sent_count;
 };
 
 static skg_status upload(skg_context *context, int32_t is_double, int64_t count, const double *numbers,
@@ -137,6 +140,8 @@ skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuat
 void skg_attenuator_release(skg_attenuator **attenuator) {
     if (!*attenuator) return;
     for (int32_t i = 0; i < (*attenuator)->count; i++) clReleaseKernel((*attenuator)->kernels[i]);
+    skg_buffer_release(&(*attenuator)->lines);
+    skg_free(&(*attenuator)->sent);
     skg_free(attenuator);
 }
 
@@ -218,7 +223,8 @@ static kernel_key key_of(const skg_sums *sums, const skg_attenuation *attenuatio
     const work_shape shape = shape_of(raster->context, sums->fine);
     return (kernel_key){.options = {.precision = raster->options.kernels.precision,
                                     .bits = raster->options.kernels.bits,
-                                    .half = raster->options.kernels.half},
+                                    .half = raster->options.kernels.half,
+                                    .curved = raster->options.kernels.curved},
                         .defines = {DEFINES(DEFINE)}};
 }
 
@@ -242,6 +248,14 @@ static skg_work_size work_of(const skg_sums *sums, int32_t precision) {
                            {shape.group[0], shape.group[1]}};
 }
 
+/* The image that the pixels of a raster make: of a curved detector, the raster's rows are its columns. */
+static skg_image_args image_of(const skg_sums *sums, int64_t channels, const skg_image_place *place) {
+    const skg_raster_layout *layout = &sums->raster->layout;
+    const int curved = sums->raster->options.kernels.curved;
+    const int64_t columns = layout->columns / sums->fine, rows = layout->rows / sums->fine;
+    return skg_image_of(place, curved ? rows : columns, curved ? columns : rows, channels);
+}
+
 /* The scalar arguments that do not depend on the caller's factor and share. */
 static skg_attenuate_double scalars_of(const skg_sums *sums, const skg_camera *camera,
                                        const skg_attenuation *attenuation, const skg_image_place *place) {
@@ -263,8 +277,7 @@ static skg_attenuate_double scalars_of(const skg_sums *sums, const skg_camera *c
                  : attenuation->apart ? SKG_NOISE_APART
                                       : SKG_NOISE_DRAWN,
         .collimated = attenuation->collimated,
-        .image = skg_image_of(place, sums->raster->layout.columns / sums->fine,
-                              sums->raster->layout.rows / sums->fine, attenuation->channels),
+        .image = image_of(sums, attenuation->channels, place),
     };
     for (int k = 0; k < 4; k++) args.window[k] = attenuation->window[k];
     args.layout.first_plane = sums->pass * args.layout.planes;
@@ -272,6 +285,29 @@ static skg_attenuate_double scalars_of(const skg_sums *sums, const skg_camera *c
     find_world(camera, attenuation, args.world);
     if (shades_of(attenuation)) skg_shades_see(attenuation->shades, camera, &args.shades);
     return args;
+}
+
+/* Gives the device the lines of a curved detector and the tables of shades, where they differ from those it has. tables: the buffer
+ * of the kernel. */
+static skg_status send_lines(skg_attenuator *attenuator, const skg_camera *camera, int32_t is_double,
+                             const skg_attenuation *attenuation, cl_mem *tables) {
+    *tables = attenuation->tables.memory;
+    if (!skg_camera_is_curved(camera)) return SKG_OK;
+    const int64_t lines = SKG_LINES_SIZE(camera->rows);
+    const int64_t shades = shades_of(attenuation) ? attenuation->shades->table_count : 0;
+    double *made = NULL;
+    SKG_TRY(skg_alloc(lines + shades, sizeof *made, "attenuation", &made));
+    skg_bends_table(camera, 1, made);
+    if (shades) memcpy(made + lines, attenuation->shades->tables, (size_t)shades * sizeof *made);
+    skg_status status = SKG_OK;
+    if (attenuator->sent_count != lines + shades ||
+        memcmp(made, attenuator->sent, (size_t)(lines + shades) * sizeof *made) != 0)
+        status = upload(attenuator->context, is_double, lines + shades, made, &attenuator->lines);
+    skg_free(&attenuator->sent);
+    attenuator->sent = made;
+    attenuator->sent_count = status == SKG_OK ? lines + shades : 0;
+    *tables = attenuator->lines.memory;
+    return status;
 }
 
 skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const skg_camera *camera,
@@ -291,6 +327,8 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     if (noise) args.key = *noise;
     SKG_ROUND_ARGUMENTS(args, rounded, shades.rows);
     SKG_TRY(get_kernel(attenuator, &key, &kernel));
+    cl_mem tables = NULL;
+    SKG_TRY(send_lines(attenuator, camera, is_double, attenuation, &tables));
     const skg_argument arguments[] = {
         SKG_ARGUMENT_WITH(ATTENUATE, args, is_double, args, rounded),
         SKG_ARGUMENT(ATTENUATE, copies, raster->sums.memory),
@@ -301,7 +339,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
         SKG_ARGUMENT(ATTENUATE, lists, sums->lists),
         SKG_ARGUMENT(ATTENUATE, range, attenuation->range.memory),
         SKG_ARGUMENT(ATTENUATE, polynomials, attenuation->polynomials.memory),
-        SKG_ARGUMENT(ATTENUATE, tables, attenuation->tables.memory),
+        SKG_ARGUMENT(ATTENUATE, tables, tables),
         SKG_ARGUMENT(ATTENUATE, negative, negative),
         SKG_ARGUMENT(ATTENUATE, output, place->memory),
     };
@@ -390,10 +428,8 @@ skg_status skg_attenuate_flat_field(skg_attenuator *attenuator, const skg_sums *
 skg_status skg_attenuate_logarithm(skg_attenuator *attenuator, const skg_sums *sums,
                                    const skg_attenuation *attenuation, const skg_image_place *place,
                                    skg_stage_log *log) {
-    const int64_t columns = sums->raster->layout.columns / sums->fine,
-                  rows = sums->raster->layout.rows / sums->fine;
-    const skg_image_args image =
-        skg_image_of(place, columns, rows, attenuation->channels / attenuation->layers);
+    const skg_image_args image = image_of(sums, attenuation->channels / attenuation->layers, place);
+    const int64_t columns = image.columns, rows = image.rows;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(LOGARITHM, image, image),
         SKG_ARGUMENT(LOGARITHM, output, place->memory),

@@ -46,6 +46,7 @@ skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *optio
         {"SKG_SEAMS", options->seams != 0},
         {"SKG_LISTED", options->listed != 0},
         {"SKG_HALF", options->half != 0},
+        {"SKG_CURVED", options->curved != 0},
         {"SKG_CPU", !context->device->info.gpu},
     };
     const char *all[HEADERS + LIMIT];

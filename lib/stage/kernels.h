@@ -14,6 +14,7 @@ typedef struct {
     int32_t seams;        /* 1: parts may touch, so that edges are moved for coverage */
     int32_t half;         /* 1: distances are rounded to 16 bits; precision is single */
     int32_t listed;       /* 1: parts contribute as their lists say; 0: to one plane each, without bias */
+    int32_t curved;       /* 1: rows of the raster are lines of a curved detector */
 } skg_kernel_options;
 
 /* How many lanes kernels with wide vectors use on this device. */

@@ -56,6 +56,8 @@ static void round_entry(const skg_part_double *from, skg_part_float *to) {
     to->vertices = from->vertices;
     to->turned = from->turned;
     to->fine = from->fine;
+    to->lines = from->lines;
+    to->reserved = 0;
     to->first_contribution = from->first_contribution;
     to->contributions = from->contributions;
 }
@@ -87,6 +89,31 @@ static double steepest(const skg_geometry *geometry, const skg_camera *camera, c
     return (fine ? FINE_SHARE : STEEP_SHARE) * fabs(z) / last_bit;
 }
 
+/* Bytes of the lines of a curved detector, which stand behind the entries. */
+static size_t lines_size(const skg_geometry *geometry, const skg_camera *camera) {
+    const size_t number = skg_geometry_is_double(geometry) ? sizeof(double) : sizeof(float);
+    return skg_camera_is_curved(camera) ? (size_t)SKG_LINES_SIZE(camera->rows) * number : 0;
+}
+
+/* Makes memory for the lines, and writes them. */
+static skg_status fill_lines(const skg_geometry *geometry, const skg_camera *camera, skg_table_slot *slot) {
+    const size_t table = (size_t)geometry->parts * skg_geometry_entry_size(geometry);
+    const size_t lines = lines_size(geometry, camera);
+    if ((int64_t)lines > slot->lines_bytes) {
+        SKG_TRY(skg_realloc((int64_t)(table + lines), 1, "part table", &slot->entries));
+        slot->lines_bytes = (int64_t)lines;
+    }
+    if (lines > 0) skg_bends_table(camera, skg_geometry_is_double(geometry), (char *)slot->entries + table);
+    return SKG_OK;
+}
+
+/* The reals from an entry to the lines. */
+static SKG_INT way_to_lines(const skg_geometry *geometry, const skg_camera *camera, int64_t part) {
+    const size_t number = skg_geometry_is_double(geometry) ? sizeof(double) : sizeof(float);
+    const size_t reals = skg_geometry_entry_size(geometry) / number;
+    return skg_camera_is_curved(camera) ? (SKG_INT)((size_t)(geometry->parts - part) * reals) : 0;
+}
+
 /* pass: of several that are drawn together; their contributions stand one behind the other. */
 static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const skg_camera *camera,
                               const skg_geometry_part *part, double scale, skg_table_slot *slot) {
@@ -97,6 +124,7 @@ static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const 
         slot->capacity = total;
     }
     slot->contribution_count = 0;
+    SKG_TRY(fill_lines(geometry, camera, slot));
     for (int64_t p = 0; p < geometry->parts; p++) {
         skg_part_double local,
             *entry = skg_geometry_is_double(geometry) ? &((skg_part_double *)slot->entries)[p] : &local;
@@ -108,6 +136,8 @@ static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const 
         entry->fine = layout->fine && (thin || part[p].touches);
         entry->steepest = steepest(geometry, camera, &part[p], thin);
         entry->shift = part[p].shift;
+        entry->lines = way_to_lines(geometry, camera, p);
+        entry->reserved = 0;
         entry->first_contribution = (SKG_INT)(pass * total + slot->contribution_count);
         entry->contributions = (SKG_INT)part[p].contributions;
         if (!skg_geometry_is_double(geometry)) round_entry(entry, &((skg_part_float *)slot->entries)[p]);
@@ -122,9 +152,12 @@ static skg_status fill_tables(const skg_geometry *geometry, int64_t pass, const 
     return SKG_OK;
 }
 
-static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, const skg_table_slot *b) {
-    return a->contribution_count == b->contribution_count &&
-           memcmp(a->entries, b->entries, (size_t)geometry->parts * skg_geometry_entry_size(geometry)) == 0 &&
+/* lines: bytes behind the entries of a. */
+static int same_tables(const skg_geometry *geometry, const skg_table_slot *a, const skg_table_slot *b,
+                       size_t lines) {
+    return a->contribution_count == b->contribution_count && (int64_t)lines <= b->lines_bytes &&
+           memcmp(a->entries, b->entries,
+                  (size_t)geometry->parts * skg_geometry_entry_size(geometry) + lines) == 0 &&
            (a->contribution_count == 0 ||
             memcmp(a->contributions, b->contributions,
                    (size_t)a->contribution_count * contribution_size(geometry)) == 0);
@@ -135,7 +168,8 @@ static skg_status upload_tables(skg_context *context, skg_geometry *geometry, co
                                 cl_event *read) {
     cl_command_queue queue = context->device->queue;
     const int64_t bytes = tables->passes * tables->contribution_count * (int64_t)contribution_size(geometry);
-    const int64_t table = tables->passes * geometry->parts * (int64_t)skg_geometry_entry_size(geometry);
+    const int64_t table =
+        tables->passes * geometry->parts * (int64_t)skg_geometry_entry_size(geometry) + tables->lines_bytes;
     geometry->state++;
     geometry->uploaded = 0; /* if one of the two writes fails, the device has neither table */
     SKG_TRY(skg_buffer_reserve(context, &geometry->contribution_table, bytes, CL_MEM_READ_ONLY,
@@ -156,8 +190,11 @@ skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, cons
     skg_table_slot *slot = &geometry->slots[next];
     SKG_TRY(wait_for(slot));
     SKG_TRY(fill_tables(geometry, 0, camera, part, scale, slot));
-    if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot])) return SKG_OK;
+    const size_t lines = lines_size(geometry, camera);
+    if (geometry->uploaded && same_tables(geometry, slot, &geometry->slots[geometry->slot], lines))
+        return SKG_OK;
     const skg_pass_tables tables = {.passes = 1,
+                                    .lines_bytes = (int64_t)lines,
                                     .contribution_count = slot->contribution_count,
                                     .entries = slot->entries,
                                     .contributions = slot->contributions};

@@ -18,13 +18,12 @@ typedef struct {
     int32_t more_sums; /* 1: other kernels add to the sums of the first copy after a frame */
     int32_t passes;    /* of a frame that are drawn together, SKG_STRATEGY_COPIES; 0 or 1: each by itself */
     int32_t side;      /* of these, how many one worker draws side by side: 1 or 4; passes: a multiple */
-    int32_t reserved;  /* 0 */
     int64_t columns, rows; /* of the detector */
     int64_t planes;        /* of accumulators, >= 1 */
     int64_t triangles;     /* the most of a frame */
 } skg_raster_options;
 _Static_assert(sizeof(skg_raster_options) ==
-                   sizeof(skg_kernel_options) + 7 * sizeof(int32_t) + 4 * sizeof(int64_t),
+                   sizeof(skg_kernel_options) + 6 * sizeof(int32_t) + 4 * sizeof(int64_t),
                "options have no gaps: they are compared as bytes");
 
 typedef struct skg_raster skg_raster;

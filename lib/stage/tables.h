@@ -54,7 +54,8 @@ static inline skg_camera_place skg_geometry_place(const skg_geometry_part *part,
  * tables does not wait for the frames before it: as many frames can be enqueued ahead as there are copies. */
 enum { SKG_TABLE_SLOTS = 64 };
 typedef struct {
-    void *entries;       /* skg_part_float or skg_part_double [parts] */
+    void *entries;       /* skg_part_float or skg_part_double [parts]; then the lines of a curved detector */
+    int64_t lines_bytes; /* for which there is memory */
     void *contributions; /* skg_contribution_float or skg_contribution_double [contribution_count] */
     int64_t contribution_count, capacity;
     cl_event read; /* of the last write from this slot; NULL: none */
@@ -81,7 +82,8 @@ typedef struct {
     int32_t bad_stands;  /* 1: `bad` is of the frame before, and is reset by the next projection */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
-    skg_buffer projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/raster/fine.clh) */
+    skg_buffer
+        projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/raster/fine.clh) */
     /* int: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
     skg_buffer bad;
 } skg_geometry;
@@ -105,7 +107,8 @@ skg_status skg_geometry_weigh(skg_context *context, skg_geometry *geometry, cons
 /* The tables of passes that are drawn together, on the host. All zero: of none. */
 typedef struct {
     int64_t passes, contribution_count; /* of each pass */
-    void *entries, *contributions;      /* staged; one pass behind the other */
+    int64_t lines_bytes;           /* of the lines of a curved detector, behind the entries; 0: it is flat */
+    void *entries, *contributions; /* staged; one pass behind the other */
 } skg_pass_tables;
 
 /* Adds the tables of one pass to those of others that differ in their cameras and scales. There are at most `room`. */

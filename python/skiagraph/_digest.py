@@ -34,6 +34,8 @@ def digest(given: str, state: State, trajectory: Scan | None, options: Mapping[s
     if trajectory is not None:
         changes["views"] = [np.concatenate((v.source, v.detector, v.column_step, v.row_step)) for v in trajectory]
         changes["pixels"] = [*trajectory[0].pixels, trajectory[0].projection]
+        if trajectory[0].radius:
+            changes["radius"] = trajectory[0].radius
     if not changes and not others:
         return given
     made = hashlib.sha256(given.encode())

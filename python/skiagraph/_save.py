@@ -135,12 +135,14 @@ def _write_view(state: State, text: dict[str, Any]) -> None:
     shape = _get(source, "Shape")
     if not isinstance(shape, list) or view.projection != "point":
         _put(source, "Shape", "PointSource" if view.projection == "point" else "ParallelBeam")
-    _drop(detector, "UpVector", "RightVector", "Size", "Spacing")
+    _drop(detector, "UpVector", "RightVector", "Size", "Spacing", "Curved")
     columns, rows = _binning(text)  # a file has the sensor's pixels
     pixels = [view.pixels[0] * columns, view.pixels[1] * rows]
     for name, value in (("Position", _mm(view.detector)), ("ColumnStep", _mm(view.column_step / columns)),
                         ("RowStep", _mm(view.row_step / rows)), ("NumberOfPixels", pixels)):
         _put(detector, name, value)
+    if view.radius > 0:
+        _put(detector, "Curved", {"Radius": [view.radius, "mm"], "Axis": "columns"})
 
 
 def beam_text(beam: Beam) -> dict[str, Any]:

@@ -81,10 +81,11 @@ class Scan(Sequence[View]):
 
     @classmethod
     def load(cls, view: View, path: str | os.PathLike[str], **fields: Any) -> Scan:
-        """A scan of poses from a text file: a line for each projection with the 12 numbers of table()."""
+        """A scan of poses from a text file: a line for each projection with the 12 numbers of table(), and of a curved detector its
+        radius, mm."""
         read = cls.__new__(cls)
         read._make("skg_scan_load_table", view, {}, None, encode(path, "path"))
-        return cls.table(view, [np.concatenate((v.source, v.detector, v.column_step, v.row_step)) for v in read], **fields)
+        return cls.table(read[0], [np.concatenate((v.source, v.detector, v.column_step, v.row_step)) for v in read], **fields)
 
     @classmethod
     def xtekct(cls, path: str | os.PathLike[str]) -> Scan:

@@ -19,7 +19,9 @@ class View:
 
     source: a position, or a direction for the projection "parallel_from_infinity". detector: its centre. column_step
     and row_step: from one column, and from one row, to the next. pixels: (columns, rows). projection: "point",
-    "parallel" or "parallel_from_infinity".
+    "parallel" or "parallel_from_infinity". radius: of the cylinder on which the columns stand at equal angles, which touches the
+    flat detector in its middle and bends towards the source; 0: the detector is flat. With the distance from source to
+    detector as its radius, its axis goes through the source (third-generation CT).
 
     A matrix moves source and detector together: rotate("z", 10) @ view turns both about the z axis.
 
@@ -32,13 +34,14 @@ class View:
     __array_ufunc__ = None  # array @ view is ours
 
     def __init__(self, *, source: Any, detector: Any, column_step: Any, row_step: Any, pixels: Sequence[int],
-                 projection: str = "point") -> None:
+                 projection: str = "point", radius: float = 0.0) -> None:
         self.source: NDArray[np.float64] = _arrays.vector(source, "source")
         self.detector: NDArray[np.float64] = _arrays.vector(detector, "detector")
         self.column_step: NDArray[np.float64] = _arrays.vector(column_step, "column_step")
         self.row_step: NDArray[np.float64] = _arrays.vector(row_step, "row_step")
         self.pixels: tuple[int, int] = (int(pixels[0]), int(pixels[1]))
         self.projection: str = projection
+        self.radius: float = float(radius)
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -55,11 +58,34 @@ class View:
         infinite = self.projection == "parallel_from_infinity"
         return View(source=turn @ self.source + (0 if infinite else shift), detector=turn @ self.detector + shift,
                     column_step=turn @ self.column_step, row_step=turn @ self.row_step, pixels=self.pixels,
-                    projection=self.projection)
+                    projection=self.projection, radius=self.radius)
+
+    def pixel(self, column: float, row: float) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+        """Where a pixel is, mm, and the step to the next column there. column and row count from the middle of the detector.
+
+        >>> view = View(source=(0, -500, 0), detector=(0, 100, 0), column_step=(1, 0, 0), row_step=(0, 0, -1), pixels=(64, 48),
+        ...             radius=600)
+        >>> place, step = view.pixel(100, 0)  # on a circle about the source
+        >>> round(float(np.linalg.norm(place - view.source)), 9)
+        600.0
+        """
+        centre = self.detector + row * self.row_step
+        if not self.radius > 0:
+            return centre + column * self.column_step, self.column_step
+        width = float(np.linalg.norm(self.column_step))
+        across = self.column_step / width
+        normal = np.cross(self.column_step, self.row_step)
+        normal = normal / np.linalg.norm(normal)
+        towards = -self.source if self.projection == "parallel_from_infinity" else self.source - self.detector
+        normal = normal if normal @ towards > 0 else -normal
+        angle = column * width / self.radius
+        place = centre + self.radius * (np.sin(angle) * across + 2 * np.sin(angle / 2) ** 2 * normal)
+        return place, width * (np.cos(angle) * across + np.sin(angle) * normal)
 
     def _write(self, pointer: Any) -> Any:
         pointer.projection = choice("projection", self.projection, "projection")
         pointer.columns, pointer.rows = int(self.pixels[0]), int(self.pixels[1])
+        pointer.radius = float(self.radius)
         for name, field in _VECTORS.items():
             vector = _arrays.vector(getattr(self, name), name)
             for k in range(3):
@@ -70,7 +96,7 @@ class View:
     def _read(cls, pointer: Any) -> View:
         names = {value: name for name, value in ENUMS["projection"].items()}
         vectors = {name: list(getattr(pointer, field)) for name, field in _VECTORS.items()}
-        return cls(pixels=(pointer.columns, pointer.rows), projection=names[pointer.projection], **vectors)
+        return cls(pixels=(pointer.columns, pointer.rows), projection=names[pointer.projection], radius=pointer.radius, **vectors)
 
     def _key(self) -> tuple[Any, ...]:
         """Equal for equal views."""
@@ -84,7 +110,7 @@ class View:
 
     def __repr__(self) -> str:
         return (f"<View from {self.source.tolist()} to {self.detector.tolist()} mm, {self.pixels[0]} x "
-                f"{self.pixels[1]} pixels, {self.projection}>")
+                f"{self.pixels[1]} pixels, {self.projection}{f', radius {self.radius:g} mm' if self.radius else ''}>")
 
 
 def as_views(views: Any) -> list[View]:

@@ -29,7 +29,7 @@ typedef struct {
     int32_t inside;   /* the source stands in the box */
     int32_t parallel, colours, world, bands, noise, dqe, blur;
     int32_t spot;   /* samples of the source; with strategy copies, for each worker */
-    int32_t shades; /* heel, bow-tie, grid and an oblique scintillator */
+    int32_t shades; /* heel, bow-tie, grid and an oblique scintillator; 2: the first two */
     double electronic, step, tolerance;
     int32_t picture;  /* draws the 3D view instead of an image */
     int32_t scatter;  /* histories */
@@ -39,6 +39,7 @@ typedef struct {
     int32_t variance; /* of the noise, instead of the image */
     int32_t volume;   /* cells instead of the box, which the octahedron displaces */
     int32_t counting; /* the detector counts, with this pile-up beyond 1 */
+    int32_t curved;   /* the detector is a cylinder */
 } group;
 
 enum { BLUR_LINES = 1, BLUR_POINT = 2 };
@@ -110,6 +111,20 @@ static const group groups[] = {
      .noise = 1,
      .colours = 1},
     {.name = "counting_variance", .counting = 1, .noise = 1, .variance = 1},
+    {.name = "curved",
+     .curved = 1,
+     .colours = 1,
+     .world = 1,
+     .falloff = 1,
+     .shades = 2,
+     .noise = 1,
+     .spot = 1},
+    {.name = "curved_tiles", .curved = 1, .strategy = SKG_STRATEGY_TILES, .priority = 2},
+    {.name = "double_curved",
+     .precision = SKG_PRECISION_DOUBLE,
+     .curved = 1,
+     .parallel = 1,
+     .strategy = SKG_STRATEGY_ATOMICS},
     {.name = "show", .picture = 1},
     {.name = "place", .placed = 1},
     {.name = "double_place", .precision = SKG_PRECISION_DOUBLE, .placed = 1}};
@@ -185,6 +200,7 @@ static skg_view make_view(const group *g) {
     view.centre[2] = 200;
     view.column_step[0] = view.row_step[1] = 6;
     if (g->parallel) view.projection = SKG_PROJECTION_PARALLEL;
+    if (g->curved) view.radius = 1000;
     return view;
 }
 
@@ -196,7 +212,7 @@ typedef struct {
     skg_collimation jaws;
 } shades;
 
-static void add_shades(shades *s, skg_plan_options *options) {
+static void add_shades(int32_t which, shades *s, skg_plan_options *options) {
     static const double angles[3] = {-20, 1, 20}, paths[3] = {10, 1, 12};
     skg_material *csi = NULL;
     skg_heel_init(&s->heel);
@@ -210,7 +226,9 @@ static void add_shades(shades *s, skg_plan_options *options) {
     TRY(skg_material_create_named("CsI", &csi));
     TRY(skg_response_create_scintillator(csi, 0.6, 0.8, &options->response));
     skg_material_release(&csi);
-    options->heel = &s->heel, options->bowtie = &s->bowtie, options->grid = &s->grid, options->oblique = 1;
+    options->heel = &s->heel, options->bowtie = &s->bowtie;
+    if (which == 2) return;
+    options->grid = &s->grid, options->oblique = 1;
     s->jaws.kind = SKG_COLLIMATION_DETECTOR, s->jaws.margin_mm = -20;
     options->collimation = &s->jaws;
 }
@@ -261,7 +279,7 @@ static skg_plan *make_plan(skg_context *context, skg_scene *scene, const skg_vie
     spot.shape = SKG_SPOT_RECTANGLE, spot.extent[0] = spot.extent[1] = 1, spot.samples = 2;
     if (g->strategy == SKG_STRATEGY_COPIES) spot.samples = g->spot * context->device->info.compute_units;
     if (g->spot) options.spot = &spot;
-    if (g->shades) add_shades(&more, &options);
+    if (g->shades) add_shades(g->shades, &more, &options);
     if (g->counting) add_counter(g, view, &options);
     skg_scatter_init(&scatter);
     scatter.histories = g->scatter;

@@ -81,6 +81,7 @@ START_TEST(half_names_every_row_that_refuses_it) {
     skg_plan_options *options = &recipe.options;
     ck_assert_int_eq(skg_effects_refuse_half(&recipe, sizeof names, names), 0);
     recipe.is_blurred = recipe.priority_possible = 1, recipe.leaky_count = recipe.volume_count = 1;
+    recipe.view.radius = 1000;
     options->world = world, options->counter = counter;
     options->heel = &heel, options->bowtie = &bowtie, options->grid = &grid, options->scatter = &scatter;
     options->noise = options->oblique = 1;

@@ -83,6 +83,15 @@ static double attenuation(const skg_view *v, double column, double row) {
                    (row - 0.5 * (ROWS - 1)) * v->row_step[k];
         start[k] = v->source[k];
     }
+    if (v->radius > 0) { /* on a circle about the source; the detector's axis is z */
+        const double x = v->centre[0] - v->source[0], y = v->centre[1] - v->source[1];
+        const double sense = v->column_step[0] * -y + v->column_step[1] * x > 0 ? 1 : -1;
+        const double angle =
+            sense * (column - 0.5 * (COLUMNS - 1)) * hypot(v->column_step[0], v->column_step[1]) / v->radius;
+        pixel[0] = v->source[0] + cos(angle) * x - sin(angle) * y;
+        pixel[1] = v->source[1] + sin(angle) * x + cos(angle) * y;
+        pixel[2] = v->centre[2] + (row - 0.5 * (ROWS - 1)) * v->row_step[2];
+    }
     for (int k = 0; k < 3 && v->projection != SKG_PROJECTION_POINT; k++)
         start[k] = pixel[k] + v->source[k] - v->centre[k];
     for (int b = 0; b < BODIES; b++) sum += bodies[b].per_cm / 10 * length_in(&bodies[b], start, pixel);
@@ -278,6 +287,42 @@ START_TEST(a_parallel_beam) {
 }
 END_TEST
 
+/* Third-generation CT: columns at equal angles about the source, up to 28.6 degrees from the middle. A full turn either way, a short scan,
+ * a detector that is displaced along its cylinder, and one that is moved by a quarter of a column. */
+START_TEST(an_equiangular_fan) {
+    view.source[1] = -112, view.centre[1] = 48;
+    view.radius = 160;
+    geometry.projections = 960; /* fewer show streaks beyond the bodies, which are near the source */
+    geometry.step_rad = 2 * PI / 960;
+    options.filter = SKG_FDK_FILTER_HANN;
+    if (_i == 1) geometry.step_rad = -geometry.step_rad;
+    if (_i == 2) {
+        double range = 0;
+        ck_skg(skg_scan_short_range_get(&view, &geometry, &range));
+        ck_assert_double_eq_tol(range, PI + COLUMNS * 0.5 / 160, 1e-12); /* some roundings of 2^-53 */
+        geometry.projections = 660;
+        geometry.step_rad = range / 659;
+    }
+    if (_i == 3) geometry.detector_offset_mm[0] = 40;
+    if (_i == 4) geometry.detector_offset_mm[0] = 0.125, choose_grid(GRIDS - 1);
+    reconstruct();
+    ck_smooth();
+    if (_i == 3) ck_assert_int_eq(seen().displaced, 1);
+}
+END_TEST
+
+START_TEST(what_is_refused_of_curved_detectors) {
+    view.radius = 700; /* the axis lies behind the source */
+    ck_skg(skg_scan_create(&view, &geometry, &scan));
+    ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED, "does not go through the source");
+    skg_scan_release(&scan);
+    view.radius = 600;
+    options.truncation = SKG_FDK_TRUNCATION_EXTRAPOLATE;
+    ck_skg(skg_scan_create(&view, &geometry, &scan));
+    ck_skg_fails(skg_fdk_create(scan, &options, &fdk), SKG_ERR_UNSUPPORTED, "not continued");
+}
+END_TEST
+
 /* A volume elsewhere has the values of the same places. */
 START_TEST(a_detail) {
     const float *volume = NULL;
@@ -354,6 +399,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_detector_that_is_too_narrow);
     tcase_add_test(tests, a_parallel_beam);
     tcase_add_test(tests, a_detail);
+    tcase_add_loop_test(tests, an_equiangular_fan, 0, 5);
+    tcase_add_test(tests, what_is_refused_of_curved_detectors);
     tcase_add_loop_test(tests, an_axis_that_leans, 0, 2);
     tcase_add_test(tests, a_beam_that_leans);
     tcase_add_test(tests, what_is_refused);

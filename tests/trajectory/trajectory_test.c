@@ -297,8 +297,11 @@ START_TEST(tables_in_other_hands) {
     skg_scan_release(&scan);
     write_table("0 -1000 0 0 500 0 1 0 0 0 0\n");
     ck_skg_fails(skg_scan_load_table(&view, NULL, path, &scan), SKG_ERR_FORMAT, "line 1: number 12");
-    write_table("0 -1000 0 0 500 0 1 0 0 0 0 1 9\n");
+    write_table("0 -1000 0 0 500 0 1 0 0 0 0 1 1500 9\n");
     ck_skg_fails(skg_scan_load_table(&view, NULL, path, &scan), SKG_ERR_FORMAT, "more than 12");
+    write_table("0 -1000 0 0 500 0 1 0 0 0 0 1 1500\n0 -1000 0 0 500 0 1 0 0 0 0 1\n");
+    ck_skg_fails(skg_scan_load_table(&view, NULL, path, &scan), SKG_ERR_FORMAT,
+                 "line 2: behind the row step");
     write_table("0 -1000 0 0 500 0 1 0 0 0 0 1\n0 -1000 0 0 500 0 1 0 0 2 0 0\n");
     ck_skg_fails(skg_scan_load_table(&view, NULL, path, &scan), SKG_ERR_SCENE, "projection 1 of the table");
     write_table("# nothing\n");
@@ -423,6 +426,47 @@ START_TEST(rtk_projects_points_where_we_do) {
 }
 END_TEST
 
+/* A table has the radius, as cyl_cone_vec of ASTRA, and RTK an element of its own, where its bend is ours; others are refused. */
+START_TEST(curved_detectors) {
+    static const char *const others[] = {"a.tigre.py", "a.cil.py", "transforms.json"};
+    char text[4000];
+    options.projections = 3, options.step_rad = 0.4;
+    view.radius = 1500;
+    ck_skg(skg_scan_create(&view, &options, &scan));
+    ck_skg(skg_scan_geometry_save(scan, path));
+    skg_scan *table = NULL;
+    skg_view flat = view;
+    flat.radius = 0;
+    ck_skg(skg_scan_load_table(&flat, NULL, path, &table));
+    for (int64_t k = 0; k < 3; k++) {
+        const skg_view want = view_of(k);
+        skg_view got;
+        skg_view_init(&got);
+        ck_skg(skg_scan_view_get(table, k, &got));
+        ck_assert_mem_eq(&got, &want, sizeof got);
+    }
+    skg_scan_release(&table);
+    for (int n = 0; n < 3; n++)
+        ck_skg_fails(skg_scan_geometry_save(scan, others[n]), SKG_ERR_UNSUPPORTED, "no curved detector");
+    unlink(path);
+    snprintf(path, sizeof path, "%s/rtk.xml", folder);
+    ck_skg(skg_scan_geometry_save(scan, path));
+    FILE *stream = fopen(path, "rb");
+    ck_assert_ptr_nonnull(stream);
+    text[fread(text, 1, sizeof text - 1, stream)] = '\0';
+    fclose(stream);
+    ck_assert_ptr_nonnull(strstr(text, "<RadiusCylindricalDetector>1500</RadiusCylindricalDetector>"));
+    skg_scan_release(&scan);
+    options.detector_offset_mm[0] = 30;
+    ck_skg(skg_scan_create(&view, &options, &scan));
+    /* on the circle about the source, 30 mm along it */
+    const skg_view moved = view_of(0);
+    ck_vector(moved.centre, -1500 * sin(0.02), -1000 + 1500 * cos(0.02), 0);
+    unlink(path);
+    ck_skg_fails(skg_scan_geometry_save(scan, path), SKG_ERR_UNSUPPORTED, "where RTK bends it");
+}
+END_TEST
+
 START_TEST(what_cannot_be_written) {
     ck_skg(skg_scan_create(&view, &options, &scan));
     ck_skg_fails(skg_scan_geometry_save(scan, "a.txt"), SKG_ERR_ARGUMENT, ".csv");
@@ -487,6 +531,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, tables_in_other_hands);
     tcase_add_test(tests, nerf_sees_points_where_we_do);
     tcase_add_test(tests, rtk_projects_points_where_we_do);
+    tcase_add_test(tests, curved_detectors);
     tcase_add_test(tests, what_cannot_be_written);
     tcase_add_test(tests, options_out_of_range);
 }

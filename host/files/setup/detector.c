@@ -162,6 +162,25 @@ static skg_status fit(skg_setup_reader *reader, const skg_json_object *detector)
     return skg_setup_fit_view(reader, detector, spacing);
 }
 
+/* The cylinder on which the columns stand. Its pixels keep their sizes. */
+static skg_status read_curved(const skg_json_object *detector, skg_view *view) {
+    static const char *const axes[] = {"columns"};
+    const skg_json_node node = skg_json_member(detector, "Curved");
+    skg_json_object curved;
+    skg_json_node radius;
+    int64_t axis = 0;
+    if (!node.value) return SKG_OK;
+    SKG_TRY(skg_json_read_object(&node, &skg_keys_curved, &curved));
+    SKG_TRY(skg_json_need(&curved, "Radius", "[1000, \"mm\"]", &radius));
+    SKG_TRY(skg_json_lengths(&radius, "[1000, \"mm\"]", 1, &view->radius));
+    if (!(view->radius > 0))
+        return skg_json_fail(&radius, SKG_ERR_SCENE,
+                             "a cylinder of radius %g mm; give one above 0, or leave Curved out",
+                             view->radius);
+    const skg_json_node along = skg_json_member(&curved, "Axis");
+    return along.value ? skg_json_choice(&along, "Axis", axes, 1, &axis) : SKG_OK;
+}
+
 skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node *node) {
     skg_view *view = &reader->setup->view;
     skg_json_object detector;
@@ -176,6 +195,7 @@ skg_status skg_setup_read_detector(skg_setup_reader *reader, const skg_json_node
             "Detector.Position, or give Source.Position");
     else
         SKG_TRY(place(&detector, &position, view));
+    SKG_TRY(read_curved(&detector, view));
     SKG_TRY(read_oversampling(&detector, &reader->setup->supersampling));
     SKG_TRY(skg_setup_read_counting(reader, &detector));
     SKG_TRY(skg_setup_read_response(reader, &detector));

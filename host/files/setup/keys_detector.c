@@ -25,11 +25,18 @@ static const skg_json_key detector[] = {
     SKG_KEY("DQE", "rows 2", "with Noise: detective quantum efficiency by line pairs per mm"),
     SKG_KEY("ColumnStep", "lengths 3", "[x, y, z, unit] from one column to the next"),
     SKG_KEY("RowStep", "lengths 3", "[x, y, z, unit] from one row to the next"),
+    SKG_KEY("Curved", "object Curved", "columns at equal angles on a cylinder; flat by default"),
     SKG_KEY("Binning", "pair integer 1..16", "[columns, rows] of sensor pixels that are summed into one"),
     SKG_KEY("BinningNoise", "words each, once",
             "electronic noise of every sensor pixel, the default, or of every bin"),
 };
 SKG_TABLE(skg_keys_detector, "Detector", detector);
+
+static const skg_json_key curved[] = {
+    SKG_KEY("Radius", "length", "of the cylinder, whose axis lies towards the source"),
+    SKG_KEY("Axis", "words columns", "columns are parallel to the axis"),
+};
+SKG_TABLE(skg_keys_curved, "Curved", curved);
 
 static const skg_json_key grid[] = {
     SKG_KEY("Ratio", "number 0<..", "height of the strips over the width of an interspace"),

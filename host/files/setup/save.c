@@ -132,7 +132,7 @@ static int move_sample(json_t *sample, const double *motion) {
 
 static int write_view(const skg_setup *setup, json_t *scene, const skg_view *view) {
     static const char *const of_source[] = {"From", "Direction", "Position"};
-    static const char *const of_detector[] = {"UpVector", "RightVector", "Size", "Spacing"};
+    static const char *const of_detector[] = {"UpVector", "RightVector", "Size", "Spacing", "Curved"};
     json_t *source = get(scene, "Source"), *detector = get(scene, "Detector");
     const int64_t pixels[2] = {view->columns * setup->bins[0], view->rows * setup->bins[1]};
     double steps[2][3]; /* of the sensor's pixels, as files have them */
@@ -147,7 +147,9 @@ static int write_view(const skg_setup *setup, json_t *scene, const skg_view *vie
                numbers(3, view->source, infinite ? NULL : "mm")) &&
            put(detector, "Position", numbers(3, view->centre, "mm")) &&
            put(detector, "ColumnStep", numbers(3, steps[0], "mm")) &&
-           put(detector, "RowStep", numbers(3, steps[1], "mm")) && put(detector, "NumberOfPixels", size);
+           put(detector, "RowStep", numbers(3, steps[1], "mm")) && put(detector, "NumberOfPixels", size) &&
+           (view->radius == 0 ||
+            put(detector, "Curved", json_pack("{s:o}", "Radius", numbers(1, &view->radius, "mm"))));
 }
 
 /* A scan becomes a table of the poses that it has. */

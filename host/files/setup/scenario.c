@@ -95,6 +95,9 @@ static skg_status put_geometry(const skg_view *view, const skg_scenario_stage *s
                                double *distance) {
     static const double away_mm = 1000; /* of a source at infinity: any */
     double source[3], beam[3], columns[3], normal[3], u[3];
+    if (view->radius > 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "a scenario of CTSimU has no curved detector; write the scene as .json");
     skg_cross(view->column_step, view->row_step, normal);
     skg_scale_vector(1 / skg_length(normal), normal, normal);
     skg_scale_vector(1 / skg_length(view->column_step), view->column_step, columns);

@@ -81,11 +81,13 @@ SKG_INIT(skg_fdk_report)
  *
  *     scan      retained. The angles are those of its views about the axis. A full turn needs no weights, unless the
  *               detector is displaced by more than a column (half-fan): then Wang's (Med. Phys. 29 (2002) 1634-1636); from 180
- *               degrees plus the fan on, Parker's weights are used (Med. Phys. 9 (1982) 254-257)
+ *               degrees plus the fan on, Parker's weights are used (Med. Phys. 9 (1982) 254-257). Of a curved detector whose
+ *               axis goes through the source, columns are at equal angles (Kak and Slaney 1988, sections 3.4.2 and 3.6)
  *     options   NULL: the defaults
  *     fdk       result; the caller releases it
  *     errors    SKG_ERR_ARGUMENT (an option); SKG_ERR_UNSUPPORTED if the scan is not circular, if its range is
- *               too short, or if the axis leans against the detector's columns or the beam by more than 5.7 degrees */
+ *               too short, if the axis leans against the detector's columns or the beam by more than 5.7 degrees, or of
+ *               other curved detectors */
 SKG_API skg_status skg_fdk_create(skg_scan *scan, const skg_fdk_options *options, skg_fdk **fdk);
 
 /** Frees a reconstruction. */

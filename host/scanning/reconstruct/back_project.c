@@ -2,6 +2,7 @@
 #include "core/maths.h"
 #include "core/threads.h"
 #include "reconstruct/reconstruction.h"
+#include "scene/curve.h"
 
 #include <math.h>
 
@@ -80,8 +81,31 @@ static void back_project_line(skg_fdk *fdk, const pixel_map *map, double scale, 
     }
 }
 
+/* The same of a curved detector about the source: a voxel is seen by its angle about the detector's axis, and weighs by the inverse
+ * square of its distance from that axis (Kak and Slaney 1988, sections 3.4.2 and 3.6; H. Turbell, thesis 1001, Linkoping 2001, on
+ * cylindrical detectors). */
+static void back_project_fan(skg_fdk *fdk, const skg_orbit_pose *pose, double scale, int64_t y, int64_t z) {
+    const skg_fdk_options *o = &fdk->options;
+    const skg_view *v = &pose->view;
+    const double middle[2] = {0.5 * (double)(v->columns - 1), 0.5 * (double)(v->rows - 1)};
+    float *to = fdk->volume + (z * o->voxels[1] + y) * o->voxels[0];
+    skg_curvature curve;
+    skg_curvature_find(v, NULL, &curve);
+    for (int64_t x = 0; x < o->voxels[0]; x++) {
+        double point[3] = {skg_fdk_place(o, 0, x), skg_fdk_place(o, 1, y), skg_fdk_place(o, 2, z)};
+        skg_add_scaled(point, -1, v->source, point);
+        const double across = skg_dot(point, curve.across), depth = -skg_dot(point, curve.normal);
+        const double far = hypot(across, depth), down = skg_dot(point, curve.down) * curve.radius / far;
+        const double column = middle[0] + atan2(across, depth) / curve.angle;
+        const double row = middle[1] + (down + curve.along) / curve.height;
+        const double ratio = far / pose->radius;
+        to[x] += (float)(scale * image_at(fdk, column, row) / (ratio * ratio));
+    }
+}
+
 typedef struct {
     skg_fdk *fdk;
+    const skg_orbit_pose *pose;
     const pixel_map *map;
     double scale;
 } back_projection;
@@ -89,7 +113,11 @@ typedef struct {
 /* A slice of the volume: a skg_item_work. */
 static skg_status back_project_slice(void *user, int64_t z) {
     const back_projection *b = user;
-    for (int64_t y = 0; y < b->fdk->options.voxels[1]; y++) back_project_line(b->fdk, b->map, b->scale, y, z);
+    for (int64_t y = 0; y < b->fdk->options.voxels[1]; y++)
+        if (b->pose->fan_step > 0)
+            back_project_fan(b->fdk, b->pose, b->scale, y, z);
+        else
+            back_project_line(b->fdk, b->map, b->scale, y, z);
     return SKG_OK;
 }
 
@@ -97,6 +125,7 @@ skg_status skg_fdk_back_project(skg_fdk *fdk, const skg_orbit_pose *pose) {
     enum { MM_PER_CM = 10 };
     pixel_map map;
     find_map(pose, &map);
-    back_projection b = {.fdk = fdk, .map = &map, .scale = MM_PER_CM * fdk->orbit.step / pose->spacing};
+    back_projection b = {
+        .fdk = fdk, .pose = pose, .map = &map, .scale = MM_PER_CM * fdk->orbit.step / pose->spacing};
     return skg_parallel(fdk->options.voxels[2], back_project_slice, &b);
 }

@@ -1,11 +1,11 @@
 /* Filtered backprojection of cone beams. */
-#include "reconstruct/reconstruction.h"
 #include "core/core.h"
 #include "core/files.h"
 #include "core/log.h"
 #include "core/maths.h"
 #include "core/text.h"
 #include "image/image.h"
+#include "reconstruct/reconstruction.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -61,6 +61,7 @@ static skg_status find_padding(skg_fdk *fdk) {
 
 static skg_status prepare(skg_fdk *fdk) {
     skg_view view;
+    skg_orbit_pose pose = {0};
     skg_view_init(&view);
     SKG_TRY(skg_orbit_find(fdk->scan, &fdk->options, &fdk->orbit));
     SKG_TRY(skg_scan_view_get(fdk->scan, 0, &view));
@@ -70,7 +71,13 @@ static skg_status prepare(skg_fdk *fdk) {
     const int64_t *n = fdk->options.voxels;
     SKG_TRY(find_padding(fdk));
     const int64_t padded = fdk->pad[0] + view.columns + fdk->pad[1];
-    SKG_TRY(skg_row_filter_create(padded, fdk->options.filter == SKG_FDK_FILTER_HANN, &fdk->filter));
+    SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, &fdk->orbit, 0, &pose));
+    if (pose.fan_step > 0 && fdk->options.truncation != SKG_FDK_TRUNCATION_NONE)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "reconstruction: rows of a curved detector are not continued; leave the truncation out");
+    SKG_TRY(skg_row_filter_create(padded, fdk->options.filter == SKG_FDK_FILTER_HANN, pose.fan_step,
+                                  &fdk->filter));
     fdk->fine = skg_row_fine(&fdk->filter, padded);
     SKG_TRY(skg_alloc(fdk->fine * view.rows, sizeof(float), "projection", &fdk->image));
     return skg_alloc(n[0] * n[1] * n[2], sizeof(float), "volume", &fdk->volume);

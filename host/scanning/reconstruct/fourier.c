@@ -29,7 +29,15 @@ static void transform(const skg_row_filter *f, int64_t n, double *re, double *im
         }
 }
 
-skg_status skg_row_filter_create(int64_t samples, int is_hann, skg_row_filter *f) {
+/* What the ramp is multiplied by `away` from its middle, rad. Rays of a fan are less than half a turn apart, and so are the samples that
+ * the ramp joins; beyond that it joins zeros. */
+static double of_fan(double away) {
+    static const double MOST = 0.9 * SKG_PI;
+    const double x = away < MOST ? away : MOST;
+    return x > 0 ? x / sin(x) * (x / sin(x)) : 1;
+}
+
+skg_status skg_row_filter_create(int64_t samples, int is_hann, double angle, skg_row_filter *f) {
     double *work = NULL;
     /* Linear interpolation between the samples of a smooth row adds errors of its own, beside edges as large as the bar of 1 %.
      * Of the ramp alone it damps the highest frequencies, which would ripple more without it. */
@@ -48,7 +56,7 @@ skg_status skg_row_filter_create(int64_t samples, int is_hann, skg_row_filter *f
     }
     work[0] = 0.25;
     for (int64_t k = 1; k <= n / 2; k += 2)
-        work[k] = work[n - k] = -1 / (SKG_PI * SKG_PI * (double)k * (double)k);
+        work[k] = work[n - k] = -of_fan((double)k * angle) / (SKG_PI * SKG_PI * (double)k * (double)k);
     transform(f, n, work, work + n, -1);
     for (int64_t k = 0; k <= n / 2; k++) {
         const double frequency = (double)k / (double)(n / 2);

@@ -15,8 +15,9 @@ typedef struct {
     double *sines;
 } skg_row_filter;
 
-/* is_hann: times a Hann window. Free also after a failure. */
-skg_status skg_row_filter_create(int64_t samples, int is_hann, skg_row_filter *filter);
+/* is_hann: times a Hann window. angle: of a fan of equal angles, rad from one sample to the next, whose ramp is that of Kak and Slaney's
+ * eq. 3.97: times (x / sin x)^2 at the angle x; 0: samples lie on a plane. Free also after a failure. */
+skg_status skg_row_filter_create(int64_t samples, int is_hann, double angle, skg_row_filter *filter);
 void skg_row_filter_free(skg_row_filter *filter);
 
 /* Number of samples of a filtered row. */

@@ -2,6 +2,7 @@
 #include "reconstruct/orbit.h"
 
 #include "core/maths.h"
+#include "scene/curve.h"
 
 #include <math.h>
 #include <string.h>
@@ -82,10 +83,28 @@ static skg_status check_leans(const double *axis, int64_t index, const skg_orbit
                       index);
 }
 
+/* The angle of a column of a curved detector, whose axis has to go through the source: only then columns are at equal angles. */
+static skg_status find_fan(int64_t index, skg_orbit_pose *pose) {
+    static const double OFF = 1e-6; /* of the radius */
+    skg_curvature curve;
+    pose->fan_step = 0;
+    if (!(pose->view.radius > 0)) return SKG_OK;
+    skg_curvature_find(&pose->view, NULL, &curve);
+    if (curve.parallel || hypot(curve.distance - curve.radius, curve.side) > OFF * curve.radius)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "projection %lld: the axis of the curved detector does not go through the source, so that its "
+            "columns are not at equal angles; only such ones are reconstructed",
+            (long long)index);
+    pose->fan_step = curve.angle;
+    return SKG_OK;
+}
+
 /* A column step of the detector, seen at the axis. */
 static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose *pose) {
     const skg_view *view = &pose->view;
     double to_detector[3];
+    SKG_TRY(find_fan(index, pose));
     SKG_TRY(check_leans(axis, index, pose));
     pose->spacing = fabs(skg_dot(view->column_step, pose->across));
     if (pose->is_parallel) return SKG_OK;
@@ -95,6 +114,7 @@ static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose
         return skg_fail(SKG_ERR_UNSUPPORTED, "projection %lld: the detector is not behind the axis",
                         (long long)index);
     pose->spacing *= pose->radius / depth;
+    if (pose->fan_step > 0) pose->spacing = pose->radius * pose->fan_step;
     return SKG_OK;
 }
 
@@ -121,8 +141,13 @@ void skg_orbit_ray(const skg_orbit_pose *pose, int64_t row, int64_t column, doub
         skg_scale_vector(1, pose->forward, ray);
         return;
     }
-    skg_add_scaled(view->centre, (double)column - 0.5 * (double)(view->columns - 1), view->column_step, ray);
-    skg_add_scaled(ray, (double)row - 0.5 * (double)(view->rows - 1), view->row_step, ray);
+    if (pose->fan_step > 0) {
+        skg_view_pixel(view, (double)column, (double)row, ray);
+    } else {
+        skg_add_scaled(view->centre, (double)column - 0.5 * (double)(view->columns - 1), view->column_step,
+                       ray);
+        skg_add_scaled(ray, (double)row - 0.5 * (double)(view->rows - 1), view->row_step, ray);
+    }
     skg_add_scaled(ray, -1, view->source, ray);
 }
 

@@ -16,6 +16,7 @@ typedef struct {
     double spacing;    /* of the columns, seen at the axis, mm */
     double centre[3];  /* on the axis */
     double angle;      /* from that of the first projection, rad, not below 0 */
+    double fan_step;   /* of a curved detector, rad from one column to the next; 0: it is flat */
 } skg_orbit_pose;
 
 typedef struct {

@@ -88,7 +88,9 @@ static int write_rotation(hid_t group, const skg_scan_file *file) {
         const char *name;
         const double *vector;
     } vectors[] = {{"axis", o->axis}, {"centre_of_rotation", o->centre}};
-    int done = skg_hdf5_put_number(group, "projection", H5T_NATIVE_INT32, &file->view.projection);
+    int done = skg_hdf5_put_number(group, "projection", H5T_NATIVE_INT32, &file->view.projection) &&
+               (file->view.radius == 0 ||
+                skg_hdf5_put_number(group, "detector_radius", H5T_NATIVE_DOUBLE, &file->view.radius));
     for (int v = 0; v < 2 && done && (!skg_scan_is_table(file->options.scan) || o->step_rad != 0); v++) {
         const hid_t attribute =
             H5Acreate2(group, vectors[v].name, H5T_NATIVE_DOUBLE, space, H5P_DEFAULT, H5P_DEFAULT);
@@ -136,6 +138,8 @@ static int is_nexus(const skg_scan_file *file) {
 /* The file is aligned to pages, so that projections are. */
 static skg_status make_file(skg_scan_file *file, const char *path, const geometry *g) {
     enum { PAGE = 4096, HELD = 64 << 10 };
+    if (is_nexus(file) && file->view.radius > 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: NXtomo has no curved detector; write .h5", file->path);
     const hid_t access = H5Pcreate(H5P_FILE_ACCESS);
     int done = H5Pset_libver_bounds(access, H5F_LIBVER_EARLIEST, H5F_LIBVER_LATEST) >= 0 &&
                H5Pset_alignment(access, PAGE, PAGE) >= 0;

@@ -95,7 +95,8 @@ static int copy_group(hid_t from, hid_t to, const char *name, const char *const 
 int skg_hdf5_copy_groups(hid_t from, hid_t to) {
     static const char *const places[] = {"source", "centre", "column_step", "row_step",
                                          "time",   "phase",  NULL};
-    static const char *const rotation[] = {"projection", "axis", "centre_of_rotation", NULL};
+    static const char *const rotation[] = {"projection", "axis", "centre_of_rotation", "detector_radius",
+                                           NULL};
     static const char *const progress[] = {"done", "checksum", NULL};
     static const char *const origin[] = {"hash", "samples", "program", NULL};
     return copy_group(from, to, "geometry", places, rotation) &&

@@ -102,7 +102,9 @@ static skg_status read_poses(skg_scan_reader *reader, double *vectors, double *p
         for (int64_t k = 0; k < reader->projections; k++)
             memcpy(poses + 12 * k + 3 * v, vectors + 3 * k, 3 * sizeof *poses);
     }
+    double radius = 0; /* of a flat detector, which has none */
     read_attribute(reader->root, "geometry", "projection", H5T_NATIVE_INT32, &projection);
+    read_attribute(reader->root, "geometry", "detector_radius", H5T_NATIVE_DOUBLE, &radius);
     reader->has_axis =
         read_attribute(reader->root, "geometry", "axis", H5T_NATIVE_DOUBLE, reader->axis) &&
         read_attribute(reader->root, "geometry", "centre_of_rotation", H5T_NATIVE_DOUBLE, reader->centre);
@@ -110,6 +112,7 @@ static skg_status read_poses(skg_scan_reader *reader, double *vectors, double *p
     view.projection = projection;
     view.columns = reader->columns;
     view.rows = reader->rows;
+    view.radius = radius;
     return skg_scan_create_table(&view, NULL, reader->projections, poses, &reader->scan);
 }
 

@@ -37,6 +37,7 @@ static skg_status is_circle(const skg_scan *scan, const skg_tool_turn *turn, int
         double angle = 0;
         skg_view_init(&view);
         SKG_TRY(skg_scan_view_get(scan, k, &view));
+        SKG_TRY(skg_tool_flat(&view, k, "CIL"));
         SKG_TRY(skg_scan_angle_get(scan, k, &angle));
         skg_scan_turn(scan->options.axis, scan->options.centre, angle, 0, &view);
         /* Steps are of a pixel; at the detector's edge they count half of its columns and rows. */
@@ -115,6 +116,7 @@ static skg_status write_poses(const skg_scan *scan, const skg_tool_world *world,
         skg_view view;
         skg_view_init(&view);
         SKG_TRY(skg_scan_view_get(scan, k, &view));
+        SKG_TRY(skg_tool_flat(&view, k, "CIL"));
         SKG_TRY(write_pose(world, &view, k, stream));
     }
     fprintf(stream,

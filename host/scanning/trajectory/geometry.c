@@ -8,7 +8,8 @@
 enum { NOTE_LENGTH = 1024 };
 
 static skg_status write_table(const skg_scan *scan, FILE *stream) {
-    fprintf(stream, "# source x y z, detector centre x y z, column step x y z, row step x y z (mm)\n");
+    fprintf(stream, "# source x y z, detector centre x y z, column step x y z, row step x y z%s (mm)\n",
+            scan->view.radius > 0 ? ", radius" : "");
     for (int64_t k = 0; k < scan->options.projections; k++) {
         skg_view view;
         skg_view_init(&view);
@@ -16,6 +17,7 @@ static skg_status write_table(const skg_scan *scan, FILE *stream) {
         const double *rows[] = {view.source, view.centre, view.column_step, view.row_step};
         for (int i = 0; i < SKG_POSE_NUMBERS; i++)
             fprintf(stream, "%s%.17g", i ? ", " : "", rows[i / 3][i % 3]);
+        if (view.radius > 0) fprintf(stream, ", %.17g", view.radius); /* as cyl_cone_vec of ASTRA has it */
         fputc('\n', stream);
     }
     return SKG_OK;

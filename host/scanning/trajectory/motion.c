@@ -1,6 +1,7 @@
 /* How source and detector are displaced from the ideal rotation. */
 #include "core/maths.h"
 #include "core/text.h"
+#include "scene/curve.h"
 #include "trajectory/types.h"
 
 #include <skiagraph/scene.h>
@@ -34,13 +35,31 @@ static void move_detector(double factor, const double *way, skg_view *view) {
     if (view->projection == SKG_PROJECTION_PARALLEL) skg_add_scaled(view->source, factor, way, view->source);
 }
 
+/* Moves a curved detector along its cylinder, which stays where it is. */
+static void slide_detector(double way, skg_view *view) {
+    skg_curvature curve;
+    double to[3] = {0};
+    const double width = skg_length(view->column_step);
+    skg_curvature_find(view, NULL, &curve);
+    const double angle = way / curve.radius, half = sin(0.5 * angle);
+    skg_add_scaled(to, curve.radius * sin(angle), curve.across, to);
+    skg_add_scaled(to, 2 * curve.radius * half * half, curve.normal, to);
+    move_detector(1, to, view);
+    skg_scale_vector(width * cos(angle), curve.across, view->column_step);
+    skg_add_scaled(view->column_step, width * sin(angle), curve.normal, view->column_step);
+}
+
 void skg_scan_displace_detector(const skg_scan_options *options, skg_view *view) {
     double axes[3][3], turn[16];
     skg_scale_vector(1 / skg_length(view->column_step), view->column_step, axes[0]);
     skg_scale_vector(1 / skg_length(view->row_step), view->row_step, axes[1]);
     skg_cross(axes[0], axes[1], axes[2]);
     skg_scale_vector(1 / skg_length(axes[2]), axes[2], axes[2]);
-    for (int k = 0; k < 2; k++) move_detector(options->detector_offset_mm[k], axes[k], view);
+    if (view->radius > 0 && options->detector_offset_mm[0] != 0)
+        slide_detector(options->detector_offset_mm[0], view);
+    else
+        move_detector(options->detector_offset_mm[0], axes[0], view);
+    move_detector(options->detector_offset_mm[1], axes[1], view);
     if (options->detector_skew_rad != 0) {
         const double length = skg_length(view->row_step), lean = options->detector_skew_rad;
         skg_scale_vector(cos(lean), view->row_step, view->row_step);
@@ -143,10 +162,8 @@ skg_status skg_scan_short_range_get(const skg_view *view, const skg_scan_options
     skg_add_scaled(to_axis, -skg_dot(to_axis, axis), axis, to_axis);
     for (int corner = 0; corner < 4; corner++) {
         double ray[3], across[3];
-        const double c = (corner & 1 ? 0.5 : -0.5) * (double)v.columns;
-        const double r = (corner & 2 ? 0.5 : -0.5) * (double)v.rows;
-        skg_add_scaled(v.centre, c, v.column_step, ray);
-        skg_add_scaled(ray, r, v.row_step, ray);
+        skg_view_pixel(&v, corner & 1 ? (double)v.columns - 0.5 : -0.5,
+                       corner & 2 ? (double)v.rows - 0.5 : -0.5, ray);
         skg_add_scaled(ray, -1, v.source, ray);
         skg_add_scaled(ray, -skg_dot(ray, axis), axis, ray);
         skg_cross(ray, to_axis, across);

@@ -60,6 +60,7 @@ skg_status skg_scan_write_nerf(const skg_scan *scan, FILE *stream) {
         pinhole camera;
         skg_view_init(&view);
         SKG_TRY(skg_scan_view_get(scan, k, &view));
+        SKG_TRY(skg_tool_flat(&view, k, "NeRF"));
         SKG_TRY(find_camera(&world, &view, k, &camera));
         if (k == 0) {
             fprintf(stream, "{\"camera_model\": \"OPENCV\", \"w\": %" PRId64 ", \"h\": %" PRId64 ", ",

@@ -41,6 +41,19 @@ static void find_angles(rtk_pose *pose) {
     }
 }
 
+/* RTK bends the detector about the line at 0 of its own coordinates, whatever ProjectionOffsetX is, towards the source, by a radius that
+ * all projections share. That is ours where the detector's middle is there. */
+static skg_status check_radius(const skg_view *view, int64_t k, const rtk_pose *pose) {
+    static const double OFF = 1e-9; /* of the radius */
+    if (!(view->radius > 0) || fabs(pose->centre[0]) <= OFF * view->radius) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "projection %" PRId64
+        ": the middle of the curved detector lies %g mm beside the axis of rotation, where RTK bends it; "
+        "write .csv",
+        k, pose->centre[0]);
+}
+
 static skg_status find_rtk_pose(const skg_tool_world *world, const skg_view *view, int64_t k,
                                 rtk_pose *pose) {
     double(*axes)[3] = pose->axes, source[3], centre[3];
@@ -62,7 +75,7 @@ static skg_status find_rtk_pose(const skg_tool_world *world, const skg_view *vie
         pose->centre[i] = skg_dot(axes[i], centre);
     }
     find_angles(pose);
-    return SKG_OK;
+    return check_radius(view, k, pose);
 }
 
 /* The 3 x 4 matrix from RTK's world to detector coordinates in mm, with RTK's factor: its third row is the depth. */
@@ -84,6 +97,9 @@ skg_status skg_scan_write_rtk(const skg_scan *scan, FILE *stream) {
     choose_world(scan, &world);
     fprintf(stream,
             "<?xml version=\"1.0\"?>\n<!DOCTYPE RTKGEOMETRY>\n<RTKThreeDCircularGeometry version=\"3\">\n");
+    if (scan->view.radius > 0)
+        fprintf(stream, "  <RadiusCylindricalDetector>%.17g</RadiusCylindricalDetector>\n",
+                scan->view.radius);
     for (int64_t k = 0; k < scan->options.projections; k++) {
         skg_view view;
         rtk_pose pose;

@@ -13,6 +13,8 @@ typedef struct {
     const char *path;
     int64_t count, capacity, line;
     double *poses;
+    double radius; /* of a curved detector, which each line gives then */
+    int64_t radii; /* lines that give it */
 } table;
 
 static int is_skipped(const table *t, const char *text) {
@@ -22,6 +24,23 @@ static int is_skipped(const table *t, const char *text) {
 static const char *skip(const char *text, const char *what) {
     while (*text && (isspace((unsigned char)*text) || strchr(what, *text))) text++;
     return text;
+}
+
+/* The radius of a curved detector behind the numbers of a pose, in every line the same or in none. */
+static skg_status read_radius(table *t, const char **text) {
+    const char *end;
+    const double radius = skg_read_number(*text, &end);
+    if (end == *text && t->radii == 0) return SKG_OK;
+    if (end == *text || t->radii != t->count || (t->count > 0 && radius != t->radius))
+        return skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: line %" PRId64
+            ": behind the row step stands the radius of a curved detector, in every line the same",
+            t->path, t->line);
+    t->radius = radius;
+    t->radii++;
+    *text = skip(end, ",;");
+    return SKG_OK;
 }
 
 static skg_status read_line(table *t, const char *text) {
@@ -41,9 +60,10 @@ static skg_status read_line(table *t, const char *text) {
                             t->path, t->line, k + 1, SKG_POSE_NUMBERS);
         text = skip(end, ",;");
     }
+    SKG_TRY(read_radius(t, &text));
     if (*text)
-        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there are more than %d numbers", t->path,
-                        t->line, SKG_POSE_NUMBERS);
+        return skg_fail(SKG_ERR_FORMAT, "%s: line %" PRId64 ": there are more than %d numbers and a radius",
+                        t->path, t->line, SKG_POSE_NUMBERS);
     t->count++;
     return SKG_OK;
 }
@@ -72,7 +92,11 @@ skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *opt
     SKG_TRY(skg_text_open(path, &file));
     skg_status status = read_lines(&t, file);
     fclose(file);
-    if (status == SKG_OK) status = skg_scan_create_table(view, options, t.count, t.poses, scan);
+    skg_view ours;
+    skg_view_init(&ours);
+    if (status == SKG_OK) status = skg_struct_read(view, "skg_view", &ours, sizeof ours);
+    if (t.radii > 0) ours.radius = t.radius;
+    if (status == SKG_OK) status = skg_scan_create_table(&ours, options, t.count, t.poses, scan);
     skg_free(&t.poses);
     return status;
 }

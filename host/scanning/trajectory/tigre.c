@@ -121,6 +121,7 @@ skg_status skg_scan_write_tigre(const skg_scan *scan, FILE *stream) {
         skg_view view;
         skg_view_init(&view);
         SKG_TRY(skg_scan_view_get(scan, k, &view));
+        SKG_TRY(skg_tool_flat(&view, k, "TIGRE"));
         SKG_TRY(find_pose(&world, &view, k, &pose));
         if (k == 0) write_sizes(&view, pixel, &pose, stream);
         write_pose(&pose, stream);

@@ -55,6 +55,13 @@ void skg_tool_point(const skg_tool_world *world, const double *point, double *re
     skg_tool_direction(world, from, result);
 }
 
+skg_status skg_tool_flat(const skg_view *view, int64_t index, const char *tool) {
+    if (!(view->radius > 0)) return SKG_OK;
+    return skg_fail(SKG_ERR_UNSUPPORTED,
+                    "projection %" PRId64 ": the geometry of %s has no curved detector; write .csv or .xml",
+                    index, tool);
+}
+
 skg_status skg_tool_detector(const skg_tool_world *world, const skg_view *view, int64_t index,
                              const char *tool, double axes[3][3]) {
     skg_scale_vector(1 / skg_length(view->column_step), view->column_step, axes[0]);

@@ -33,6 +33,9 @@ void skg_tool_point(const skg_tool_world *world, const double *point, double *re
 skg_status skg_tool_detector(const skg_tool_world *world, const skg_view *view, int64_t index,
                              const char *tool, double axes[3][3]);
 
+/* Fails if the detector is curved. tool: for the message */
+skg_status skg_tool_flat(const skg_view *view, int64_t index, const char *tool);
+
 /* The lengths of both steps of a scan's detector. Fails if projections differ in them. */
 skg_status skg_tool_pixel(const skg_scan *scan, const char *tool, double pixel_mm[2]);
 

@@ -81,7 +81,9 @@ enum skg_projection {
  *
  * The centre of the pixel in row r and column c is
  *
- *     centre + (c - (columns - 1) / 2) column_step + (r - (rows - 1) / 2) row_step.
+ *     centre + (c - (columns - 1) / 2) column_step + (r - (rows - 1) / 2) row_step,
+ *
+ * or where a radius bends it to.
  *
  * Path lengths are measured from the source, or from its plane, to that point. A pixel behind the plane sees
  * nothing. No entry may exceed 1e9 mm. */
@@ -102,6 +104,11 @@ typedef struct {
     double column_step[3];
     /** From one row to the next, mm. */
     double row_step[3];
+    /** Radius in mm of the cylinder on which the columns stand; 0, the default: the detector is flat. The cylinder touches the
+     * flat detector of this view in its middle, its axis is parallel to row_step, which is perpendicular to column_step,
+     * and lies on the side of the source: where the radius is the distance of source and detector, it goes through the source. A
+     * column is |column_step| mm along the cylinder from the next, and no more than 75 degrees from the middle. */
+    double radius;
 } skg_view;
 
 SKG_INIT(skg_view)

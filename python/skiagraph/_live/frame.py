@@ -100,7 +100,8 @@ def _coarse(view: View, factor: int) -> View:
     """The same detector with larger pixels."""
     columns, rows = (max(1, count // factor) for count in view.pixels)
     return View(source=view.source, detector=view.detector, column_step=view.column_step * (view.pixels[0] / columns),
-                row_step=view.row_step * (view.pixels[1] / rows), pixels=(columns, rows), projection=view.projection)
+                row_step=view.row_step * (view.pixels[1] / rows), pixels=(columns, rows), projection=view.projection,
+                radius=view.radius)
 
 
 def pack(frame: Frame, number: int, wish: Wish) -> bytes:
@@ -127,8 +128,9 @@ def probe(subject: Subject, at: tuple[float, float]) -> list[list[Any]]:
     if not (0 <= at[0] < view.pixels[0] and 0 <= at[1] < view.pixels[1]):
         raise ArgumentError('"probe": the detector has no such pixel')
     column, row = (int(x) + 0.5 - 0.5 * count for x, count in zip(at, view.pixels))
-    pixel = View(source=view.source, detector=view.detector + column * view.column_step + row * view.row_step,
-                 column_step=view.column_step, row_step=view.row_step, pixels=(1, 1), projection=view.projection)
+    place, step = view.pixel(column, row)
+    pixel = View(source=view.source, detector=place, column_step=step, row_step=view.row_step, pixels=(1, 1),
+                 projection=view.projection)
     labels = [part.label for part in state.parts()]
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")
