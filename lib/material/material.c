@@ -1,6 +1,7 @@
 /* The inside of a material. */
 #include "material/material.h"
 #include "core/text.h"
+#include "material/form_factor.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -66,6 +67,8 @@ void skg_material_release(skg_material **material) {
         skg_free(&(*material)->parts);
         skg_free(&(*material)->energy_kev);
         skg_free(&(*material)->per_cm);
+        skg_free(&(*material)->momenta);
+        skg_free(&(*material)->coherent);
         skg_free(material);
     }
     *material = NULL;
@@ -84,8 +87,13 @@ skg_status skg_material_create_at_density(const skg_material *material, double d
     if (!(isfinite(density) && density > 0))
         return skg_fail(SKG_ERR_MATERIAL, "%s: a density of %g g/cm3 is not usable; give one above 0",
                         material->name, density);
-    return skg_material_compose(material->name, material->note, material->count, material->parts, density,
-                                dense);
+    SKG_TRY(skg_material_compose(material->name, material->note, material->count, material->parts, density,
+                                 dense));
+    if (material->momentum_count == 0) return SKG_OK;
+    const skg_status status =
+        skg_form_factor_copy(material->momentum_count, material->momenta, material->coherent, 1, *dense);
+    if (status != SKG_OK) skg_material_release(dense);
+    return status;
 }
 
 skg_status skg_material_name_get(const skg_material *material, const char **name) {

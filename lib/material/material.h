@@ -23,6 +23,8 @@ struct skg_material {
     skg_mass_fraction *parts;
     double *energy_kev, *per_cm;
     int32_t linear; /* the table is interpolated linearly, not log-log */
+    int64_t momentum_count;
+    double *momenta, *coherent; /* [momentum_count] of molecules: 1/Angstrom, F^2 of 1 g; 0: atoms are free */
 };
 
 /* The range in keV over which cross sections are given: XCOM's table begins at 1 keV, and above 20 MeV photons of

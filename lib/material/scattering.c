@@ -1,5 +1,6 @@
 /* Form factors and scattering functions of atoms and materials. */
 #include "material/scattering.h"
+#include "material/form_factor.h"
 
 #include "materials/spline.h"
 
@@ -60,8 +61,7 @@ skg_status skg_scattering_check(const skg_material *material) {
         material->name);
 }
 
-skg_status skg_scattering_factors(const skg_material *material, double x, double *coherent,
-                                  double *incoherent) {
+skg_status skg_scattering_free(const skg_material *material, double x, double *coherent, double *incoherent) {
     double sums[SKG_SCATTERINGS] = {0};
     SKG_TRY(skg_scattering_check(material));
     for (int64_t i = 0; i < material->count; i++) {
@@ -73,5 +73,12 @@ skg_status skg_scattering_factors(const skg_material *material, double x, double
     }
     *coherent = sums[SKG_COHERENT];
     *incoherent = sums[SKG_INCOHERENT];
+    return SKG_OK;
+}
+
+skg_status skg_scattering_factors(const skg_material *material, double x, double *coherent,
+                                  double *incoherent) {
+    SKG_TRY(skg_scattering_free(material, x, coherent, incoherent));
+    skg_form_factor_at(material, x, coherent);
     return SKG_OK;
 }

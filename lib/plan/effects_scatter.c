@@ -231,3 +231,27 @@ const skg_effect_row skg_effect_annihilation = {
     .refuses_gradient = refuse_scatter,
     .find = find_annihilation,
 };
+
+/* --- the order of molecules in Rayleigh scattering */
+
+static void find_molecules(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_scene *scene = f->recipe->scene;
+    int64_t bound = 0;
+    for (int64_t i = 0; i < scene->count; i++) bound += scene->parts[i].material->momentum_count > 0;
+    if (bound == 0)
+        skg_effect_set(state, 0,
+                       "no part has form factors of its molecules: atoms scatter as if they were free");
+    else if (!f->recipe->options.scatter)
+        skg_effect_set(state, 0, "comes with scatter, which is not asked for");
+    else
+        skg_effect_set(state, 1, "%" PRId64 " of %" PRId64 " parts have form factors of their molecules",
+                       bound, scene->count);
+}
+
+const skg_effect_row skg_effect_molecules = {
+    .name = "molecules",
+    .key = "FormFactor",
+    .self_test = SKG_SELF_TEST_SCATTER,
+    .refuses_gradient = refuse_scatter,
+    .find = find_molecules,
+};

@@ -286,7 +286,7 @@ static void print_scatter(const cli_session *session, const cli_prediction *pred
     if (session->options.scatter)
         printf(
             "\nTransmitted photons, and those that parts and world scatter (Compton, Rayleigh) or emit (fluorescence, annihilation). Left out "
-            "are the\norder of molecules, and what filters, jaws and the detector scatter.\n");
+            "are the\norder of molecules (but for FormFactor), and what filters, jaws and the detector scatter.\n");
     else
         printf("\nDirectly transmitted photons only.%s\n",
                prediction->is_known && prediction->found.called_for

@@ -308,7 +308,7 @@ enum skg_fluorescence {
  * physics  photo absorption, Compton scattering (Klein and Nishina, times the scattering functions of free atoms),
  *          Rayleigh scattering (form factors of free atoms); cross sections of XCOM, as for the primary; fluorescence in any
  *          direction (K and L lines; yields and rates of xraylib; of L shells the mean of their lines); pair production, whose positron
- *          stops where it is and sends two photons of 511 keV. Left out: Doppler broadening, the order of molecules, bremsstrahlung, what the
+ *          stops where it is and sends two photons of 511 keV. Left out: Doppler broadening, the order of molecules unless materials have tables of it (skg_material_create_form_factor), bremsstrahlung, what the
  *          detector itself scatters.
  * field    without skg_plan_options.collimation the beam that scatters is limited to the detector, from its pixels'
  *          outer edges on */
