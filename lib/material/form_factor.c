@@ -1,7 +1,7 @@
 /* Form factors of molecules, by a table of the user: where photons go that Rayleigh scattering turns, when atoms are not free. */
-#include "material/form_factor.h"
-#include "core/text.h"
 #include "material/scattering.h"
+
+#include "core/text.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -48,16 +48,6 @@ static skg_status find_scale(const skg_material *material, int64_t count, const 
     return SKG_OK;
 }
 
-skg_status skg_form_factor_copy(int64_t count, const double *x, const double *squares, double scale,
-                                skg_material *to) {
-    SKG_TRY(skg_alloc(count, sizeof(double), "form factors", &to->momenta));
-    SKG_TRY(skg_alloc(count, sizeof(double), "form factors", &to->coherent));
-    memcpy(to->momenta, x, (size_t)count * sizeof(double));
-    for (int64_t i = 0; i < count; i++) to->coherent[i] = scale * squares[i];
-    to->momentum_count = count;
-    return SKG_OK;
-}
-
 skg_status skg_material_create_form_factor(const skg_material *material, int64_t count,
                                            const double *per_angstrom, const double *squares,
                                            skg_material **bound) {
@@ -75,26 +65,12 @@ skg_status skg_material_create_form_factor(const skg_material *material, int64_t
     SKG_TRY(find_scale(material, count, per_angstrom, squares, &scale));
     SKG_TRY(skg_material_compose(material->name, material->note, material->count, material->parts,
                                  material->density, &made));
-    SKG_TRY_CLEANUP(skg_form_factor_copy(count, per_angstrom, squares, scale, made));
+    SKG_TRY_CLEANUP(skg_material_bind(count, per_angstrom, squares, scale, made));
     *bound = made;
     return SKG_OK;
 cleanup:
     skg_material_release(&made);
     return status;
-}
-
-int skg_form_factor_at(const skg_material *material, double x, double *coherent) {
-    const int64_t count = material->momentum_count;
-    const double *momenta = material->momenta;
-    if (count == 0 || !(x < momenta[count - 1])) return 0;
-    int64_t low = 0, high = count - 1;
-    while (high - low > 1) {
-        const int64_t middle = (low + high) / 2;
-        *(momenta[middle] <= x ? &low : &high) = middle;
-    }
-    const double share = fmax((x - momenta[low]) / (momenta[high] - momenta[low]), 0);
-    *coherent = material->coherent[low] + share * (material->coherent[high] - material->coherent[low]);
-    return 1;
 }
 
 skg_status skg_material_form_factor_get(const skg_material *material, int64_t capacity, double *per_angstrom,

@@ -1,7 +1,6 @@
 /* The inside of a material. */
 #include "material/material.h"
 #include "core/text.h"
-#include "material/form_factor.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -74,6 +73,16 @@ void skg_material_release(skg_material **material) {
     *material = NULL;
 }
 
+skg_status skg_material_bind(int64_t count, const double *x, const double *squares, double scale,
+                             skg_material *to) {
+    SKG_TRY(skg_alloc(count, sizeof(double), "form factors", &to->momenta));
+    SKG_TRY(skg_alloc(count, sizeof(double), "form factors", &to->coherent));
+    memcpy(to->momenta, x, (size_t)count * sizeof(double));
+    for (int64_t i = 0; i < count; i++) to->coherent[i] = scale * squares[i];
+    to->momentum_count = count;
+    return SKG_OK;
+}
+
 skg_status skg_material_create_at_density(const skg_material *material, double density,
                                           skg_material **dense) {
     SKG_PLAIN;
@@ -91,7 +100,7 @@ skg_status skg_material_create_at_density(const skg_material *material, double d
                                  dense));
     if (material->momentum_count == 0) return SKG_OK;
     const skg_status status =
-        skg_form_factor_copy(material->momentum_count, material->momenta, material->coherent, 1, *dense);
+        skg_material_bind(material->momentum_count, material->momenta, material->coherent, 1, *dense);
     if (status != SKG_OK) skg_material_release(dense);
     return status;
 }

@@ -5,6 +5,9 @@
 
 static const double PI = 3.14159265358979323846;
 
+/* Of sums of a few numbers. */
+static const double ROUNDING = 1e-12;
+
 /* A ball of water in the middle of turns. */
 static subject open_ball(void) {
     solid ball = solid_sphere(40, 96, 48);
@@ -29,17 +32,17 @@ START_TEST(sums_are_sums) {
     const skg_dose_report a = report_of(of[0]), b = report_of(of[1]), all = report_of(sum);
     const skg_dose_part pa = part_of(of[0], 0), pb = part_of(of[1], 0), part = part_of(sum, 0);
     const skg_dose_point ka = point_of(of[0], 0), kb = point_of(of[1], 0), point = point_of(sum, 0);
-    /* Rounding, everywhere. */
-    ck_assert_double_eq_tol(all.kap_ugy_cm2 / (3 * a.kap_ugy_cm2 + 0.5 * b.kap_ugy_cm2), 1, 1e-12);
-    ck_assert_double_eq_tol(all.incident_kev / (3 * a.incident_kev + 0.5 * b.incident_kev), 1, 1e-12);
-    ck_assert_double_eq_tol(part.dose_ugy / (3 * pa.dose_ugy + 0.5 * pb.dose_ugy), 1, 1e-12);
-    ck_assert_double_eq_tol(part.sigma_ugy / hypot(3 * pa.sigma_ugy, 0.5 * pb.sigma_ugy), 1, 1e-12);
-    ck_assert_double_eq_tol(point.air_kerma_ugy / (3 * ka.air_kerma_ugy + 0.5 * kb.air_kerma_ugy), 1, 1e-12);
+    ck_assert_double_eq_tol(all.kap_ugy_cm2 / (3 * a.kap_ugy_cm2 + 0.5 * b.kap_ugy_cm2), 1, ROUNDING);
+    ck_assert_double_eq_tol(all.incident_kev / (3 * a.incident_kev + 0.5 * b.incident_kev), 1, ROUNDING);
+    ck_assert_double_eq_tol(part.dose_ugy / (3 * pa.dose_ugy + 0.5 * pb.dose_ugy), 1, ROUNDING);
+    ck_assert_double_eq_tol(part.sigma_ugy / hypot(3 * pa.sigma_ugy, 0.5 * pb.sigma_ugy), 1, ROUNDING);
+    ck_assert_double_eq_tol(point.air_kerma_ugy / (3 * ka.air_kerma_ugy + 0.5 * kb.air_kerma_ugy), 1,
+                            ROUNDING);
     ck_assert_double_eq_tol(
         point.backscatter * point.air_kerma_ugy /
             (3 * ka.air_kerma_ugy * ka.backscatter + 0.5 * kb.air_kerma_ugy * kb.backscatter),
-        1, 1e-12);
-    ck_assert_double_eq_tol(report_of(twice).kap_ugy_cm2 / (a.kap_ugy_cm2 + b.kap_ugy_cm2), 1, 1e-12);
+        1, ROUNDING);
+    ck_assert_double_eq_tol(report_of(twice).kap_ugy_cm2 / (a.kap_ugy_cm2 + b.kap_ugy_cm2), 1, ROUNDING);
     ck_assert_double_eq(part.mass_g, pa.mass_g);
     ck_assert_int_eq(all.histories, a.histories + b.histories);
     ck_assert_int_eq(all.followed, 1);
