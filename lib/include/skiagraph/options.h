@@ -189,6 +189,11 @@ typedef struct {
     double tolerance;
     /** Adaptive sampling stops at this number of samples; 1024 by default. */
     int64_t samples_max;
+    /** Off-focal radiation: the share of the photons that leave the anode beside the focal spot, from a disc of diameter off_focal_mm around
+     * its middle, with the same spectrum; 0 to below 1. 0 (default): none. Needs a focal spot that is no point, and no grid. */
+    double off_focal;
+    /** Diameter of that disc, mm, above 0 to 1000; without effect if off_focal is 0. */
+    double off_focal_mm;
 } skg_spot;
 
 SKG_INIT(skg_spot)
