@@ -4,6 +4,7 @@
 
 #include "affinity/affinity.h"
 
+#include <math.h>
 #include <stdlib.h>
 
 static const char usage[] = "[--quick] [--size N] [--repeats N] [--device CONFIG] [--affinity] [--csv FILE]";
@@ -14,6 +15,7 @@ typedef struct {
     const char *name, *what;
     scene_changes changes;
     int precision, strategy, quantity, type, profile;
+    int counts;                             /* 1: the detector counts photons */
     void (*ask)(skg_plan_options *options); /* sets further options; may be NULL */
 } effect;
 
@@ -51,18 +53,36 @@ static void ask_steps(skg_plan_options *options) {
     options->quantum_step_kev = 1;
 }
 
+/* A detector that counts, of the pixels of a view. */
+static skg_counter *make_counter(const skg_view *view) {
+    static const double threshold = 20;
+    skg_counting counting;
+    skg_counter *counter = NULL;
+    skg_counting_init(&counting);
+    bench_try(skg_material_create_named("CdTe", &counting.material), "CdTe");
+    counting.thickness_mm = 1, counting.bias_v = 400;
+    counting.count = 1, counting.threshold_kev = &threshold;
+    for (int k = 0; k < 3; k++) {
+        counting.pixel_mm[0] = hypot(counting.pixel_mm[0], view->column_step[k]);
+        counting.pixel_mm[1] = hypot(counting.pixel_mm[1], view->row_step[k]);
+    }
+    bench_try(skg_counter_create(&counting, &counter), "counter");
+    skg_material_release(&counting.material);
+    return counter;
+}
+
 static const effect effects[] = {
-    {"base", "61 closed parts without parents, one energy", {.flat = 1}, 0, 0, 0, 0, 0, NULL},
-    {"nesting", "60 parts displace their parent", {.flat = 0}, 0, 0, 0, 0, 0, NULL},
-    {"open part", "one of 61 parts has a hole", {.flat = 1, .leaky = 1}, 0, 0, 0, 0, 0, NULL},
-    {"source plane", "a small part encloses the source", {.flat = 1, .round_source = 1}, 0, 0, 0, 0, 0, NULL},
-    {"double", "precision double", {.flat = 1}, SKG_PRECISION_DOUBLE, 0, 0, 0, 0, NULL},
-    {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, 0, 0, SKG_QUANTITY_ATTENUATION, 0, 0, NULL},
-    {"float64 output", "images of doubles", {.flat = 1}, 0, 0, 0, SKG_TYPE_FLOAT64, 0, NULL},
-    {"profile", "stages are timed", {.flat = 1}, 0, 0, 0, 0, 1, NULL},
-    {"copies", "strategy copies", {.flat = 1}, 0, SKG_STRATEGY_COPIES, 0, 0, 0, NULL},
-    {"tiles", "strategy tiles", {.flat = 1}, 0, SKG_STRATEGY_TILES, 0, 0, 0, NULL},
-    {"atomics", "strategy atomics", {.flat = 1}, 0, SKG_STRATEGY_ATOMICS, 0, 0, 0, NULL},
+    {"base", "61 closed parts without parents, one energy", {.flat = 1}, .counts = 0},
+    {"nesting", "60 parts displace their parent", {.flat = 0}, .counts = 0},
+    {"open part", "one of 61 parts has a hole", {.flat = 1, .leaky = 1}, .counts = 0},
+    {"source plane", "a small part encloses the source", {.flat = 1, .round_source = 1}, .counts = 0},
+    {"double", "precision double", {.flat = 1}, .precision = SKG_PRECISION_DOUBLE},
+    {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, .quantity = SKG_QUANTITY_ATTENUATION},
+    {"float64 output", "images of doubles", {.flat = 1}, .type = SKG_TYPE_FLOAT64},
+    {"profile", "stages are timed", {.flat = 1}, .profile = 1},
+    {"copies", "strategy copies", {.flat = 1}, .strategy = SKG_STRATEGY_COPIES},
+    {"tiles", "strategy tiles", {.flat = 1}, .strategy = SKG_STRATEGY_TILES},
+    {"atomics", "strategy atomics", {.flat = 1}, .strategy = SKG_STRATEGY_ATOMICS},
     {"extended source", "16 samples of a rectangle", {.flat = 1}, .ask = ask_spot},
     {"supersampling", "2 x 2 rays a pixel", {.flat = 1}, .ask = ask_supersampling},
     {"falloff", "inverse square and obliquity", {.flat = 1}, .ask = ask_falloff},
@@ -70,6 +90,11 @@ static const effect effects[] = {
     {"blur", "two line spread functions of 5 samples", {.flat = 1}, .ask = ask_blur},
     {"electronic noise", "1 keV per pixel", {.flat = 1}, .ask = ask_electronic},
     {"quantisation", "steps of 1 keV", {.flat = 1}, .ask = ask_steps},
+    {"photon counting",
+     "1 mm of CdTe, one threshold, charge shared",
+     {.flat = 1},
+     .quantity = SKG_QUANTITY_PHOTONS,
+     .counts = 1},
 };
 enum { EFFECTS = sizeof effects / sizeof *effects };
 
@@ -118,10 +143,13 @@ static void make_plan(skg_context *context, const effect *kind, long size, conte
     scene.options.quantity = kind->quantity;
     scene.options.profile = kind->profile;
     if (kind->ask) kind->ask(&scene.options);
+    skg_counter *counter = kind->counts ? make_counter(&scene.view) : NULL;
+    scene.options.counter = counter;
     const double start = bench_now();
     const skg_status status =
         skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &out->plan);
     out->plan_ms = bench_now() - start;
+    skg_counter_release(&counter);
     if (status == SKG_ERR_UNSUPPORTED)
         fprintf(stderr, "%s: left out: %s\n", kind->name, skg_last_error());
     else

@@ -17,14 +17,6 @@ enum { HISTORIES = 200000, POINTS_MAX = 4096 };
 /* From keV and g. */
 static const double UGY_PER_KEV_AND_GRAM = 1.602176634e-16 * 1e3 * 1e6;
 
-struct skg_dose {
-    skg_refs refs;
-    int64_t points, parts;
-    skg_dose_point *point; /* [points] */
-    skg_dose_part *part;   /* [parts] */
-    skg_dose_report report;
-};
-
 void skg_dose_options_init_sized(void *options, int32_t size) {
     const skg_dose_options defaults = {.histories = HISTORIES};
     skg_struct_init(options, size, &defaults, sizeof defaults);
@@ -234,6 +226,22 @@ static skg_status check(const skg_dose_options *options) {
     return SKG_OK;
 }
 
+skg_status skg_dose_make(int64_t points, int64_t parts, skg_dose **dose) {
+    skg_dose *made = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY(skg_alloc(1, sizeof *made, "dose", &made));
+    skg_refs_init(&made->refs);
+    made->points = points, made->parts = parts;
+    made->report.size = sizeof made->report;
+    SKG_TRY_CLEANUP(skg_alloc(points, sizeof *made->point, "dose", &made->point));
+    SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *made->part, "dose", &made->part));
+    *dose = made;
+    return SKG_OK;
+cleanup:
+    skg_dose_release(&made);
+    return status;
+}
+
 static skg_status create(skg_plan *plan, const skg_dose_options *given, skg_dose **dose) {
     SKG_PLAIN;
     skg_dose_options options;
@@ -251,13 +259,8 @@ static skg_status create(skg_plan *plan, const skg_dose_options *given, skg_dose
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "dose: the field of a curved detector is not computed; take a flat one");
     const double begun = skg_seconds();
-    SKG_TRY(skg_alloc(1, sizeof *made, "dose", &made));
-    skg_refs_init(&made->refs);
-    made->points = options.point_count > 0 ? options.point_count : 1;
-    made->parts = plan->recipe->scene->count;
-    made->report.size = sizeof made->report;
-    SKG_TRY_CLEANUP(skg_alloc(made->points, sizeof *made->point, "dose", &made->point));
-    SKG_TRY_CLEANUP(skg_alloc(made->parts, sizeof *made->part, "dose", &made->part));
+    SKG_TRY_CLEANUP(
+        skg_dose_make(options.point_count > 0 ? options.point_count : 1, plan->recipe->scene->count, &made));
     status = fill(plan, &options, made);
     made->report.seconds = skg_seconds() - begun;
 cleanup:

@@ -9,6 +9,19 @@
 
 #include <skiagraph/dose.h>
 
+/* --- What was found. */
+
+struct skg_dose {
+    skg_refs refs;
+    int64_t points, parts;
+    skg_dose_point *point; /* [points] */
+    skg_dose_part *part;   /* [parts] */
+    skg_dose_report report;
+};
+
+/* One without figures. */
+skg_status skg_dose_make(int64_t points, int64_t parts, skg_dose **dose);
+
 /* --- Air kerma by energy. */
 
 enum { SKG_KERMA_ROWS = 2048 };

@@ -106,16 +106,23 @@ static const skg_presence *move(skg_dose_batch *b, double depth, skg_dose_photon
 
 /* --- an interaction */
 
-/* Photons of the lines of shells, after photo absorption; what they take was not left. */
-static void glow(skg_dose_batch *b, const skg_dose_photon *photon, const skg_dose_matter *m, double photo) {
+/* Photons of the lines of shells after photo absorption, and two back to back after pair production; what they take was not left.
+ * absorbed: 1/mm of both processes */
+static void glow(skg_dose_batch *b, const skg_dose_photon *photon, const skg_dose_matter *m,
+                 double absorbed) {
     const skg_dose_place place = skg_dose_place_of(m, photon->kev);
     for (int64_t s = 0; s < m->physics.shells; s++) {
-        if (!(skg_draw(&b->seed) * photo < skg_dose_emitted(m, place, s))) continue;
-        if (b->waiting_count == SKG_DOSE_WAITING) return;
-        skg_dose_photon *emitted = &b->waiting[b->waiting_count++];
+        const int together = m->emitters.of[s].pairs ? 2 : 1;
+        if (!(skg_draw(&b->seed) * absorbed < skg_dose_emitted(m, place, s) / together)) continue;
+        if (b->waiting_count + together > SKG_DOSE_WAITING) return;
+        skg_dose_photon *emitted = &b->waiting[b->waiting_count];
         *emitted = *photon;
         emitted->kev = skg_dose_draw_line(m, s, &b->seed);
         turn(emitted->direction, 2 * skg_draw(&b->seed) - 1, &b->seed);
+        b->waiting_count += together;
+        if (together == 1) continue;
+        emitted[1] = emitted[0];
+        skg_scale_vector(-1, emitted[0].direction, emitted[1].direction);
     }
 }
 

@@ -78,8 +78,8 @@ static void fill_transfer(skg_dose_matter *m, double *weights) {
     const skg_scatter_physics *p = &m->physics;
     for (int64_t i = 0; i < p->energies; i++) {
         const double kev = skg_scatter_energy(p, i), compton = value_of(m, p->compton[i]);
-        const double photo = fmax(value_of(m, p->total[i]) - compton - value_of(m, p->rayleigh[i]), 0);
-        m->transfer[i] = photo * kev + compton * electron_of(m, kev, weights);
+        const double absorbed = fmax(value_of(m, p->total[i]) - compton - value_of(m, p->rayleigh[i]), 0);
+        m->transfer[i] = absorbed * kev + compton * electron_of(m, kev, weights);
         for (int64_t s = 0; s < p->shells; s++)
             m->transfer[i] -= value_of(m, p->emission[i * p->shells + s]) * mean_line(&m->emitters.of[s]);
     }

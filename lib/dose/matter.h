@@ -10,7 +10,7 @@ typedef struct {
     skg_emitters emitters;
     skg_scatter_physics physics;
     double *
-        transfer; /* [energies] keV/mm that stay where photons interact: of electrons, less the lines that are emitted */
+        transfer; /* [energies] keV/mm that stay where photons interact: of electrons, less the photons that are emitted */
     double *coherent; /* [momenta] integral of F^2 over the square of the momentum transfer */
 } skg_dose_matter;
 

@@ -4,7 +4,7 @@
 
 #include "dose/figures.h"
 
-/* Photons of fluorescence that wait for the one that is followed. */
+/* Photons of fluorescence and annihilation that wait for the one that is followed. */
 enum { SKG_DOSE_WAITING = 16 };
 
 /* The ray to a place where backscatter is asked for, in the plane of the field. */

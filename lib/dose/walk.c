@@ -14,8 +14,6 @@
 /* So many rounds, between which progress is told. */
 enum { ROUNDS = 16 };
 
-static const double HIGHEST_KEV = 1022;
-
 skg_status skg_dose_walk_check(const skg_recipe *recipe) {
     const skg_scene *scene = recipe->scene;
     skg_material *world = skg_scatter_world(recipe);
@@ -33,11 +31,6 @@ skg_status skg_dose_walk_check(const skg_recipe *recipe) {
             return skg_fail(SKG_ERR_MATERIAL, "%s: its density is not known; give one in g/cm3", part->label);
     }
     if (world && !skg_material_is_void(world)) SKG_TRY(skg_scattering_check(world));
-    for (int64_t i = 0; i < recipe->spectrum->count; i++)
-        if (recipe->spectrum->energy_kev[i] > HIGHEST_KEV)
-            return skg_fail(SKG_ERR_UNSUPPORTED,
-                            "the beam has photons of %g keV; up to %g, where pairs begin",
-                            recipe->spectrum->energy_kev[i], HIGHEST_KEV);
     return SKG_OK;
 }
 

@@ -39,6 +39,18 @@ static skg_status check_spot(const skg_spot *spot) {
         spot->samples_max > SAMPLES_MAX)
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " samples of the source, at most %" PRId64 "; 0 to %d",
                         spot->samples, spot->samples_max, SAMPLES_MAX);
+    if (!(spot->off_focal >= 0 && spot->off_focal < 1))
+        return skg_fail(SKG_ERR_ARGUMENT, "off-focal radiation: a share of %g; 0 to below 1",
+                        spot->off_focal);
+    if (spot->off_focal > 0 && !(spot->off_focal_mm > 0 && spot->off_focal_mm <= 1000))
+        return skg_fail(SKG_ERR_SCENE, "off-focal radiation: a disc of %g mm; above 0 to 1000 mm",
+                        spot->off_focal_mm);
+    if (spot->off_focal > 0 && (spot->shape == SKG_SPOT_POINT || spot->grid > 0))
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "off-focal radiation beside %s; give the focal spot a shape of some size without a grid, such as "
+            "a disc of 0.1 mm",
+            spot->grid > 0 ? "a grid of samples" : "a point");
     if (!(spot->tolerance > 0 && spot->tolerance < 1))
         return skg_fail(
             SKG_ERR_ARGUMENT,
@@ -135,6 +147,17 @@ static void place_in_spot(const skg_spot *spot, const double x[3], double local[
     }
 }
 
+/* The spot that a sample belongs to: the focal spot, or a disc around it. The share of the samples that the disc has is that of the first
+ * coordinate, which is then even again in either. */
+static skg_spot spot_of(const skg_spot *spot, double x[3]) {
+    const int is_off = x[0] < spot->off_focal;
+    skg_spot own = *spot;
+    if (!(spot->off_focal > 0)) return own;
+    x[0] = is_off ? x[0] / spot->off_focal : (x[0] - spot->off_focal) / (1 - spot->off_focal);
+    if (is_off) own.shape = SKG_SPOT_DISC, own.extent[0] = spot->off_focal_mm;
+    return own;
+}
+
 /* The axes of the spot in the world: across (along the projected column step), down, and towards the detector. */
 static void find_axes(const skg_spot *spot, const skg_view *view, double axes[3][3]) {
     double *along = axes[2];
@@ -164,7 +187,8 @@ void skg_samples_at(const skg_samples *samples, const skg_view *view, int64_t in
         grid_point(&samples->spot, of_source, x);
     else
         sobol(of_source, x);
-    place_in_spot(&samples->spot, x, local);
+    const skg_spot own = spot_of(&samples->spot, x);
+    place_in_spot(&own, x, local);
     find_axes(&samples->spot, view, axes);
     for (int k = 0; k < 3; k++) skg_add_scaled(source, local[k], axes[k], source);
 }

@@ -66,9 +66,21 @@ void skg_material_release(skg_material **material) {
         skg_free(&(*material)->parts);
         skg_free(&(*material)->energy_kev);
         skg_free(&(*material)->per_cm);
+        skg_free(&(*material)->momenta);
+        skg_free(&(*material)->coherent);
         skg_free(material);
     }
     *material = NULL;
+}
+
+skg_status skg_material_bind(int64_t count, const double *x, const double *squares, double scale,
+                             skg_material *to) {
+    SKG_TRY(skg_alloc(count, sizeof(double), "form factors", &to->momenta));
+    SKG_TRY(skg_alloc(count, sizeof(double), "form factors", &to->coherent));
+    memcpy(to->momenta, x, (size_t)count * sizeof(double));
+    for (int64_t i = 0; i < count; i++) to->coherent[i] = scale * squares[i];
+    to->momentum_count = count;
+    return SKG_OK;
 }
 
 skg_status skg_material_create_at_density(const skg_material *material, double density,
@@ -84,8 +96,13 @@ skg_status skg_material_create_at_density(const skg_material *material, double d
     if (!(isfinite(density) && density > 0))
         return skg_fail(SKG_ERR_MATERIAL, "%s: a density of %g g/cm3 is not usable; give one above 0",
                         material->name, density);
-    return skg_material_compose(material->name, material->note, material->count, material->parts, density,
-                                dense);
+    SKG_TRY(skg_material_compose(material->name, material->note, material->count, material->parts, density,
+                                 dense));
+    if (material->momentum_count == 0) return SKG_OK;
+    const skg_status status =
+        skg_material_bind(material->momentum_count, material->momenta, material->coherent, 1, *dense);
+    if (status != SKG_OK) skg_material_release(dense);
+    return status;
 }
 
 skg_status skg_material_name_get(const skg_material *material, const char **name) {

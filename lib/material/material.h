@@ -23,6 +23,8 @@ struct skg_material {
     skg_mass_fraction *parts;
     double *energy_kev, *per_cm;
     int32_t linear; /* the table is interpolated linearly, not log-log */
+    int64_t momentum_count;
+    double *momenta, *coherent; /* [momentum_count] of molecules: 1/Angstrom, F^2 of 1 g; 0: atoms are free */
 };
 
 /* The range in keV over which cross sections are given: XCOM's table begins at 1 keV, and above 20 MeV photons of
@@ -51,6 +53,10 @@ skg_status skg_hounsfield_row_create(int64_t row, skg_material **material);
 /* Makes a material of a composition that has been checked. */
 skg_status skg_material_compose(const char *name, const char *note, int64_t count,
                                 const skg_mass_fraction *parts, double density, skg_material **material);
+
+/* Gives a material that has none a copy of a table of form factors. x: [count] 1/Angstrom; squares: [count], times `scale` of 1 g */
+skg_status skg_material_bind(int64_t count, const double *x, const double *squares, double scale,
+                             skg_material *to);
 
 /* A solution of a material of known density in water (skg_material_create_solution). name: of the solute; g_ml: its mass in 1 ml */
 skg_status skg_material_dissolve(const char *name, const skg_material *solute, double g_ml,

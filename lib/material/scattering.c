@@ -60,8 +60,7 @@ skg_status skg_scattering_check(const skg_material *material) {
         material->name);
 }
 
-skg_status skg_scattering_factors(const skg_material *material, double x, double *coherent,
-                                  double *incoherent) {
+skg_status skg_scattering_free(const skg_material *material, double x, double *coherent, double *incoherent) {
     double sums[SKG_SCATTERINGS] = {0};
     SKG_TRY(skg_scattering_check(material));
     for (int64_t i = 0; i < material->count; i++) {
@@ -73,5 +72,28 @@ skg_status skg_scattering_factors(const skg_material *material, double x, double
     }
     *coherent = sums[SKG_COHERENT];
     *incoherent = sums[SKG_INCOHERENT];
+    return SKG_OK;
+}
+
+/* The sum of F^2 over 1 g by the table of a material: linear between rows, the first of which also holds before it. Returns 0 where atoms are
+ * free: without a table, and from its last row on. */
+static int find_bound(const skg_material *material, double x, double *coherent) {
+    const int64_t count = material->momentum_count;
+    const double *momenta = material->momenta;
+    if (count == 0 || !(x < momenta[count - 1])) return 0;
+    int64_t low = 0, high = count - 1;
+    while (high - low > 1) {
+        const int64_t middle = (low + high) / 2;
+        *(momenta[middle] <= x ? &low : &high) = middle;
+    }
+    const double share = fmax((x - momenta[low]) / (momenta[high] - momenta[low]), 0);
+    *coherent = material->coherent[low] + share * (material->coherent[high] - material->coherent[low]);
+    return 1;
+}
+
+skg_status skg_scattering_factors(const skg_material *material, double x, double *coherent,
+                                  double *incoherent) {
+    SKG_TRY(skg_scattering_free(material, x, coherent, incoherent));
+    find_bound(material, x, coherent);
     return SKG_OK;
 }

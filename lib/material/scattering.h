@@ -1,8 +1,8 @@
 /* How strongly the atoms of a material scatter by momentum transfer. Private.
  *
  * The momentum transfer is x = sin(theta/2) / wavelength = E sin(theta/2) / (h c), in 1/Angstrom; theta is the angle
- * between the photon's directions before and after. Atoms are free: the structure of molecules and crystals, which
- * changes F^2 below about 0.3/Angstrom, is left out. */
+ * between the photon's directions before and after. Atoms are free, unless a material has a table of its molecules' form factors: the
+ * structure of molecules and crystals changes F^2 below about 0.3/Angstrom. */
 #ifndef SKG_MATERIAL_SCATTERING_H
 #define SKG_MATERIAL_SCATTERING_H
 
@@ -19,12 +19,16 @@
  * table F = Z - c x^2 and S = c x^2; above the last one F falls like x^-4, as that of 1s electrons does, and S stays Z. */
 void skg_atom_scattering(int32_t z, double x, double factors[SKG_SCATTERINGS]);
 
-/* Sums over the atoms of 1 g of a material, in 1/g: of F^2 and of S at momentum transfer x (1/Angstrom).
+/* Sums over the atoms of 1 g of a material, in 1/g: of F^2 and of S at momentum transfer x (1/Angstrom). F^2 is that of its molecules
+ * where it has a table of them.
  *
  * errors   SKG_ERR_MATERIAL for a material without composition (mu at all energies, or a table); the message says what to
  *          use instead */
 skg_status skg_scattering_factors(const skg_material *material, double x, double *coherent,
                                   double *incoherent);
+
+/* The same of free atoms. */
+skg_status skg_scattering_free(const skg_material *material, double x, double *coherent, double *incoherent);
 
 /* SKG_ERR_MATERIAL as above unless the material has a composition. */
 skg_status skg_scattering_check(const skg_material *material);

@@ -161,6 +161,23 @@ const skg_effect_row skg_effect_source = {
     .cost = cost_source,
 };
 
+static void find_off_focal(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_spot *spot = &f->recipe->samples.spot;
+    if (spot->off_focal > 0)
+        skg_effect_set(state, 1, "%.3g %% of the photons come from a disc of %.4g mm around the focal spot",
+                       100 * spot->off_focal, spot->off_focal_mm);
+    else
+        skg_effect_set(state, 0, "all photons come from the focal spot");
+}
+
+/* Its samples are those of the source. */
+const skg_effect_row skg_effect_off_focal = {
+    .name = "off-focal radiation",
+    .key = "OffFocal",
+    .adjoint = "add_ends",
+    .find = find_off_focal,
+};
+
 static void leave_out_supersampling(skg_plan_options *options) {
     options->supersampling = 1;
 }

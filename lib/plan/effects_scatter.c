@@ -11,9 +11,6 @@
 #include <inttypes.h>
 #include <math.h>
 
-/* Above this energy photons make pairs. */
-static const double HIGHEST_KEV = 1022;
-
 /* Share of the beam that the world may scatter: 2 % in a metre of air, of which a seventh arrives on 40 cm of detector behind it. */
 static const double WORLD_SCATTERS = 0.2;
 
@@ -115,13 +112,7 @@ skg_status skg_scatter_check(const skg_recipe *recipe) {
     }
     if (skg_scatter_world(recipe) && skg_scattering_check(skg_scatter_world(recipe)) != SKG_OK)
         return skg_fail(SKG_ERR_MATERIAL, "scatter: World: %s", skg_last_error());
-    SKG_TRY(check_world(recipe));
-    for (int64_t i = 0; i < recipe->spectrum->count; i++)
-        if (recipe->spectrum->photons[i] > 0 && recipe->spectrum->energy_kev[i] > HIGHEST_KEV)
-            return skg_fail(SKG_ERR_UNSUPPORTED,
-                            "scatter: the beam has photons of %g keV; up to %g, where pairs begin",
-                            recipe->spectrum->energy_kev[i], HIGHEST_KEV);
-    return SKG_OK;
+    return check_world(recipe);
 }
 
 static void find_scatter(const skg_effect_facts *f, skg_effect_state *state) {
@@ -164,14 +155,18 @@ static int32_t fluorescence_of(const skg_recipe *recipe) {
     return recipe->options.scatter ? recipe->options.scatter->fluorescence : SKG_FLUORESCENCE_AUTO;
 }
 
-/* The heaviest element of the parts whose K or L edge is in the beam; 0: none. */
-static int32_t find_emitter(const skg_recipe *recipe, skg_shell *shell) {
-    const int32_t lightest = fluorescence_of(recipe) == SKG_FLUORESCENCE_ON ? 1 : SKG_FLUORESCENCE_LIGHTEST;
-    const skg_spectrum *spectrum = recipe->spectrum;
-    int32_t found = 0;
+static double highest_of(const skg_spectrum *spectrum) {
     double high = 0;
     for (int64_t i = 0; i < spectrum->count; i++)
         if (spectrum->photons[i] > 0) high = fmax(high, spectrum->energy_kev[i]);
+    return high;
+}
+
+/* The heaviest element of the parts whose K or L edge is in the beam; 0: none. */
+static int32_t find_emitter(const skg_recipe *recipe, skg_shell *shell) {
+    const int32_t lightest = fluorescence_of(recipe) == SKG_FLUORESCENCE_ON ? 1 : SKG_FLUORESCENCE_LIGHTEST;
+    const double high = highest_of(recipe->spectrum);
+    int32_t found = 0;
     for (int64_t p = 0; p < recipe->scene->count; p++) {
         const skg_material *material = recipe->scene->parts[p].material;
         for (int64_t i = 0; material->kind == SKG_MATTER_COMPOSITION && i < material->count; i++)
@@ -211,4 +206,52 @@ const skg_effect_row skg_effect_fluorescence = {
     .self_test = SKG_SELF_TEST_SCATTER,
     .refuses_gradient = refuse_scatter,
     .find = find_fluorescence,
+};
+
+/* --- annihilation after pair production */
+
+static void find_annihilation(const skg_effect_facts *f, skg_effect_state *state) {
+    const double high = highest_of(f->recipe->spectrum);
+    if (!(high > SKG_PAIR_THRESHOLD_KEV))
+        skg_effect_set(state, 0, "no photon has the %.4g keV of a pair", SKG_PAIR_THRESHOLD_KEV);
+    else if (!f->recipe->options.scatter)
+        skg_effect_set(state, 0,
+                       "comes with scatter, which is not asked for; photons up to %.5g keV make pairs", high);
+    else
+        skg_effect_set(
+            state, 1,
+            "two photons of 511 keV for each pair that photons up to %.5g keV make; bremsstrahlung of the "
+            "electrons is left out",
+            high);
+}
+
+const skg_effect_row skg_effect_annihilation = {
+    .name = "annihilation",
+    .self_test = SKG_SELF_TEST_SCATTER,
+    .refuses_gradient = refuse_scatter,
+    .find = find_annihilation,
+};
+
+/* --- the order of molecules in Rayleigh scattering */
+
+static void find_molecules(const skg_effect_facts *f, skg_effect_state *state) {
+    const skg_scene *scene = f->recipe->scene;
+    int64_t bound = 0;
+    for (int64_t i = 0; i < scene->count; i++) bound += scene->parts[i].material->momentum_count > 0;
+    if (bound == 0)
+        skg_effect_set(state, 0,
+                       "no part has form factors of its molecules: atoms scatter as if they were free");
+    else if (!f->recipe->options.scatter)
+        skg_effect_set(state, 0, "comes with scatter, which is not asked for");
+    else
+        skg_effect_set(state, 1, "%" PRId64 " of %" PRId64 " parts have form factors of their molecules",
+                       bound, scene->count);
+}
+
+const skg_effect_row skg_effect_molecules = {
+    .name = "molecules",
+    .key = "FormFactor",
+    .self_test = SKG_SELF_TEST_SCATTER,
+    .refuses_gradient = refuse_scatter,
+    .find = find_molecules,
 };

@@ -92,10 +92,10 @@ typedef struct {
 /* The rows in the order in which they are reported. */
 /* clang-format off */
 #define SKG_EFFECT_ROWS(X) \
-    X(energies) X(source) X(supersampling) X(world) X(response) X(falloff) X(compression) \
+    X(energies) X(source) X(off_focal) X(supersampling) X(world) X(response) X(falloff) X(compression) \
     X(nesting) X(leaky) X(repair) X(source_plane) X(overlaps) \
     X(noise) X(blur) X(electronic) X(quantisation) X(priority) X(volumes) \
-    X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(grid) X(oblique) X(curved) X(escape) X(deposition) X(depths) X(dqe) \
+    X(heel) X(bowtie) X(collimation) X(scatter) X(fluorescence) X(annihilation) X(molecules) X(grid) X(oblique) X(curved) X(escape) X(deposition) X(depths) X(dqe) \
     X(counting) X(cloud) X(pixel_lines) X(anti_coincidence) X(pile_up)
 /* clang-format on */
 

@@ -12,14 +12,16 @@
 
 #include <math.h>
 
-/* --- Fluorescence: photons of the lines of a shell, in any direction, after photo absorption (K and L shells; yields and shares of
- * materials/k_lines.txt and l_lines.txt). */
+/* --- Emission: photons in any direction where another is absorbed. *
+ * Fluorescence: lines of a shell after photo absorption (K and L shells; yields and shares of materials/k_lines.txt and l_lines.txt).
+ * Annihilation: two photons of 511 keV, back to back, for each pair, of all elements together. The positron stops where it was made. Each
+ * of the two flies in any direction with the same chance, so that a mean asks for no more than two photons in any direction. */
 
 typedef struct {
     skg_shell shell,
         deeper; /* deeper: of L, the K shell, whose K alpha leaves vacancies there; has_deeper: it is known */
-    int32_t has_deeper, reserved;
-    double photons;                    /* per vacancy, of the lines that are followed */
+    int32_t has_deeper, pairs;         /* 1: annihilation, which has no shell */
+    double photons;                    /* per vacancy, of the lines that are followed; per pair */
     float lines[SKG_SCATTER_LINES][2]; /* share of the photons up to this one, keV */
 } skg_emitter;
 
@@ -30,9 +32,9 @@ typedef struct {
     double lowest_kev; /* photons are followed down to here */
 } skg_emitters;
 
-/* Finds the shells that matter: their edge is in the beam, and they emit 1e-4 of what interacts in some material or more.
+/* Finds what matters: its edge is in the beam, and it emits 1e-4 of what interacts in some material or more.
  *
- * fluorescence   enum skg_fluorescence; by default of elements from Z = 30 on
+ * fluorescence   enum skg_fluorescence; by default of elements from Z = 30 on. Annihilation does not ask for it
  * low_kev        lines below it are left out
  * high_kev       of the beam
  *
@@ -49,7 +51,7 @@ void skg_emitters_free(skg_emitters *emitters);
  * of 12 tissues is right within 0.1 % and their distributions of angles within 0.3 %; with steel and iodine beside them
  * within 1.5 % (steel; tissues 0.8 %) and 9 % (Rayleigh of bone).
  *
- * Interactions are photo absorption, Compton and Rayleigh scattering, up to 1,022 keV, where pair production begins. Their
+ * Interactions are photo absorption, Compton and Rayleigh scattering, and pair production from 1,022 keV on. Their
  * numbers are XCOM's, the same as the primary's. Angles are distributed like Klein and Nishina's cross section
  * times S, and like Thomson's times F^2, of free atoms (material/scattering.h). */
 
@@ -61,7 +63,7 @@ typedef struct {
     /* Points even in ln E from low_kev to high_kev. Tables are linear between them. */
     int64_t energies;
     double low_kev, high_kev;
-    /* [energies] 1/mm per coefficient; total: photo + Compton + Rayleigh. With more compositions than coefficients Compton
+    /* [energies] 1/mm per coefficient; total: photo + Compton + Rayleigh + pairs. With more compositions than coefficients Compton
      * + Rayleigh may exceed the total within the errors. */
     skg_mixture *total, *compton, *rayleigh;
     /* [energies] 1/mm per coefficient: integrals over the sphere of klein_nishina(E, theta) * incoherent(x) and of
@@ -73,7 +75,7 @@ typedef struct {
     double momentum_scale, momentum_high;
     /* [momenta] 1/mm per coefficient: r_e^2 times the number of atoms per volume times S and times F^2. */
     skg_mixture *incoherent, *coherent;
-    int64_t shells; /* that emit */
+    int64_t shells; /* that emit; annihilation counts as one */
     skg_mixture
         *emission; /* [energies][shells] photons per mm and coefficient that a photon's absorption emits */
     int64_t materials;
@@ -83,7 +85,7 @@ typedef struct {
      * rounding of floats. Interpolation is apart: below 2e-4 away from edges. */
     double attenuation_error, error;
     double
-        emission_error; /* the greatest difference of what a material emits over the most that any does; in `error`, too */
+        emission_error; /* the greatest difference of what a material emits over the most that any does, of lines and of annihilation; in `error`, too */
 } skg_scatter_physics;
 
 /* Makes the tables.
@@ -91,8 +93,8 @@ typedef struct {
  * materials   [count] at their densities
  * emitters    of these materials; NULL: none
  * low_kev     of the photons that are tracked, >= 1
- * errors      SKG_ERR_MATERIAL for a material without composition or density, or below 1 keV; SKG_ERR_UNSUPPORTED above
- *             1,022 keV; SKG_ERR_ARGUMENT unless low_kev < high_kev */
+ * errors      SKG_ERR_MATERIAL for a material without composition or density, below 1 keV or above 20 MeV; SKG_ERR_ARGUMENT
+ *             unless low_kev < high_kev */
 skg_status skg_scatter_physics_make(int64_t count, skg_material *const *materials,
                                     const skg_emitters *emitters, double low_kev, double high_kev,
                                     skg_scatter_physics *physics);

@@ -10,8 +10,9 @@
 #include <math.h>
 #include <string.h>
 
-/* Photons are followed down to this share of the lowest energy of the beam. */
-static const double LOWEST = 0.25;
+/* Photons are followed down to this share of the lowest energy of the beam, and at least down to LOWEST_KEV: of more than 500 keV Compton
+ * scattering straight back leaves less than a third, and of more than 1 MeV less than a fifth. Below it water absorbs more than it scatters. */
+static const double LOWEST = 0.25, LOWEST_KEV = 30;
 
 /* A way through m cells whose depth is off by up to d each, evenly, passes m d^2 / 24 too much on average; a third of the tolerance
  * for the two or three of them that matter most. */
@@ -64,7 +65,7 @@ static skg_status make_physics(const skg_scatter_work *work, const palette *p, s
     if (recipe->options.response) least = fmax(least, skg_response_lowest(recipe->options.response));
     SKG_TRY(skg_emitters_find(p->count, p->materials, recipe->options.scatter->fluorescence, least, high,
                               &object->emitters));
-    low = fmax(fmin(low * LOWEST, object->emitters.lowest_kev), least);
+    low = fmax(fmin(fmin(low * LOWEST, LOWEST_KEV), object->emitters.lowest_kev), least);
     return skg_scatter_physics_make(p->count, p->materials, &object->emitters, low, fmax(high, low * 1.001),
                                     &object->physics);
 }

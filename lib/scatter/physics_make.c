@@ -12,8 +12,6 @@
 static const double ENERGY_STEP = 0.012, MOMENTUM_STEP = 0.01;
 static const double MOMENTUM_SCALE = 0.1; /* 1/Angstrom: where F of light atoms begins to fall */
 
-static const double HIGHEST_KEV = 1022;
-
 /* The shapes are compared, and momentum transfers weighted, at one energy of EVERY. */
 enum { EVERY = 8 };
 static const double ROUNDING_OF_FLOATS = 1e-6;
@@ -27,12 +25,7 @@ static skg_status check(int64_t count, skg_material *const *materials, double lo
         return skg_fail(SKG_ERR_ARGUMENT, "scatter: photons from %g to %g keV: the range is empty", low_kev,
                         high_kev);
     SKG_TRY(skg_check_energy("scatter", low_kev));
-    if (high_kev > HIGHEST_KEV)
-        return skg_fail(
-            SKG_ERR_UNSUPPORTED,
-            "scatter: photons of %g keV make pairs, which are not followed; the highest energy is "
-            "%g keV",
-            high_kev, HIGHEST_KEV);
+    SKG_TRY(skg_check_energy("scatter", high_kev));
     for (int64_t m = 0; m < count; m++) {
         SKG_TRY(skg_scattering_check(materials[m]));
         if (!(materials[m]->density > 0))

@@ -65,7 +65,8 @@ static double source_reach(const skg_plan_options *options) {
     if (!spot || spot->shape == SKG_SPOT_POINT) return 0;
     const double most = fmax(spot->extent[0], fmax(spot->extent[1], spot->extent[2]));
     /* 2 is 4.7 standard deviations of a Gaussian. */
-    return spot->shape == SKG_SPOT_GAUSSIAN ? 2 * most : 0.5 * most;
+    const double focal = spot->shape == SKG_SPOT_GAUSSIAN ? 2 * most : 0.5 * most;
+    return spot->off_focal > 0 ? fmax(focal, 0.5 * spot->off_focal_mm) : focal;
 }
 
 /* side: rays along each side of the detector */

@@ -25,6 +25,7 @@ from ._library import lib as _lib, text as _text
 from ._reconstruct import reconstruct
 from .beam import Beam, Response
 from .counter import Counter
+from .lag import Lag
 from .material import Material, element_number, materials
 from .matrices import rotate, translate
 from .mesh import Mesh
@@ -36,7 +37,7 @@ from .thorax import thorax
 from .view import View
 
 __version__ = _text(_lib.skg_version())
-__all__ = [*_errors, "Beam", "Counter", "Device", "LabelError", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scan", "Scene",
+__all__ = [*_errors, "Beam", "Counter", "Device", "LabelError", "Lag", "Material", "Mesh", "Part", "RangeWarning", "Report", "Response", "Scan", "Scene",
            "SkiagraphWarning", "View", "devices", "distance", "element_number", "fit", "materials", "reconstruct", "rotate", "thorax", "torch", "translate"]
 
 

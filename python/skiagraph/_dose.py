@@ -11,6 +11,7 @@ from ._interface import ArgumentError
 from ._library import ffi, filled, listed, make, release, struct
 from ._progress import Progress, Watch
 from ._state import State
+from .scan import Scan
 
 
 def _known(value: float) -> float | None:
@@ -35,7 +36,7 @@ def _report(state: State, handle: Any) -> dict[str, Any]:
     return found
 
 
-def dose(state: State, at: ArrayLike | None, histories: int | None, seed: int, progress: Progress,
+def dose(state: State, at: ArrayLike | None, scan: Scan | None, histories: int | None, seed: int, progress: Progress,
          options: dict[str, Any]) -> dict[str, Any]:
     places = np.ascontiguousarray(() if at is None else at, dtype=np.float64)
     if at is not None and (places.ndim not in (1, 2) or places.shape[-1] != 3):
@@ -47,9 +48,11 @@ def dose(state: State, at: ArrayLike | None, histories: int | None, seed: int, p
     if places.size:
         asked.points = ffi.cast("double *", ffi.from_buffer(places))
     with state.calls():
-        plan = state.plan(options)
-        with Watch(progress, "rounds of photons") as asked.progress:
-            handle = make("skg_dose_create", "skg_dose", plan, asked)
+        with Watch(progress, "rounds of photons" if scan is None else "projections") as asked.progress:
+            if scan is None:
+                handle = make("skg_dose_create", "skg_dose", state.plan(options), asked)
+            else:
+                handle = make("skg_scan_dose_create", "skg_dose", state.plan(options, scan[0]), scan._handle, asked)
         try:
             return _report(state, handle)
         finally:

@@ -112,6 +112,31 @@ class Material:
             made._recipe = (self._recipe[0], density)
         return made
 
+    def with_form_factor(self, per_angstrom: Any, squares: Any) -> Material:
+        """The same matter with the form factors of its molecules: F^2, in any unit, at rising momentum transfers sin(theta/2) / wavelength
+        in 1/Angstrom, up to 0.4 at least. They change where Rayleigh scattering sends photons."""
+        momenta, values = np.atleast_1d(per_angstrom), np.atleast_1d(squares)
+        if momenta.shape != values.shape or momenta.ndim != 1:
+            raise ArgumentError(f"per_angstrom has the shape {momenta.shape} and squares {values.shape}; give two lists alike")
+        keep: list[Any] = []
+        made = Material.__new__(Material)
+        made._handle = owned("skg_material", make("skg_material_create_form_factor", "skg_material", self._handle, len(momenta),
+                                                  doubles(momenta, "per_angstrom", keep), doubles(values, "squares", keep)))
+        made._recipe = self._recipe
+        return made
+
+    @property
+    def form_factor(self) -> tuple[NDArray[np.float64], NDArray[np.float64]] | None:
+        """Of its molecules: momentum transfers in 1/Angstrom, and F^2 of 1 g; None if its atoms are free."""
+        count = ffi.new("int64_t *")
+        call("skg_material_form_factor_get", self._handle, 0, ffi.NULL, ffi.NULL, count)
+        if not count[0]:
+            return None
+        rows = np.empty((2, count[0]))
+        x, squares = (ffi.cast("double *", ffi.from_buffer(row)) for row in rows)
+        call("skg_material_form_factor_get", self._handle, count[0], x, squares, count)
+        return rows[0], rows[1]
+
     @property
     def name(self) -> str:
         return string("skg_material_name_get", self._handle)
@@ -174,11 +199,13 @@ class Material:
         if recipe is None:
             raise ArgumentError(f"{self.name} was read from a file; pickle the scene that it belongs to, or make it by "
                                 "Material.table")
-        return _remake, recipe
+        return _remake, (*recipe, self.form_factor)
 
 
-def _remake(recipe: tuple[Any, ...], density: float | None) -> Material:
-    return Material._from(*recipe, density=density)
+def _remake(recipe: tuple[Any, ...], density: float | None,
+            form: tuple[NDArray[np.float64], NDArray[np.float64]] | None = None) -> Material:
+    made = Material._from(*recipe, density=density)
+    return made.with_form_factor(*form) if form else made
 
 
 def _argument(value: Any, keep: list[Any]) -> Any:

@@ -281,18 +281,19 @@ class Scene(_gradient.Differentiable):
         """
         return _scatter.prediction(self._state, options)
 
-    def dose(self, at: Any = None, *, histories: int | None = None, seed: int = 0, progress: Progress = False,
-             **options: Any) -> dict[str, Any]:
+    def dose(self, at: Any = None, *, scan: Scan | None = None, histories: int | None = None, seed: int = 0,
+             progress: Progress = False, **options: Any) -> dict[str, Any]:
         """What one exposure gives to people and things.
 
-        at: a place [x, y, z] in mm, or several; without it, where the middle ray of the field enters the first part. histories:
+        at: a place [x, y, z] in mm, or several; without it, where the middle ray of the field enters the first part. scan: all its
+        projections together, such as those of scene.trajectory. histories:
         photons that are followed through the parts, 200,000 by default. options as of image(). Returns "kerma", a list of {"at",
         "air_kerma_uGy", "backscatter"}; "kap_uGy_cm2"; "detector_air_kerma_uGy"; "exposure_index"; "parts", a list of {"label",
         "dose_uGy", "sigma", "energy_keV"}; "hvl1_mm_al" and "hvl2_mm_al"; with noise "darkest". What is not known is None.
 
         BeamError if the scene does not say how many photons there are, by the mAs of a tube or by photons of a pixel.
         """
-        return _dose.dose(self._state, at, histories, seed, progress, options)
+        return _dose.dose(self._state, at, scan, histories, seed, progress, options)
 
     # Scans
 

@@ -116,6 +116,12 @@ START_TEST(penumbra_is_a_ramp) {
 }
 END_TEST
 
+/* The share of a disc beyond u of its radii. */
+static double beyond_of_disc(double u) {
+    const double at = fmin(fmax(u, -1), 1);
+    return 0.5 - (at * sqrt(1 - at * at) + asin(at)) / pi;
+}
+
 /* What a disc, a ball and a bell let pass, through the share of each beyond a line: closed forms. */
 START_TEST(shapes_have_their_penumbra) {
     static double image[SIDE * SIDE];
@@ -128,11 +134,62 @@ START_TEST(shapes_have_their_penumbra) {
     take(&options, &view, image, &report);
     for (int c = 0; c < SIDE; c += 3) {
         const double x = (c - 0.5 * (SIDE - 1)) * 0.25, u = fmin(fmax(x / 2, -1), 1);
-        double share = 0.5 - (u * sqrt(1 - u * u) + asin(u)) / pi; /* of a disc beyond u */
+        double share = beyond_of_disc(u);
         if (_i == 1) share = 0.5 - 0.75 * u + 0.25 * u * u * u;
         if (_i == 2) share = 0.5 * erfc(x * 2.3548200450309493 / 4 / sqrt(2));
         /* 4,096 samples: some 4096^(-3/4) for lines that cut curved shapes */
         ck_assert_double_eq_tol(image[SIDE / 2 * SIDE + c], share, 0.004);
+    }
+}
+END_TEST
+
+/* Off-focal radiation: a penumbra of the disc in its share, and that of the focal spot in the rest. */
+START_TEST(off_focal_radiation_has_the_penumbra_of_its_disc) {
+    static double image[SIDE * SIDE];
+    static const double shares[] = {0.1, 0.6};
+    skg_plan_report report;
+    for (int k = 0; k < 2; k++) {
+        skg_spot spot;
+        skg_spot_init(&spot);
+        spot.shape = SKG_SPOT_DISC, spot.extent[0] = 0.5, spot.samples = 8192;
+        spot.off_focal = shares[k], spot.off_focal_mm = 12;
+        skg_plan_options options = options_of(&spot, SKG_QUANTITY_TRANSMISSION);
+        take(&options, &view, image, &report);
+        for (int c = 0; c < SIDE; c += 3) {
+            const double x = (c - 0.5 * (SIDE - 1)) * 0.25;
+            const double expected =
+                shares[k] * beyond_of_disc(x / 6) + (1 - shares[k]) * beyond_of_disc(x / 0.25);
+            /* 8,192 samples in two discs: some 8192^(-3/4); and the block is 1 mm thick. */
+            ck_assert_double_eq_tol(image[SIDE / 2 * SIDE + c], expected, 0.004);
+        }
+    }
+}
+END_TEST
+
+START_TEST(off_focal_radiation_needs_a_focal_spot) {
+    static const struct {
+        skg_spot spot;
+        skg_status status;
+        const char *says;
+    } bad[] = {
+        {{.shape = SKG_SPOT_DISC, .off_focal = 1, .off_focal_mm = 9},
+         SKG_ERR_ARGUMENT,
+         "a share of 1; 0 to below 1"},
+        {{.shape = SKG_SPOT_DISC, .off_focal = 0.1}, SKG_ERR_SCENE, "a disc of 0 mm; above 0"},
+        {{.shape = SKG_SPOT_POINT, .off_focal = 0.1, .off_focal_mm = 9},
+         SKG_ERR_UNSUPPORTED,
+         "beside a point"},
+        {{.shape = SKG_SPOT_LINE, .grid = 3, .off_focal = 0.1, .off_focal_mm = 9},
+         SKG_ERR_UNSUPPORTED,
+         "a grid of samples"},
+    };
+    for (size_t k = 0; k < sizeof bad / sizeof *bad; k++) {
+        skg_plan *plan = NULL;
+        skg_spot spot = bad[k].spot;
+        spot.size = (int32_t)sizeof spot, spot.tolerance = 0.01, spot.samples_max = 16;
+        const skg_plan_options options = options_of(&spot, SKG_QUANTITY_ENERGY);
+        ck_skg_fails(skg_plan_create(context, scene, &view, beam, &options, &plan), bad[k].status,
+                     bad[k].says);
     }
 }
 END_TEST
@@ -238,6 +295,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, samples_are_doubled_until_it_suffices);
     tcase_add_test(tests, pixels_are_means_of_their_pieces);
     tcase_add_test(tests, open_field_does_not_depend_on_the_source);
+    tcase_add_test(tests, off_focal_radiation_has_the_penumbra_of_its_disc);
+    tcase_add_test(tests, off_focal_radiation_needs_a_focal_spot);
     tcase_add_test(tests, bad_spots_are_refused);
 }
 

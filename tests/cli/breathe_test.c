@@ -1,6 +1,8 @@
 /* The verbs thorax and breathe. */
 #include "cli/command.h"
 
+#include <skiagraph/image.h>
+
 #include <math.h>
 #include <signal.h>
 #include <stdlib.h>
@@ -291,6 +293,39 @@ START_TEST(meshes_have_displacements) {
 }
 END_TEST
 
+/* The values of the pixels of a frame, as grey levels. */
+static void read_frame(const char *name, double values[1600]) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    ck_assert_int_eq(skg_picture_load(path, 0, values), SKG_OK);
+}
+
+/* A detector that holds half of each frame for ever shows half of it, which is ln 2 more of -ln(I/I0). */
+START_TEST(films_have_the_lag_of_the_detector) {
+    static double plain[1600], held[1600];
+    ck_run(0, "breathe thorax.json %s %s --seconds 0.1 --fps 20 --range 0:10 -o f --quiet", SMALL, PLAIN);
+    ck_run(
+        0,
+        "breathe thorax.json %s %s --seconds 0.1 --fps 20 --range 0.69314718:10.69314718 -o g --quiet --set "
+        "Detector.GreyValues='{\"Lag\":[[0.5,1e9]]}'",
+        SMALL, PLAIN);
+    for (int frame = 0; frame < 2; frame++) {
+        read_frame(frame ? "f/frame-0001.png" : "f/frame-0000.png", plain);
+        read_frame(frame ? "g/frame-0001.png" : "g/frame-0000.png", held);
+        double most = 0;
+        for (int i = 0; i < 1600; i++) {
+            most = fmax(most, plain[i]);
+            ck_assert_double_eq_tol(held[i], plain[i],
+                                    2.5); /* grey levels, by rounding of floats and of levels */
+        }
+        ck_assert_double_gt(most, 1000);
+    }
+    ck_run_fails(3, "add up to 1",
+                 "breathe thorax.json %s %s -o g --set Detector.GreyValues='{\"Lag\":[[1,2]]}'", SMALL,
+                 PLAIN);
+}
+END_TEST
+
 START_TEST(what_cannot_be_is_refused) {
     ck_run_fails(2, "-o DIR", "thorax");
     ck_run_fails(2, "--triangles", "thorax -o . --triangles 9");
@@ -321,6 +356,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, events_happen);
     tcase_add_test(tests, contrast_fills);
     tcase_add_test(tests, meshes_have_displacements);
+    tcase_add_test(tests, films_have_the_lag_of_the_detector);
     tcase_add_test(tests, what_cannot_be_is_refused);
 }
 

@@ -27,30 +27,42 @@ static void emit(const analogue_box *box, double from[3], double way[3], uint64_
     for (int k = 0; k < 3; k++) way[k] /= sqrt(length);
 }
 
+typedef struct {
+    double from[3], way[3], kev;
+} photon;
+
+/* An interaction. Returns the keV that stay, and leaves p what flies on; *twin: the other photon of an annihilation. */
+static double interact(const matter *m, photon *p, photon *twin, uint64_t *seed) {
+    const double process = draw(seed, 0, 1), compton = matter_at_energy(m->compton, m, p->kev),
+                 scatters = compton + matter_at_energy(m->rayleigh, m, p->kev), before = p->kev;
+    if (process >= scatters + matter_at_energy(m->pairs, m, p->kev)) {
+        p->kev = 0;
+    } else if (process >= scatters) {
+        p->kev = MATTER_ANNIHILATION_KEV;
+        matter_anywhere(p->way, seed);
+        *twin = *p;
+        for (int k = 0; k < 3; k++) twin->way[k] = -p->way[k];
+        return before - 2 * MATTER_ANNIHILATION_KEV;
+    } else {
+        const double cosine = matter_draw(m, p->kev, process < compton, seed);
+        if (process < compton) p->kev *= matter_ratio(p->kev, cosine);
+        matter_turn(p->way, cosine, draw(seed, 0, 6.283185307179586));
+    }
+    if (p->kev <= MATTER_LOWEST_KEV) p->kev = 0;
+    return before - p->kev;
+}
+
 /* left: [2] keV that stay, in all of the box and in its layer */
-static void follow(const analogue_box *box, const matter *m, uint64_t *seed, double left[2]) {
-    double from[3], way[3], kev = box->kev, enter, leave;
-    emit(box, from, way, seed);
-    for (;;) {
-        if (!cross(box, from, way, &enter, &leave)) return;
-        const double on = enter - log1p(-draw(seed, 0, 1)) / matter_at_energy(m->total, m, kev);
+static void follow(const analogue_box *box, const matter *m, photon *p, photon *twin, uint64_t *seed,
+                   double left[2]) {
+    double enter, leave;
+    while (p->kev > 0 && cross(box, p->from, p->way, &enter, &leave)) {
+        const double on = enter - log1p(-draw(seed, 0, 1)) / matter_at_energy(m->total, m, p->kev);
         if (!(on < leave)) return;
-        for (int k = 0; k < 3; k++) from[k] += on * way[k];
-        const int inner = from[2] >= box->inner[0] && from[2] < box->inner[1];
-        const double process = draw(seed, 0, 1), compton = matter_at_energy(m->compton, m, kev);
-        double stays = kev, cosine = 1;
-        if (process < compton) {
-            cosine = matter_draw(m, kev, 1, seed);
-            stays = kev * (1 - matter_ratio(kev, cosine));
-        } else if (process < compton + matter_at_energy(m->rayleigh, m, kev)) {
-            cosine = matter_draw(m, kev, 0, seed);
-            stays = 0;
-        }
-        if (kev - stays <= MATTER_LOWEST_KEV) stays = kev;
+        for (int k = 0; k < 3; k++) p->from[k] += on * p->way[k];
+        const int inner = p->from[2] >= box->inner[0] && p->from[2] < box->inner[1];
+        const double stays = interact(m, p, twin, seed);
         left[0] += stays, left[1] += inner ? stays : 0;
-        kev -= stays;
-        if (!(kev > 0)) return;
-        matter_turn(way, cosine, draw(seed, 0, 6.283185307179586));
     }
 }
 
@@ -70,11 +82,11 @@ analogue_absorbed analogue_box_run(const analogue_box *box, int64_t photons, uin
     for (int b = 0; b < BATCHES; b++) {
         double left[2] = {0}, given = 0;
         for (int64_t i = 0; i < photons / BATCHES; i++) {
-            double own[2] = {0}, from[3], way[3];
-            uint64_t look = seed; /* where this photon will fly */
-            emit(box, from, way, &look);
-            const double weight = weight_of(way);
-            follow(box, m, &seed, own);
+            double own[2] = {0};
+            photon both[2] = {{.kev = box->kev}};
+            emit(box, both[0].from, both[0].way, &seed);
+            const double weight = weight_of(both[0].way);
+            for (int p = 0; p < 2; p++) follow(box, m, &both[p], &both[1], &seed, own);
             given += weight * box->kev;
             for (int k = 0; k < 2; k++) left[k] += weight * own[k];
         }

@@ -455,6 +455,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_beam_in_the_room_is_that_of_images);
     tcase_add_test(tests, the_exposure_index_is_100_for_each_ugy_of_rqa5);
     add_stays(tests);
+    add_sums(tests);
     tcase_add_test(tests, figures_do_not_depend_on_threads);
     tcase_add_test(tests, what_cannot_be_known_is_refused);
     tcase_add_test(tests, nothing_is_kept_without_memory);

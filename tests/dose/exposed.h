@@ -65,7 +65,8 @@ static inline subject open_box(double x, double y, double z, const char *materia
     return s;
 }
 
-/* Adds the tests of what stays in parts (stays.c). */
+/* Adds the tests of what stays in parts (stays.c), and of exposures together (sums.c). */
 void add_stays(TCase *tests);
+void add_sums(TCase *tests);
 
 #endif

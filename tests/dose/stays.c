@@ -49,7 +49,8 @@ START_TEST(layers_keep_what_single_photons_leave) {
     static const struct {
         const char *material;
         double kev;
-    } blocks[] = {{"Water, Liquid", 60}, {"Water, Liquid", 22}, {"Al", 300}};
+    } blocks[] = {{"Water, Liquid", 60},   {"Water, Liquid", 22},   {"Al", 300},
+                  {"Water, Liquid", 1250}, {"Water, Liquid", 6000}, {"Pb", 6000}};
     const analogue_box box = {.material = blocks[_i].material,
                               .kev = blocks[_i].kev,
                               .low = {-60, -50, 0},
@@ -273,7 +274,7 @@ END_TEST
 
 void add_stays(TCase *tests) {
     tcase_add_test(tests, a_foil_keeps_what_its_energy_transfer_says);
-    tcase_add_loop_test(tests, layers_keep_what_single_photons_leave, 0, 3);
+    tcase_add_loop_test(tests, layers_keep_what_single_photons_leave, 0, 6);
     tcase_add_test(tests, fluorescence_carries_energy_away);
     tcase_add_test(tests, parts_share_what_a_block_keeps);
     tcase_add_loop_test(tests, backscatter_is_that_of_a_water_phantom, 0, 3);

@@ -46,6 +46,17 @@ def test_places_and_noise(slab):
         slab.dose([1, 2])
 
 
+def test_a_scan_adds_its_projections(slab):
+    # half a turn in two projections: from one side and from the other
+    scan = sk.Scan(slab.view, 2, 180, axis=(0, 0, 1))
+    one, both = slab.dose([0, 0, 0], histories=3200), slab.dose([0, 0, 0], scan=scan, histories=6400)
+    assert both["kap_uGy_cm2"] == pytest.approx(2 * one["kap_uGy_cm2"], rel=1e-9)  # roundings
+    assert both["kerma"][0]["air_kerma_uGy"] == pytest.approx(2 * one["kerma"][0]["air_kerma_uGy"], rel=1e-9)
+    part, = both["parts"]
+    assert part["dose_uGy"] == pytest.approx(2 * one["parts"][0]["dose_uGy"], abs=8 * part["sigma"])  # of both
+    assert both["exposure_index"] is None
+
+
 def test_a_tube_without_load_is_refused(slab):
     slab.beam = sk.Beam.tube(80, {"Al": 3})
     with pytest.raises(sk.BeamError, match="give mAs"):

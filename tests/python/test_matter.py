@@ -1,4 +1,5 @@
 """Meshes, materials, beams and matrices."""
+import pickle
 import types
 
 import numpy as np
@@ -151,6 +152,24 @@ def test_materials():
     assert "Fe" in sk.Material("Fe").elements
     assert sk.Material.table([10, 100], [1, 0.1]).attenuation(10) == 1
     assert sk.Material.mixture({"H": 0.112, 8: 0.888}, 1).elements.keys() == {"H", "O"}
+
+
+def test_form_factors_of_molecules():
+    water = sk.Material("water")
+    assert water.form_factor is None
+    x = np.linspace(0, 0.6, 31)
+    bound = water.with_form_factor(x, 1 + x).at_density(0.9)
+    momenta, squares = bound.form_factor
+    assert momenta == pytest.approx(x, abs=0)
+    assert squares / squares[0] == pytest.approx(1 + x, rel=1e-12)  # roundings
+    assert bound.attenuation(60) == pytest.approx(0.9 * float(water.attenuation(60)), rel=1e-12)  # as many photons scatter
+    again = pickle.loads(pickle.dumps(bound))
+    assert again.form_factor[1] == pytest.approx(squares, rel=1e-12)  # roundings
+    assert again.density == 0.9
+    with pytest.raises(sk.MaterialError, match="has to reach 0.4"):
+        water.with_form_factor([0, 0.3], [1, 2])
+    with pytest.raises(sk.ArgumentError, match="alike"):
+        water.with_form_factor([0, 0.3, 0.5], [1, 2])
 
 
 def test_by_mass_or_by_atoms():

@@ -389,3 +389,21 @@ def test_a_dome_in_four_dimensions(tmp_path):
     assert meshes[1] - meshes[0] > 10
     assert volumes[1] - volumes[0] == pytest.approx(meshes[1] - meshes[0], abs=0.5)  # an eighth of a voxel
     np.testing.assert_allclose(volumes, meshes, atol=voxel / 2)  # the dome is curved within a voxel
+
+
+def test_lag_of_frames():
+    terms = [[0.1, 2], [0.05, 10]]
+    lag = sk.Lag(terms)
+    light = np.full((2, 3), 5.0)
+    for _ in range(200):
+        shown = lag(light)
+    np.testing.assert_allclose(shown, light, rtol=1e-6)  # exp(-200 / 10) is missing
+    for n in range(1, 6):
+        expected = 5 * sum(share * np.exp(-(n - 1) / frames) for share, frames in terms)
+        np.testing.assert_allclose(lag(np.zeros((2, 3))), expected, rtol=1e-6)
+    lag.clear()
+    assert lag(np.zeros((2, 3), np.float32)).dtype == np.float32 and not lag(np.zeros((2, 3))).any()
+    with pytest.raises(sk.ArgumentError, match="frames before"):
+        lag(np.zeros((3, 3)))
+    with pytest.raises(sk.ArgumentError, match="less than 1"):
+        sk.Lag([[1.5, 2]])(light)

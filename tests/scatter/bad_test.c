@@ -64,14 +64,14 @@ END_TEST
 
 START_TEST(energies) {
     subject s = filled();
-    s.kev = 1100;
-    refuse(&s, SKG_ERR_UNSUPPORTED, "photons of 1100 keV; up to 1022, where pairs begin");
-    s = filled();
-    s.kev = 1022;
-    subject_plan(&s);
-    pictures p = subject_pictures(&s, NULL);
-    ck_assert_double_gt(subject_sum(&s, p.scatter), 0);
-    pictures_free(&p);
+    for (int k = 0; k < 2; k++) { /* the ends of the tables */
+        s.kev = k ? 20000 : 1;
+        subject_plan(&s);
+        pictures p = subject_pictures(&s, NULL);
+        ck_assert_double_ge(subject_sum(&s, p.scatter), 0);
+        ck_assert(isfinite(subject_sum(&s, p.scatter)));
+        pictures_free(&p);
+    }
     subject_close(&s);
 }
 END_TEST

@@ -36,12 +36,12 @@ static double momentum_of(double kev, double cosine) {
 static double compton_chance(const matter *m, double kev, double cosine) {
     const double r = matter_ratio(kev, cosine);
     return 0.5 * r * r * (r + 1 / r - 1 + cosine * cosine) *
-           at(m->incoherent, MATTER_MOMENTA, momentum_of(kev, cosine) / m->momentum);
+           at(m->incoherent, MATTER_MOMENTA, sqrt(momentum_of(kev, cosine) / m->momentum));
 }
 
 static double rayleigh_chance(const matter *m, double kev, double cosine) {
     return 0.5 * (1 + cosine * cosine) *
-           at(m->coherent, MATTER_MOMENTA, momentum_of(kev, cosine) / m->momentum);
+           at(m->coherent, MATTER_MOMENTA, sqrt(momentum_of(kev, cosine) / m->momentum));
 }
 
 /* The integrals of both over the cosine: of Rayleigh scattering over the square of the momentum transfer, in which it is smooth. */
@@ -56,6 +56,15 @@ static void normalise(matter *m) {
             m->rayleigh_norm[i] += weight * rayleigh_chance(m, kev, 1 - 2 * x * x);
         }
     }
+}
+
+/* Momentum transfer and its square of a row, in units of the first one's. */
+static double row_square(int i) {
+    return (double)i * i;
+}
+
+static double row_fourth(int i) {
+    return row_square(i) * row_square(i);
 }
 
 void matter_make(const char *name, double density, double kev, matter *m) {
@@ -74,15 +83,18 @@ void matter_make(const char *name, double density, double kev, matter *m) {
         try(skg_material_coefficients_get(dense, energy, &c), name);
         try(skg_material_attenuation_get(dense, energy, &per_cm), name);
         m->total[i] = per_cm / 10, m->compton[i] = c.compton / c.total, m->rayleigh[i] = c.rayleigh / c.total;
+        m->pairs[i] = c.pair / c.total;
     }
     for (int i = 0; i <= MATTER_MOMENTA; i++)
-        try(skg_scattering_factors(dense, m->momentum * i / MATTER_MOMENTA, &m->coherent[i],
-                                   &m->incoherent[i]),
+        try(skg_scattering_factors(dense, m->momentum * row_square(i) / row_square(MATTER_MOMENTA),
+                                   &m->coherent[i], &m->incoherent[i]),
             name);
     const double most[2] = {m->incoherent[MATTER_MOMENTA], m->coherent[0]};
     for (int i = 0; i <= MATTER_MOMENTA; i++) {
         m->incoherent[i] /= most[0], m->coherent[i] /= most[1];
-        m->sum[i] = i ? m->sum[i - 1] + 0.5 * (m->coherent[i] + m->coherent[i - 1]) * (2.0 * i - 1) : 0;
+        m->sum[i] = i ? m->sum[i - 1] +
+                            0.5 * (m->coherent[i] + m->coherent[i - 1]) * (row_fourth(i) - row_fourth(i - 1))
+                      : 0;
     }
     normalise(m);
     skg_material_release(&material);
@@ -104,9 +116,9 @@ double matter_rayleigh(const matter *m, double kev, double cosine) {
 /* A cosine of Rayleigh scattering but for its factor (1 + cosine^2) / 2: by the form factors' distribution of the squared momentum
  * transfer, which is even within a step of the table. */
 static double draw_coherent(const matter *m, double kev, uint64_t *seed) {
-    const double most = kev / m->kev * MATTER_MOMENTA; /* in steps */
-    const int last = most < MATTER_MOMENTA ? (int)most : MATTER_MOMENTA - 1;
-    const double part = (most * most - (double)last * last) / (2.0 * last + 1);
+    const double most = kev / m->kev * row_square(MATTER_MOMENTA); /* in units of the first row's */
+    const int last = most < row_square(MATTER_MOMENTA) ? (int)sqrt(most) : MATTER_MOMENTA - 1;
+    const double part = (most * most - row_fourth(last)) / (row_fourth(last + 1) - row_fourth(last));
     const double end = m->sum[last] + part * (m->sum[last + 1] - m->sum[last]), at = draw(seed, 0, end);
     int low = 0, high = last + 1;
     while (high - low > 1) {
@@ -116,8 +128,8 @@ static double draw_coherent(const matter *m, double kev, uint64_t *seed) {
         else
             high = middle;
     }
-    const double square =
-        (double)low * low + (at - m->sum[low]) / (m->sum[high] - m->sum[low]) * (2.0 * low + 1);
+    const double square = row_fourth(low) + (at - m->sum[low]) / (m->sum[high] - m->sum[low]) *
+                                                (row_fourth(high) - row_fourth(low));
     return 1 - 2 * fmin(square / (most * most), 1);
 }
 
@@ -127,6 +139,12 @@ double matter_draw(const matter *m, double kev, int is_compton, uint64_t *seed) 
         const double chance = is_compton ? compton_chance(m, kev, cosine) : 0.5 * (1 + cosine * cosine);
         if (draw(seed, 0, 1) < chance) return cosine;
     }
+}
+
+void matter_anywhere(double way[3], uint64_t *seed) {
+    const double cosine = draw(seed, -1, 1), azimuth = draw(seed, 0, 2 * 3.14159265358979323846);
+    way[0] = sqrt(1 - cosine * cosine) * cos(azimuth), way[1] = sqrt(1 - cosine * cosine) * sin(azimuth);
+    way[2] = cosine;
 }
 
 void matter_turn(double way[3], double cosine, double azimuth) {

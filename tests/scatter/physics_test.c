@@ -329,6 +329,43 @@ START_TEST(without_materials_there_are_zeros) {
 }
 END_TEST
 
+/* What annihilation emits is two photons for each pair, whatever the materials beside it. */
+START_TEST(pairs_emit_two_photons_each) {
+    static const char *const names[] = {"Water, Liquid", "Pb", "Al", "Bone, Cortical (ICRU-44)", "Fe"};
+    skg_material *list[5];
+    skg_emitters emitters;
+    skg_scatter_physics p;
+    for (int m = 0; m < 5; m++) list[m] = named(names[m]);
+    ck_skg(skg_emitters_find(5, list, SKG_FLUORESCENCE_OFF, 1, 1000, &emitters));
+    ck_assert_int_eq(emitters.count, 0);
+    skg_emitters_free(&emitters);
+    ck_skg(skg_emitters_find(5, list, SKG_FLUORESCENCE_OFF, 1, 10000, &emitters));
+    ck_assert_int_eq(emitters.count, 1);
+    ck_assert_double_lt(emitters.lowest_kev, 511);
+    ck_skg(skg_scatter_physics_make(5, list, &emitters, 20, 10000, &p));
+    double most = 0;
+    for (int pass = 0; pass < 2; pass++)
+        for (int64_t e = 0; e < p.energies; e++)
+            for (int m = 0; m < 5; m++) {
+                skg_coefficients c;
+                double per_cm = 0, emitted = 0;
+                skg_coefficients_init(&c);
+                ck_skg(skg_material_attenuation_get(list[m], skg_scatter_energy(&p, e), &per_cm));
+                ck_skg(skg_material_coefficients_get(list[m], skg_scatter_energy(&p, e), &c));
+                const double pairs = per_cm / 10 * c.pair / c.total;
+                for (int k = 0; k < p.rank; k++)
+                    emitted += p.coefficients[m][k] * (double)p.emission[e * p.shells][k];
+                most = fmax(most, 2 * pairs);
+                /* In units of the most that any emits, as it is stated; and the rounding of floats. */
+                if (pass) ck_assert_double_eq_tol(emitted, 2 * pairs, (p.emission_error + 1e-6) * most);
+            }
+    ck_assert_double_lt(p.emission_error, 0.02); /* of five materials with eight coefficients at most */
+    skg_scatter_physics_free(&p);
+    skg_emitters_free(&emitters);
+    for (int m = 0; m < 5; m++) skg_material_release(&list[m]);
+}
+END_TEST
+
 START_TEST(refusals_name_the_mend) {
     skg_scatter_physics physics;
     skg_material *water = named("Water, Liquid"), *grey = NULL, *light = NULL;
@@ -340,8 +377,8 @@ START_TEST(refusals_name_the_mend) {
     list[1] = light;
     ck_skg_fails(skg_scatter_physics_make(2, list, NULL, 20, 120, &physics), SKG_ERR_MATERIAL,
                  "its density is not known; give one");
-    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 20, 1022.5, &physics), SKG_ERR_UNSUPPORTED,
-                 "the highest energy is 1022 keV");
+    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 20, 20000.5, &physics), SKG_ERR_MATERIAL,
+                 "a photon energy of 20000.5 keV lies outside");
     ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 0.5, 120, &physics), SKG_ERR_MATERIAL, "outside");
     ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 120, 120, &physics), SKG_ERR_ARGUMENT,
                  "the range is empty");
@@ -364,6 +401,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, compounds_of_two_elements_are_exact);
     tcase_add_test(tests, densities_cost_no_coefficient);
     tcase_add_test(tests, without_materials_there_are_zeros);
+    tcase_add_test(tests, pairs_emit_two_photons_each);
     tcase_add_test(tests, refusals_name_the_mend);
 }
 

@@ -5,6 +5,8 @@
 
 #include <math.h>
 
+#define WATER "Water, Liquid"
+
 enum { HISTORIES = 1 << 16, PHOTONS = 1000000 };
 
 /* The image of one box, 200 x 150 mm2 of detector. */
@@ -15,12 +17,12 @@ typedef struct {
     double plane; /* the detector's z */
 } box_scene;
 
-static subject open_box(const box_scene *b) {
+static subject open_box(const box_scene *b, const char *material) {
     subject s;
     skg_mesh *mesh = NULL;
     subject_open(&s);
     ck_skg(skg_mesh_create_cuboid(b->size[0], b->size[1], b->size[2], &mesh));
-    subject_add(&s, mesh, "Water, Liquid", b->middle[0], b->middle[1], b->middle[2], -1);
+    subject_add(&s, mesh, material, b->middle[0], b->middle[1], b->middle[2], -1);
     for (int k = 0; k < 3; k++) s.view.source[k] = b->source[k];
     s.view.centre[2] = b->plane;
     if (b->parallel) s.view.projection = SKG_PROJECTION_PARALLEL_FROM_INFINITY;
@@ -29,9 +31,10 @@ static subject open_box(const box_scene *b) {
 }
 
 /* Compares the sum over the detector, and that of each order. */
-static void compare(const box_scene *b) {
-    subject s = open_box(b);
-    analogue_scene a = {.material = "Water, Liquid",
+static void compare(const box_scene *b, const char *material, double kev) {
+    subject s = open_box(b, material);
+    s.kev = kev;
+    analogue_scene a = {.material = material,
                         .kev = s.kev,
                         .parallel = b->parallel,
                         .plane = b->plane,
@@ -72,7 +75,25 @@ static const box_scene boxes[] = {
 };
 
 START_TEST(sums_are_those_of_single_photons) {
-    compare(&boxes[_i]);
+    compare(&boxes[_i], WATER, 60);
+}
+END_TEST
+
+/* Photons that lose most of their energy at once, and pairs. */
+static const struct {
+    box_scene box;
+    const char *material;
+    double kev;
+} hard[] = {
+    {{"caesium 137 on 20 cm of water", {0, 0, 0}, {300, 300, 200}, {0, 0, -900}, 0, 110}, WATER, 661.7},
+    {{"cobalt 60 on 20 cm of water", {0, 0, 0}, {300, 300, 200}, {0, 0, -900}, 0, 110}, WATER, 1250},
+    {{"6 MeV on 20 cm of water", {0, 0, 0}, {300, 300, 200}, {0, 0, -900}, 0, 110}, WATER, 6000},
+    {{"6 MeV on 2 cm of lead", {0, 0, 0}, {300, 300, 20}, {0, 0, -900}, 0, 30}, "Pb", 6000},
+    {{"20 MeV inside lead", {0, 0, 0}, {150, 150, 60}, {20, 10, -10}, 0, 40}, "Pb", 20000},
+};
+
+START_TEST(hard_photons_are_those_of_single_ones) {
+    compare(&hard[_i].box, hard[_i].material, hard[_i].kev);
 }
 END_TEST
 
@@ -81,7 +102,7 @@ START_TEST(parts_outside_the_field_scatter_what_reaches_them) {
     const box_scene b = {"", {0, 0, 50}, {60, 60, 60}, {0, 0, -500}, 0, 200};
     double sums[2];
     for (int wall = 0; wall < 2; wall++) {
-        subject s = open_box(&b);
+        subject s = open_box(&b, WATER);
         skg_mesh *mesh = NULL;
         s.jaws.kind = SKG_COLLIMATION_RECTANGLE;
         s.jaws.distance_mm = 400;
@@ -111,7 +132,7 @@ START_TEST(extended_sources_have_the_scatter_of_their_middle) {
     skg_spot_init(&spot);
     spot.shape = SKG_SPOT_DISC, spot.extent[0] = 2, spot.samples = 16;
     for (int k = 0; k < 2; k++) {
-        subject s = open_box(&b);
+        subject s = open_box(&b, WATER);
         if (k) s.options.spot = &spot;
         subject_plan(&s);
         pictures p = subject_pictures(&s, NULL);
@@ -130,7 +151,7 @@ END_TEST
 START_TEST(many_parts_are_one) {
     enum { SIDE = 10 };
     const box_scene b = {"", {0, 0, 50}, {120, 96, 72}, {0, 0, -500}, 0, 200};
-    subject whole = open_box(&b), s;
+    subject whole = open_box(&b, WATER), s;
     subject_open(&s);
     for (int i = 0; i < SIDE * SIDE * SIDE; i++) {
         const int index[3] = {i % SIDE, i / SIDE % SIDE, i / SIDE / SIDE};
@@ -251,6 +272,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_loop_test(tests, sums_are_those_of_single_photons, 0, (int)(sizeof boxes / sizeof *boxes));
+    tcase_add_loop_test(tests, hard_photons_are_those_of_single_ones, 0, (int)(sizeof hard / sizeof *hard));
     tcase_add_test(tests, parts_outside_the_field_scatter_what_reaches_them);
     tcase_add_test(tests, extended_sources_have_the_scatter_of_their_middle);
     tcase_add_test(tests, many_parts_are_one);

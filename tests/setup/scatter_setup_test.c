@@ -118,6 +118,42 @@ START_TEST(the_world_may_be_left_out) {
 }
 END_TEST
 
+/* A scene of one box with form factors in a file; or of what else a sample is. */
+static skg_status load_formed(const char *sample, const char *file) {
+    char text[512];
+    skg_setup_release(&setup);
+    write_file("form.txt", file);
+    snprintf(
+        text, sizeof text,
+        "{\"Source\": {\"Position\": [0, 0, 100, \"mm\"], \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", "
+        "\"PhotonCount\": 1}]}, \"Detector\": {\"Position\": [0, 0, -50, \"mm\"], \"UpVector\": [0, 1, 0], "
+        "\"NumberOfPixels\": [4, 4], \"Spacing\": [1, 1, \"mm\"]}, \"Samples\": [{\"FormFactor\": \"form.txt\", %s}]}",
+        sample);
+    write_file("scene.json", text);
+    return skg_setup_load(NULL, path, 0, NULL, &setup);
+}
+
+START_TEST(form_factors_are_read) {
+    static const char box[] = "\"Cuboid\": [1, 2, 3, \"mm\"], \"Material\": \"Water\", \"Density\": 0.9";
+    int64_t count = 0;
+    double x[3], squares[3];
+    ck_skg(load_formed(box, "# 1/Angstrom, F^2\n0 1\n0.2 8\n0.5 2\n"));
+    skg_part part;
+    skg_part_init(&part);
+    ck_skg(skg_scene_part_get(setup->scene, 0, &part));
+    ck_skg(skg_material_form_factor_get(part.material, 3, x, squares, &count));
+    ck_assert_int_eq(count, 3);
+    ck_assert_double_eq(x[1], 0.2);
+    ck_assert_double_eq_tol(squares[1] / squares[0], 8, 1e-12); /* rounding */
+    ck_skg_fails(load_formed(box, "0 1\n0.2 8\n"), SKG_ERR_MATERIAL, "FormFactor: Water");
+    ck_skg_fails(load_formed(box, "0 1\n0.2\n"), SKG_ERR_FORMAT, "form.txt");
+    ck_skg_fails(load_formed("\"Cuboid\": [1, 2, 3, \"mm\"], \"Material\": [\"mu\", 0.2]", "0 1\n0.5 8\n"),
+                 SKG_ERR_MATERIAL, "does not say how it scatters");
+    ck_skg_fails(load_formed("\"Volume\": \"form.txt\"", "0 1\n0.5 8\n"), SKG_ERR_FORMAT,
+                 "stands beside Volume");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, absent_unless_asked_for);
@@ -125,6 +161,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, every_key);
     tcase_add_test(tests, the_text_keeps_it);
     tcase_add_test(tests, the_world_may_be_left_out);
+    tcase_add_test(tests, form_factors_are_read);
     tcase_add_loop_test(tests, refused, 0, sizeof bad / sizeof *bad);
 }
 

@@ -29,9 +29,9 @@ static inline void set_up(void) {
 }
 
 static inline void tear_down(void) {
-    static const char *const names[] = {"scene.json", "box.stl", "open.obj", "motion.csv"};
+    static const char *const names[] = {"scene.json", "box.stl", "open.obj", "motion.csv", "form.txt"};
     skg_setup_release(&setup);
-    for (int i = 0; i < 4; i++) {
+    for (int i = 0; i < 5; i++) {
         char full[128];
         snprintf(full, sizeof full, "%s/%s", folder, names[i]);
         unlink(full);

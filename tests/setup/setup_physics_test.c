@@ -323,6 +323,11 @@ START_TEST(focal_spots) {
     ck_assert_int_eq(options().spot->shape, SKG_SPOT_GAUSSIAN);
     ck_assert_int_eq(options().spot->samples, 128);
     ck_assert_double_eq(options().spot->extent[1], 0.6);
+    ck_assert_double_eq(options().spot->off_focal, 0);
+    ck_skg(load_with("Source.Shape=[\"Disc\", 1, \"mm\"]",
+                     "Source.OffFocal={\"Share\": 0.1, \"Diameter\": [3, \"cm\"]}"));
+    ck_assert_double_eq(options().spot->off_focal, 0.1);
+    ck_assert_double_eq(options().spot->off_focal_mm, 30);
     ck_skg(load_with("Detector.Oversampling=3", NULL));
     ck_assert_int_eq(options().supersampling, 3);
 }

@@ -149,6 +149,7 @@ static int write_frame(fluoroscopy *f, const sequence *s, int64_t i, motion_tabl
         int waited = fluoroscopy_wait_image(f, &job);
         if (exit_status == CLI_DONE) exit_status = waited;
     }
+    if (exit_status == CLI_DONE) fluoroscopy_hold(f, 0);
     if (exit_status == CLI_DONE) cli_made(path);
     if (exit_status == CLI_DONE) exit_status = fluoroscopy_write(f, 0, path);
     if (exit_status == CLI_DONE) sheet_add(f, 0, i, s->frames, sheet);
@@ -238,6 +239,7 @@ static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) 
     if (!f->image[0] || !f->image[1]) return cli_error(CLI_DEVICE, "out of host memory for the images");
     exit_status = cli_make_plan(&f->session, &f->plan, &s->plan_ms);
     if (exit_status == CLI_DONE && outline) exit_status = outline_find(f, outline);
+    if (exit_status == CLI_DONE && !is_one(s)) exit_status = fluoroscopy_open_lag(f);
     return exit_status;
 }
 
@@ -280,6 +282,7 @@ int cli_breathe(const cli_arguments *arguments) {
     int exit_status = work(arguments, &f);
     for (int i = 0; i < 2; i++) free(f.image[i]);
     free(f.outline);
+    skg_lag_release(&f.lag);
     skg_plan_release(&f.plan);
     skg_motion_release(&f.motion);
     cli_close_session(&f.session);

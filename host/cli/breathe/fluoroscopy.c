@@ -4,6 +4,7 @@
 #include "common/say.h"
 #include "session/frames.h"
 
+#include <float.h>
 #include <math.h>
 
 int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job) {
@@ -19,6 +20,24 @@ int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job) {
 
 int fluoroscopy_wait_image(fluoroscopy *f, skg_job **job) {
     return cli_end_image(skg_job_wait(job), &f->range_warned);
+}
+
+int fluoroscopy_open_lag(fluoroscopy *f) {
+    skg_readout readout;
+    skg_readout_init(&readout);
+    skg_status status = skg_setup_readout_get(f->session.setup, &readout);
+    if (status == SKG_OK && readout.lag_count > 0)
+        status = skg_lag_create(f->pixels, readout.lag_count, readout.lag, &f->lag);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+/* A pixel's flat field is the same in all frames, so that what is held of signals is held of transmissions. */
+void fluoroscopy_hold(fluoroscopy *f, int which) {
+    float *image = f->image[which];
+    if (!f->lag) return;
+    for (int64_t i = 0; i < f->pixels; i++) image[i] = expf(-image[i]);
+    skg_lag_apply(f->lag, SKG_TYPE_FLOAT32, image, 1, image);
+    for (int64_t i = 0; i < f->pixels; i++) image[i] = -logf(fmaxf(image[i], FLT_MIN));
 }
 
 void fluoroscopy_picture(const fluoroscopy *f, int64_t columns, int64_t rows, const float *values,

@@ -14,11 +14,18 @@ typedef struct {
     double low, high; /* shown as black and as white: one range for all frames */
     int range_warned; /* 1: lengths outside the verified range were warned of */
     char *outline;    /* [rows][columns] 1 where an outline is drawn; NULL: none */
+    skg_lag *lag;     /* of the detector, for the frames of a sequence; NULL: none */
 } fluoroscopy;
 
 /* The image of the motion in its present pose, into image[which]: started, then waited for. */
 int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job);
 int fluoroscopy_wait_image(fluoroscopy *f, skg_job **job);
+
+/* The lag of the scene's detector at rest, if it has GreyValues.Lag. */
+int fluoroscopy_open_lag(fluoroscopy *f);
+
+/* Lets image[which], the next frame of a sequence, show what the detector holds of those before. */
+void fluoroscopy_hold(fluoroscopy *f, int which);
 
 /* Writes image[which] with the outline drawn into it. */
 int fluoroscopy_write(fluoroscopy *f, int which, const char *path);

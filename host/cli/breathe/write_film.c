@@ -26,6 +26,7 @@ static int write_frames(fluoroscopy *f, const sequence *s, film *film_of_f, unsi
         if (!job) continue;
         const int waited = fluoroscopy_wait_image(f, &job);
         if (exit_status == CLI_DONE) exit_status = waited;
+        if (exit_status == CLI_DONE) fluoroscopy_hold(f, (int)(i % 2));
     }
     return exit_status;
 }

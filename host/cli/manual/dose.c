@@ -15,7 +15,7 @@ const cli_flag cli_flag_dose_seed = {
     "--seed", "N", "Of these photons: another seed gives an independent result.", NULL, CLI_NAMES_NOTHING};
 
 static const char *const text[] = {
-    "Prints what one exposure gives to people and things: air kerma free in air with the backscatter factor, the "
+    "Prints what one exposure, or all projections of a Scan together, give to people and things: air kerma free in air with the backscatter factor, the "
     "kerma-area product of the field, air kerma at the detector and its exposure index, the energy and the dose that "
     "stay in each part, and half-value layers of the beam. With noise it says signal and signal-to-noise ratio where the "
     "parts let least through.",
@@ -25,7 +25,7 @@ static const char *const text[] = {
     "have scatter. Each dose has its standard error. A part that no photon met has the error -.",
     "--json prints {kerma: [{at, air_kerma_uGy, backscatter}], kap_uGy_cm2, detector_air_kerma_uGy, exposure_index, parts: "
     "[{label, dose_uGy, sigma, energy_keV}], hvl1_mm_al, hvl2_mm_al}; sigma is in uGy, and what is not known is null. With "
-    "noise there is darkest: {row, column, signal, snr}, too.",
+    "noise there is darkest: {row, column, signal, snr}, too; of a scan projections, and neither exposure_index nor darkest.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_dose_at, &cli_flag_dose_histories, &cli_flag_dose_seed,

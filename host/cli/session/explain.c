@@ -285,8 +285,8 @@ static void print_strategy(const skg_plan_report *report) {
 static void print_scatter(const cli_session *session, const cli_prediction *prediction) {
     if (session->options.scatter)
         printf(
-            "\nTransmitted photons, and those that parts and world scatter (Compton, Rayleigh) or emit (fluorescence). Left out "
-            "are the\norder of molecules, and what filters, jaws and the detector scatter.\n");
+            "\nTransmitted photons, and those that parts and world scatter (Compton, Rayleigh) or emit (fluorescence, annihilation). Left out "
+            "are the\norder of molecules (but for FormFactor), and what filters, jaws and the detector scatter.\n");
     else
         printf("\nDirectly transmitted photons only.%s\n",
                prediction->is_known && prediction->found.called_for

@@ -21,6 +21,7 @@ typedef struct {
     skg_dose_options options;
     double *places; /* [options.point_count][3] */
     skg_dose_report report;
+    int64_t projections; /* of the scan; 1: there is none */
 } work;
 
 /* --- flags */
@@ -101,6 +102,7 @@ static json_t *dose_json(const work *w) {
     json_object_set_new(object, "parts", parts_json(w));
     json_object_set_new(object, "hvl1_mm_al", cli_json_number(r->hvl1_mm_al));
     json_object_set_new(object, "hvl2_mm_al", cli_json_number(r->hvl2_mm_al));
+    if (w->projections > 1) json_object_set_new(object, "projections", json_integer(w->projections));
     if (!r->has_darkest) return object;
     json_t *darkest = json_object();
     json_object_set_new(darkest, "row", json_integer(r->darkest_row));
@@ -176,7 +178,8 @@ static void print_parts(const work *w) {
 
 static void print_dose(const work *w) {
     const skg_dose_report *r = &w->report;
-    int64_t projections = 1;
+    if (w->projections > 1)
+        printf("scan       %" PRId64 " projections together; parts stand as in the scene\n", w->projections);
     printf("beam       half-value layers %.4g and %.4g mm Al; kerma-area product %.4g uGy cm2\n",
            r->hvl1_mm_al, r->hvl2_mm_al, r->kap_ugy_cm2);
     print_places(w);
@@ -189,8 +192,6 @@ static void print_dose(const work *w) {
             r->histories, 100 * r->escaped_kev / r->incident_kev,
             100 * r->balance_sigma_kev / r->incident_kev);
     }
-    if (skg_setup_projection_count_get(w->session.setup, &projections) == SKG_OK && projections > 1)
-        printf("of one projection; the scan has %" PRId64 "\n", projections);
 }
 
 /* --- the verb */
@@ -199,9 +200,14 @@ static int compute(work *w) {
     double plan_ms;
     const int exit_status = cli_make_plan(&w->session, &w->plan, &plan_ms);
     if (exit_status != CLI_DONE) return exit_status;
+    skg_scan *scan = NULL;
+    skg_status status = skg_setup_projection_count_get(w->session.setup, &w->projections);
+    if (status == SKG_OK && w->projections > 1) status = skg_setup_scan_get(w->session.setup, &scan);
+    if (status != SKG_OK) return cli_fail(status);
     w->options.progress = cli_progress();
-    cli_progress_follow("photons");
-    skg_status status = skg_dose_create(w->plan, &w->options, &w->dose);
+    cli_progress_follow(scan ? "projections" : "photons");
+    status = scan ? skg_scan_dose_create(w->plan, scan, &w->options, &w->dose)
+                  : skg_dose_create(w->plan, &w->options, &w->dose);
     cli_progress_end();
     skg_dose_report_init(&w->report);
     if (status == SKG_OK) status = skg_dose_report_get(w->dose, &w->report);

@@ -28,7 +28,8 @@
 
 extern const skg_json_table skg_keys_scene, skg_keys_world, skg_keys_noise, skg_keys_collimation,
     skg_keys_scatter;
-extern const skg_json_table skg_keys_source, skg_keys_heel, skg_keys_bowtie, skg_keys_channel, skg_keys_beam;
+extern const skg_json_table skg_keys_source, skg_keys_off_focal, skg_keys_heel, skg_keys_bowtie,
+    skg_keys_channel, skg_keys_beam;
 extern const skg_json_table skg_keys_detector, skg_keys_counting, skg_keys_curved, skg_keys_grid,
     skg_keys_response, skg_keys_pulses, skg_keys_scintillator, skg_keys_depth, skg_keys_grey_values,
     skg_keys_pixel_map;

@@ -12,6 +12,7 @@ static const skg_json_key source[] = {
             "instead of Samples: the middles of n, n x n or n x n x n equal pieces"),
     SKG_KEY("SampleTolerance", "number 0<..<1",
             "change, of the flat field, at which the number of samples suffices; 0.005 by default"),
+    SKG_KEY("OffFocal", "object OffFocal", "photons that leave the anode beside the focal spot"),
     SKG_KEY("Axis", "direction", "normal of a flat focal spot; by default the line to the detector's centre"),
     SKG_KEY("Beam", "null | object Beam | list object Channel", "energies, a file of them, or a tube"),
     SKG_KEY(
@@ -29,6 +30,12 @@ static const skg_json_key source[] = {
             "passed over with a warning, as gVXR does; a line spread function belongs to Detector"),
 };
 SKG_TABLE(skg_keys_source, "Source", source);
+
+static const skg_json_key off_focal[] = {
+    SKG_KEY("Share", "number 0<..<1", "of all photons"),
+    SKG_KEY("Diameter", "length", "of the disc from which they come"),
+};
+SKG_TABLE(skg_keys_off_focal, "OffFocal", off_focal);
 
 static const skg_json_key heel[] = {
     SKG_KEY("AnodeAngle", "number 0<..",

@@ -15,6 +15,8 @@ static const skg_json_key sample[] = {
     SKG_KEY("StepWedge", "object StepWedge", "steps along x that rise in z"),
     SKG_KEY("Material", "material", "of the sample"),
     SKG_KEY("Density", "number 0<..", "g/cm3, instead of the tables'"),
+    SKG_KEY("FormFactor", "text",
+            "a file of two columns, momentum transfer in 1/Angstrom and F^2 of the material's molecules"),
     SKG_KEY("Type", "words inner, outer",
             "inner by default; the one outer sample is the parent of all inner ones without Parent"),
     SKG_KEY("Parent", "text | null",

@@ -1,4 +1,5 @@
 /* The section Samples. */
+#include "core/files.h"
 #include "core/maths.h"
 #include "scene/volume.h"
 #include "setup/keys.h"
@@ -32,12 +33,34 @@ static skg_status read_flag(const skg_json_object *object, const char *name, int
     return node.value ? skg_json_flag(&node, flag) : SKG_OK;
 }
 
+/* Puts in place of a material the same with the form factors of a file. */
+static skg_status read_form_factor(skg_setup_reader *reader, const skg_json_node *node,
+                                   skg_material **material) {
+    const char *name = NULL, *path = NULL;
+    double *momenta = NULL, *squares = NULL;
+    int64_t count = 0;
+    skg_material *bound = NULL;
+    SKG_TRY(skg_json_text(node, &name));
+    SKG_TRY(skg_setup_find_file(reader, name, &path));
+    skg_status status = skg_read_columns(path, NULL, &count, &momenta, &squares);
+    if (status == SKG_OK)
+        status = skg_material_create_form_factor(*material, count, momenta, squares, &bound);
+    skg_free(&momenta);
+    skg_free(&squares);
+    SKG_TRY(skg_json_at(node, status));
+    skg_material_release(material);
+    *material = bound;
+    return SKG_OK;
+}
+
 static skg_status read_material(skg_setup_reader *reader, const skg_json_object *sample, const char *label,
                                 skg_material **material) {
     skg_json_node node, density = skg_json_member(sample, "Density");
     skg_status status = skg_json_need(sample, "Material", "\"Water\", [\"mu\", 0.2]", &node);
     const int is_absent = status != SKG_OK;
     if (!is_absent) status = skg_setup_read_material(reader, &node, &density, label, material);
+    const skg_json_node form = skg_json_member(sample, "FormFactor");
+    if (status == SKG_OK && form.value) return read_form_factor(reader, &form, material);
     if (!reader->file.lengths || !(is_absent || status == SKG_ERR_MATERIAL)) return status;
     /* Path lengths need no material: one that attenuates nothing stands in. */
     SKG_TRY(skg_json_remark(

@@ -59,6 +59,9 @@ static skg_status check_scan(const skg_setup *setup, const skg_scan_options *o) 
 
 static skg_status check_spot(const skg_spot *spot) {
     const int32_t shape = spot->shape;
+    if (spot->off_focal > 0)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "Source.OffFocal: a CTSimU scenario holds no off-focal radiation");
     if (shape == SKG_SPOT_POINT ||
         ((shape == SKG_SPOT_RECTANGLE || shape == SKG_SPOT_GAUSSIAN) && !(skg_length(spot->axis) > 0)))
         return SKG_OK;

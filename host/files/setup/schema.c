@@ -10,13 +10,14 @@
 #include <string.h>
 
 static const skg_json_table *const tables[] = {
-    &skg_keys_scene,    &skg_keys_world,        &skg_keys_noise,  &skg_keys_collimation, &skg_keys_scatter,
-    &skg_keys_source,   &skg_keys_heel,         &skg_keys_bowtie, &skg_keys_channel,     &skg_keys_beam,
-    &skg_keys_detector, &skg_keys_counting,     &skg_keys_curved, &skg_keys_grid,        &skg_keys_response,
-    &skg_keys_pulses,   &skg_keys_scintillator, &skg_keys_depth,  &skg_keys_grey_values, &skg_keys_pixel_map,
-    &skg_keys_sample,   &skg_keys_step_wedge,   &skg_keys_scan,   &skg_keys_drift,       &skg_keys_jitter,
-    &skg_keys_fields,   &skg_keys_breathing,    &skg_keys_organ,  &skg_keys_link,        &skg_keys_event,
-    &skg_keys_body_fit,
+    &skg_keys_scene,     &skg_keys_world,        &skg_keys_noise,      &skg_keys_collimation,
+    &skg_keys_scatter,   &skg_keys_source,       &skg_keys_off_focal,  &skg_keys_heel,
+    &skg_keys_bowtie,    &skg_keys_channel,      &skg_keys_beam,       &skg_keys_detector,
+    &skg_keys_counting,  &skg_keys_curved,       &skg_keys_grid,       &skg_keys_response,
+    &skg_keys_pulses,    &skg_keys_scintillator, &skg_keys_depth,      &skg_keys_grey_values,
+    &skg_keys_pixel_map, &skg_keys_sample,       &skg_keys_step_wedge, &skg_keys_scan,
+    &skg_keys_drift,     &skg_keys_jitter,       &skg_keys_fields,     &skg_keys_breathing,
+    &skg_keys_organ,     &skg_keys_link,         &skg_keys_event,      &skg_keys_body_fit,
 };
 enum { TABLES = sizeof tables / sizeof *tables };
 

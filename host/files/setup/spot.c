@@ -1,4 +1,5 @@
 /* Shape of a source: a point, a parallel beam, or a focal spot. */
+#include "setup/keys.h"
 #include "setup/sections.h"
 
 #include <math.h>
@@ -44,6 +45,23 @@ static skg_status read_spot(const skg_json_node *node, skg_spot *spot) {
     return choice == FOCAL_SPOT ? read_focal_spot(node, spot) : SKG_OK;
 }
 
+/* {"Share": 0.1, "Diameter": [30, "mm"]} */
+static skg_status read_off_focal(const skg_json_node *node, skg_spot *spot) {
+    skg_json_object object;
+    skg_json_node share, diameter;
+    SKG_TRY(skg_json_read_object(node, &skg_keys_off_focal, &object));
+    SKG_TRY(skg_json_need(&object, "Share", "0.1", &share));
+    SKG_TRY(skg_json_need(&object, "Diameter", "[30, \"mm\"]", &diameter));
+    SKG_TRY(skg_json_number(&share, &spot->off_focal));
+    SKG_TRY(skg_json_lengths(&diameter, "[30, \"mm\"]", 1, &spot->off_focal_mm));
+    if (!(spot->off_focal > 0 && spot->off_focal < 1))
+        return skg_json_fail(&share, SKG_ERR_FORMAT, "is %g; give a share of the photons above 0, below 1",
+                             spot->off_focal);
+    if (!(spot->off_focal_mm > 0))
+        return skg_json_fail(&diameter, SKG_ERR_FORMAT, "is no diameter of a disc; give a length above 0");
+    return SKG_OK;
+}
+
 static skg_status read_sampling(const skg_json_object *source, skg_spot *spot) {
     const skg_json_node samples = skg_json_member(source, "Samples"), grid = skg_json_member(source, "Grid");
     const skg_json_node tolerance = skg_json_member(source, "SampleTolerance"),
@@ -51,6 +69,8 @@ static skg_status read_sampling(const skg_json_object *source, skg_spot *spot) {
     if (samples.value) SKG_TRY(skg_json_integer(&samples, 0, 65536, &spot->samples));
     if (grid.value) SKG_TRY(skg_json_integer(&grid, 1, 256, &spot->grid));
     if (axis.value) SKG_TRY(skg_json_direction(&axis, spot->axis));
+    const skg_json_node off = skg_json_member(source, "OffFocal");
+    if (off.value) SKG_TRY(read_off_focal(&off, spot));
     if (!tolerance.value) return SKG_OK;
     SKG_TRY(skg_json_number(&tolerance, &spot->tolerance));
     if (!(spot->tolerance > 0 && spot->tolerance < 1))
@@ -61,8 +81,8 @@ static skg_status read_sampling(const skg_json_object *source, skg_spot *spot) {
 
 /* A point has nothing to sample. */
 static skg_status pass_over_sampling(const skg_json_object *source) {
-    static const char *const keys[] = {"Samples", "Grid", "SampleTolerance", "Axis"};
-    for (int k = 0; k < 4; k++) {
+    static const char *const keys[] = {"Samples", "Grid", "SampleTolerance", "Axis", "OffFocal"};
+    for (int k = 0; k < 5; k++) {
         const skg_json_node node = skg_json_member(source, keys[k]);
         if (!node.value) continue;
         SKG_TRY(skg_json_remark(

@@ -34,6 +34,10 @@ static skg_status refuse_others(const skg_json_object *sample) {
     if (density.value)
         return skg_json_fail(&density, SKG_ERR_FORMAT,
                              "stands beside Volume, whose values say the density of each cell; leave it out");
+    const skg_json_node form = skg_json_member(sample, "FormFactor");
+    if (form.value)
+        return skg_json_fail(&form, SKG_ERR_FORMAT,
+                             "stands beside Volume, whose cells do not scatter; leave it out");
     if (poses.value)
         return skg_json_fail(&poses, SKG_ERR_FORMAT,
                              "stands beside Volume, which has no normals; leave it out");

@@ -38,6 +38,7 @@
 #include <skiagraph/reconstruct.h>
 #include <skiagraph/registration.h>
 #include <skiagraph/scan.h>
+#include <skiagraph/scan_dose.h>
 #include <skiagraph/scan_file.h>
 #include <skiagraph/scan_reader.h>
 #include <skiagraph/scan_run.h>

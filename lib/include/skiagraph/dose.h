@@ -55,6 +55,20 @@ SKG_INIT(skg_dose_options)
  *          have scatter if the plan has. */
 SKG_API skg_status skg_dose_create(skg_plan *plan, const skg_dose_options *options, skg_dose **dose);
 
+/** Adds up exposures of one scene: the projections of a scan, the frames of a film.
+ *
+ *     count       number of exposures, at least 1
+ *     exposures   [count], with the same parts and the same places (skg_dose_options.points)
+ *     times       [count] how many exposures each stands for, at least 0; NULL: 1
+ *     sum         result; the caller releases it
+ *     errors      SKG_ERR_ARGUMENT
+ *
+ * method   Kerma, area product, energies and doses add, errors as their squares. A backscatter factor is that of all the kerma together, and
+ *          not known where it is not of one of them. Half-value layers are those of the first exposure. Of several there is neither an
+ *          exposure index nor a darkest pixel. */
+SKG_API skg_status skg_dose_sum(int64_t count, skg_dose *const *exposures, const double *times,
+                                skg_dose **sum);
+
 /** Adds an owner, who releases it. */
 SKG_API skg_status skg_dose_retain(skg_dose *dose);
 
@@ -66,7 +80,7 @@ typedef struct {
     /** Set by skg_dose_report_init. */
     int32_t size;
     /** 1: photons were followed. 0: none were asked for, or the scene does not let them: a volume, a mesh that is not closed, a material of unknown
-     * composition or density, photons above 1,022 keV; a warning said which. */
+     * composition or density; a warning said which. */
     int32_t followed;
     /** Kerma-area product of the field, uGy cm2: air kerma over an area across the middle ray of the field. It is the same at each
      * distance. Without what the world attenuates. */

@@ -124,6 +124,22 @@ SKG_API skg_status skg_material_load_table(const char *path, const char *unit, s
 SKG_API skg_status skg_material_create_at_density(const skg_material *material, double density,
                                                   skg_material **dense);
 
+/** Makes the same matter with the form factors of its molecules, which change where Rayleigh scattering sends photons: in liquids and
+ * tissues atoms are not free, and few photons go straight on. How many photons scatter stays that of free atoms (XCOM).
+ *
+ *     material       with a known composition
+ *     count          number of rows, at least 2
+ *     per_angstrom   [count] momentum transfer sin(theta/2) / wavelength, 1/Angstrom, rising, from 0 or above to 0.4 or more
+ *     squares        [count] F^2 of a molecule, or of any amount of the matter, in any unit; above 0
+ *     method         linear between rows; the first row also holds below it. From the last one on atoms are free. The squares are scaled so
+ *                    that their sum over the last fifth of the momentum transfers is that of free atoms
+ *     errors         SKG_ERR_MATERIAL
+ *
+ * @since 0.1.0 */
+SKG_API skg_status skg_material_create_form_factor(const skg_material *material, int64_t count,
+                                                   const double *per_angstrom, const double *squares,
+                                                   skg_material **bound);
+
 /** Adds an owner to a material. */
 SKG_API skg_status skg_material_retain(skg_material *material);
 
@@ -185,6 +201,17 @@ SKG_API skg_status skg_material_element_get(const skg_material *material, int64_
  *     count       result: how many there are, which may be more than capacity */
 SKG_API skg_status skg_material_edges_get(const skg_material *material, int64_t capacity, double *edges_kev,
                                           int64_t *count);
+
+/** Gets the form factors of a material's molecules.
+ *
+ *     capacity       rows that there is room for; 0 to count only
+ *     per_angstrom   [capacity] result: momentum transfers of the first rows, 1/Angstrom; NULL if capacity is 0
+ *     squares        [capacity] result: F^2 of 1 g, 1/g; likewise
+ *     count          result: number of rows, which may be more than capacity; 0: atoms are free
+ *
+ * @since 0.1.0 */
+SKG_API skg_status skg_material_form_factor_get(const skg_material *material, int64_t capacity,
+                                                double *per_angstrom, double *squares, int64_t *count);
 
 /** Gets the material's name, valid as long as the material. */
 SKG_API skg_status skg_material_name_get(const skg_material *material, const char **name);

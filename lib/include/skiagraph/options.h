@@ -189,6 +189,11 @@ typedef struct {
     double tolerance;
     /** Adaptive sampling stops at this number of samples; 1024 by default. */
     int64_t samples_max;
+    /** Off-focal radiation: the share of the photons that leave the anode beside the focal spot, from a disc of diameter off_focal_mm around
+     * its middle, with the same spectrum; 0 to below 1. 0 (default): none. Needs a focal spot that is no point, and no grid. */
+    double off_focal;
+    /** Diameter of that disc, mm, above 0 to 1000; without effect if off_focal is 0. */
+    double off_focal_mm;
 } skg_spot;
 
 SKG_INIT(skg_spot)
@@ -307,7 +312,9 @@ enum skg_fluorescence {
  *          the detector and smoothed by cosines, as many as independent batches show to pay.
  * physics  photo absorption, Compton scattering (Klein and Nishina, times the scattering functions of free atoms),
  *          Rayleigh scattering (form factors of free atoms); cross sections of XCOM, as for the primary; fluorescence in any
- *          direction (K and L lines; yields and rates of xraylib; of L shells the mean of their lines). Left out: Doppler broadening, the order of molecules, what the detector itself scatters.
+ *          direction (K and L lines; yields and rates of xraylib; of L shells the mean of their lines); pair production, whose positron
+ *          stops where it is and sends two photons of 511 keV. Left out: Doppler broadening, the order of molecules unless materials have tables of it (skg_material_create_form_factor), bremsstrahlung, what the
+ *          detector itself scatters.
  * field    without skg_plan_options.collimation the beam that scatters is limited to the detector, from its pixels'
  *          outer edges on */
 typedef struct {
@@ -432,7 +439,7 @@ typedef struct {
     const skg_collimation *collimation;
     /** Scattered photons, which are added to images before noise and blur; NULL: none. Frames whose scene or view
      * differs from the last one's take seconds, and submitting waits for them. Needs closed meshes, materials of known
-     * composition and density, and energies up to 1,022 keV; not with half precision, nor a world that scatters more
+     * composition and density; not with half precision, nor a world that scatters more
      * than 20 % of the beam by itself. The field of the beam may not be wider than the heel's anode and the bow-tie's
      * profile allow. */
     const skg_scatter *scatter;

@@ -173,8 +173,7 @@ SKG_INIT(skg_scatter_prediction)
  * detector of at most 64 pixels along each side, with energies as they are measured. Left out are noise, blur, the extent of the source,
  * heel effect, bow-tie filter, oblique response, bands and World. No skg_plan_ call makes it by itself.
  *
- *     errors   those of a plan with scatter that nothing can change: leaky meshes, materials without a composition,
- *              energies above 1,022 keV
+ *     errors   those of a plan with scatter that nothing can change: leaky meshes, materials without a composition
  *     stale    SKG_STALE as skg_plan_submit */
 SKG_API skg_status skg_plan_scatter_predict(skg_plan *plan, skg_scatter_prediction *prediction);
 
