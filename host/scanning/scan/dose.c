@@ -86,6 +86,6 @@ cleanup:
 
 skg_status skg_scan_dose_create(skg_plan *plan, const skg_scan *scan, const skg_dose_options *options,
                                 skg_dose **dose) {
-    const skg_error_handler handler = skg_plan_call_begin(plan);
-    return skg_call_end(handler, create(plan, scan, options, dose));
+    const skg_call begun = skg_plan_call_begin(plan);
+    return skg_call_end(begun, create(plan, scan, options, dose));
 }
