@@ -282,7 +282,7 @@ cleanup:
 skg_status skg_frame_draw_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end) {
     gathered g = {0};
     skg_status status = SKG_OK;
-    SKG_ASSERT(first < end && first >= skg_frame_first_pass(job->recipe));
+    SKG_ASSERT(-1 <= first && first < end);
     for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(draw_pass(job, work, p, &g));
     status = draw_gathered(job, work, &g);
 cleanup:
