@@ -178,6 +178,9 @@ START_TEST(files_bring_their_units_and_groups) {
     ck_run(0, "mesh lid.ply");
     ck_assert_ptr_nonnull(strstr(said, "x -50 to 150"));
     ck_run(0, "lbuffer parts.json --part lid --json -o l.mha");
+    static char scene[4096];
+    read_back("parts.json", scene, sizeof scene);
+    ck_assert_ptr_nonnull(strstr(scene, "\"Path\": \"lid.ply\"")); /* the scene may be moved with its parts */
     write_text("plain.obj", "v 0 0 0\nv 9 0 0\nv 0 9 0\nf 1 2 3\n");
     ck_run_fails(3, "no groups", "mesh plain.obj --split .");
 }

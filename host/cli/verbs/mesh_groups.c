@@ -38,17 +38,27 @@ skg_status cli_mesh_groups(const skg_mesh *mesh, json_t **groups) {
     return status;
 }
 
-/* A path of a file as the scene file names it: absolute, since the scene may lie in another folder. */
-static json_t *absolute(const char *path) {
-    char *whole = realpath(path, NULL);
-    json_t *text = cli_json_text(whole ? whole : path);
+/* A path of a file as the scene file names it: from the scene's folder, so that both may be moved, if the file lies in it; otherwise
+ * absolute. scene: NULL: there is none */
+static json_t *path_from(const char *scene, const char *path) {
+    char *whole = realpath(path, NULL), *folder = NULL;
+    if (scene) {
+        const char *slash = strrchr(scene, '/');
+        char *above = slash ? strndup(scene, (size_t)(slash - scene + 1)) : strdup(".");
+        folder = above ? realpath(above, NULL) : NULL;
+        free(above);
+    }
+    const size_t length = folder ? strlen(folder) : 0;
+    const int below = whole && length > 1 && strncmp(whole, folder, length) == 0 && whole[length] == '/';
+    json_t *text = cli_json_text(below ? whole + length + 1 : whole ? whole : path);
+    free(folder);
     free(whole);
     return text;
 }
 
 /* Writes one group, and adds its sample. */
-static int write_group(const char *file, const char *folder, const skg_mesh_reading *reading,
-                       const char *name, int64_t number, json_t *samples) {
+static int write_group(const char *file, const char *folder, const char *scene,
+                       const skg_mesh_reading *reading, const char *name, int64_t number, json_t *samples) {
     skg_mesh_reading its = *reading;
     char plain[CLI_NAME_OF_PART];
     skg_mesh *mesh = NULL;
@@ -61,7 +71,7 @@ static int write_group(const char *file, const char *folder, const skg_mesh_read
     if (status == SKG_OK)
         json_array_append_new(samples,
                               json_pack("{s:o,s:o,s:s,s:s,s:n}", "Label", cli_json_text(name), "Path",
-                                        absolute(path), "Unit", "mm", "Material", "Water", "Parent"));
+                                        path_from(scene, path), "Unit", "mm", "Material", "Water", "Parent"));
     skg_mesh_release(&mesh);
     free(path);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -100,7 +110,7 @@ int cli_mesh_split(const cli_arguments *arguments, const skg_mesh_reading *readi
     if (exit_status == CLI_DONE) exit_status = list_groups(file, reading, &groups);
     if (exit_status == CLI_DONE) exit_status = cli_make_folder(folder);
     for (size_t i = 0; exit_status == CLI_DONE && i < json_array_size(groups); i++)
-        exit_status = write_group(file, folder, reading,
+        exit_status = write_group(file, folder, scene, reading,
                                   json_string_value(json_object_get(json_array_get(groups, i), "name")),
                                   (int64_t)i, samples);
     if (exit_status == CLI_DONE && scene) exit_status = write_scene(scene, samples);
