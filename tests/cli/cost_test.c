@@ -229,7 +229,7 @@ END_TEST
 /* Two boxes of one mesh that share a third of their volume: united as the scene asks, and added, which its table and its sentence price. */
 START_TEST(a_union_has_its_price) {
     static const char bone[] =
-        "--set Repair=union --set 'Samples.bone={\"Label\":\"bone\",\"Path\":\"boxes.obj\","
+        "--set 'Repair=[\"union\"]' --set 'Samples.bone={\"Label\":\"bone\",\"Path\":\"boxes.obj\","
         "\"Unit\":\"mm\",\"Material\":[\"HU\",900]}' "
         "--set 'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'";
     char boxes[2048] = "";
