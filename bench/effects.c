@@ -72,10 +72,10 @@ static skg_counter *make_counter(const skg_view *view) {
 }
 
 static const effect effects[] = {
-    {"base", "61 closed parts without parents, one energy", {.flat = 1}, .counts = 0},
-    {"nesting", "60 parts displace their parent", {.flat = 0}, .counts = 0},
-    {"open part", "one of 61 parts has a hole", {.flat = 1, .leaky = 1}, .counts = 0},
-    {"source plane", "a small part encloses the source", {.flat = 1, .round_source = 1}, .counts = 0},
+    {"base", "61 closed parts without parents, one energy", {.flat = 1}, .ask = NULL},
+    {"nesting", "60 parts displace their parent", {.flat = 0}, .ask = NULL},
+    {"open part", "one of 61 parts has a hole", {.flat = 1, .leaky = 1}, .ask = NULL},
+    {"source plane", "a small part encloses the source", {.flat = 1, .round_source = 1}, .ask = NULL},
     {"double", "precision double", {.flat = 1}, .precision = SKG_PRECISION_DOUBLE},
     {"attenuation", "-ln(I/I0) instead of energy", {.flat = 1}, .quantity = SKG_QUANTITY_ATTENUATION},
     {"float64 output", "images of doubles", {.flat = 1}, .type = SKG_TYPE_FLOAT64},

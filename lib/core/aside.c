@@ -4,6 +4,7 @@
 #include "core/threads.h"
 
 #include <stdlib.h>
+#include <unistd.h>
 
 struct skg_aside {
     skg_aside_work work;
@@ -18,6 +19,7 @@ struct skg_aside {
 /* All of the process, for its exit: drivers do not survive a thread that gives them work then. */
 static pthread_mutex_t lock = PTHREAD_MUTEX_INITIALIZER;
 static skg_aside *all;
+static pid_t process; /* that has them: a child after fork has none, and the lock may be held for ever */
 
 static void *run(void *given) {
     SKG_PLAIN;
@@ -41,14 +43,14 @@ static void stop(skg_aside *aside) {
 }
 
 static void stop_all(void) {
-    if (!all || !skg_turn_is_here(all->turn))
-        return; /* a child after fork has none, and the lock may be held */
+    if (process != getpid()) return;
     pthread_mutex_lock(&lock);
     for (skg_aside *aside = all; aside; aside = aside->next) stop(aside);
     pthread_mutex_unlock(&lock);
 }
 
 static void stop_at_exit(void) {
+    process = getpid();
     (void)atexit(stop_all);
 }
 

@@ -29,10 +29,10 @@ int skg_turn_is_here(const skg_turn *turn);
 
 /* Work of a thread that takes turns with the calls of the program. */
 typedef struct {
-    void *(*turn)(
-        void *user); /* does what can be done now; returns what to wait for; NULL: nothing is left to do */
-    int (*wait)(
-        void *event); /* waits for it outside of the turn, and gives it up; 0: it failed, and the work ends */
+    /* Does what can be done now. Returns what to wait for; NULL: nothing is left to do. */
+    void *(*turn)(void *user);
+    /* Waits for it outside of the turn, and gives it up. 0: it failed, and the work ends. */
+    int (*wait)(void *event);
 } skg_aside_work;
 
 typedef struct skg_aside skg_aside;

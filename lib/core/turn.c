@@ -9,8 +9,8 @@ struct skg_turn {
     pthread_mutex_t lock; /* of what follows */
     pthread_cond_t given;
     pthread_t owner;
-    int64_t
-        process; /* that made it; in a child after fork nothing is under way, and the lock may be held for ever */
+    /* The process that made it: in a child after fork nothing is under way, and the lock may be held for ever. */
+    int64_t process;
     int32_t depth; /* how often the owner has taken it; 0: nobody has */
     int32_t reserved;
 };

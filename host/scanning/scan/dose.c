@@ -50,14 +50,17 @@ static skg_status create(skg_plan *plan, const skg_scan *scan, const skg_dose_op
     double times[FOLLOWED_MAX], place[3];
     int64_t projections = 0;
     skg_dose_options options;
-    skg_status status = SKG_OK;
+    skg_view first;
+    skg_status status = SKG_OK, back;
     SKG_NEEDS_OF("skg_scan_dose_create", plan);
     SKG_NEEDS_OF("skg_scan_dose_create", scan);
     SKG_NEEDS_OF("skg_scan_dose_create", dose);
     *dose = NULL;
     skg_dose_options_init(&options);
     if (given) SKG_TRY(skg_struct_read(given, "skg_dose_options", &options, sizeof options));
+    skg_view_init(&first);
     SKG_TRY(skg_scan_projection_count(scan, &projections));
+    SKG_TRY(skg_scan_view_get(scan, 0, &first));
     const int64_t followed = projections < FOLLOWED_MAX ? projections : FOLLOWED_MAX;
     skg_progress *progress = options.progress;
     options.progress = NULL;
@@ -73,12 +76,10 @@ static skg_status create(skg_plan *plan, const skg_scan *scan, const skg_dose_op
         SKG_TRY_CLEANUP(expose(plan, scan, projection_of(k, followed, projections), &options, &exposures[k]));
     }
     SKG_TRY_CLEANUP(skg_progress_step(progress, followed, followed));
-    SKG_TRY_CLEANUP(skg_dose_sum(followed, exposures, times, dose));
-    skg_view first;
-    skg_view_init(&first);
-    SKG_TRY_CLEANUP(skg_scan_view_get(scan, 0, &first));
-    status = skg_plan_view_set(plan, &first);
+    status = skg_dose_sum(followed, exposures, times, dose);
 cleanup:
+    back = skg_plan_view_set(plan, &first); /* also after a failure */
+    if (status == SKG_OK) status = back;
     for (int64_t k = 0; k < followed; k++) skg_dose_release(&exposures[k]);
     if (status != SKG_OK) skg_dose_release(dose);
     return status;
