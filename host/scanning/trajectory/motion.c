@@ -38,12 +38,11 @@ static void move_detector(double factor, const double *way, skg_view *view) {
 /* Moves a curved detector along its cylinder, which stays where it is. */
 static void slide_detector(double way, skg_view *view) {
     skg_curvature curve;
-    double to[3] = {0};
-    const double width = skg_length(view->column_step);
+    double to[3];
+    const double width = skg_length(view->column_step), angle = way / view->radius;
     skg_curvature_find(view, NULL, &curve);
-    const double angle = way / curve.radius, half = sin(0.5 * angle);
-    skg_add_scaled(to, curve.radius * sin(angle), curve.across, to);
-    skg_add_scaled(to, 2 * curve.radius * half * half, curve.normal, to);
+    skg_view_pixel(view, 0.5 * (double)(view->columns - 1) + way / width, 0.5 * (double)(view->rows - 1), to);
+    skg_add_scaled(to, -1, view->centre, to);
     move_detector(1, to, view);
     skg_scale_vector(width * cos(angle), curve.across, view->column_step);
     skg_add_scaled(view->column_step, width * sin(angle), curve.normal, view->column_step);
