@@ -140,7 +140,7 @@ static void skg_add_nodes(const skg_strip *strip, skg_pixels *pixels) {
 #if SKG_GENERAL
     SKG_EACH_CHANNEL SKG_EACH_RUN pixels->spread[c][r] = (skg_realv)(0);
 #endif
-    const int logarithm = strip->args.shown == SKG_SHOW_LOGARITHM;
+    const int logarithm = SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM;
     for (int n = 1; logarithm && n < strip->args.nodes; n++) {
         skg_exponents(strip->coefficients + n * SKG_PLANE_COUNT, pixels, power);
         SKG_EACH_RUN pixels->highest[r] = power[r] > pixels->highest[r] ? power[r] : pixels->highest[r];
@@ -172,7 +172,7 @@ static skg_realv skg_open_power(const skg_strip *strip, const skg_realv *amounts
 #if SKG_GENERAL
     if (strip->args.shades.count > 0) power += skg_shade_power(strip, amounts, n);
 #endif
-    if (strip->args.world_plane >= 0)
+    if (SKG_HAS_WORLD(strip))
         power = fma((skg_realv)(strip->coefficients[n * SKG_PLANE_COUNT + strip->args.world_plane]), skg_world_v(strip, r), power);
     return power;
 }
@@ -200,7 +200,7 @@ static skg_realv skg_flat_field(const skg_strip *strip, const skg_realv *amounts
 /* What intensities of run r are multiplied by. */
 static skg_realv skg_factor_v(const skg_strip *strip, int r) {
     const skg_realv factor = (skg_realv)(strip->args.factor);
-    if (!strip->args.falloff) return factor;
+    if (!SKG_FALLS_OFF(strip)) return factor;
     const skg_real foot = SKG_CURVED ? SKG_LINES_FALL(strip) : strip->args.foot;
     const skg_realv near = foot / skg_lengths_of(strip, strip->column + r * SKG_WIDE);
     return near * near * near * factor;
@@ -210,9 +210,9 @@ static skg_realv skg_factor_v(const skg_strip *strip, int r) {
  * value: in and out; highest: that the sum was divided by the power of two of. */
 SKG_APART void skg_compare(const skg_strip *strip, const skg_realv *amounts, const skg_realv *highest, int channel, int r,
                            skg_realv *value) {
-    const int logarithm = strip->args.shown == SKG_SHOW_LOGARITHM;
+    const int logarithm = SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM;
     if (logarithm) *value = -fma(*highest, (skg_realv)(SKG_LN2), skg_log_v(*value));
-    if (!strip->args.ratio) return;
+    if (!SKG_IS_RATIO(strip)) return;
     const skg_realv top = skg_highest_flat_field(strip, amounts, r);
     const skg_realv flat = skg_flat_field(strip, amounts, channel, r, top);
     if (logarithm)
@@ -223,7 +223,7 @@ SKG_APART void skg_compare(const skg_strip *strip, const skg_realv *amounts, con
 
 /* From sums over nodes to what is shown of run r. */
 static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
-    if (strip->args.shown == SKG_SHOW_LOGARITHM || strip->args.ratio) {
+    if (SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM || SKG_IS_RATIO(strip)) {
         skg_realv amounts[SKG_SHADES_MAX], highest = pixels->highest[r];
         skg_copy_shades(strip, pixels, r, amounts);
         SKG_EACH_CHANNEL {
@@ -246,7 +246,7 @@ static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
         }
     }
     /* Only what the parts subtract is counted as negative, by the first node; the highest one may be another. */
-    int of_first = strip->args.world_plane >= 0 && strip->args.shown == SKG_SHOW_LOGARITHM;
+    int of_first = SKG_HAS_WORLD(strip) && SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM;
 #if SKG_GENERAL
     of_first |= strip->args.shades.count > 0;
 #endif
@@ -255,7 +255,7 @@ static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
         SKG_EACH_SUMMED
         pixels->highest[r] = fma((skg_realv)(strip->coefficients[p]), pixels->x[p][r], pixels->highest[r]);
     }
-    if (strip->args.world_plane >= 0)
+    if (SKG_HAS_WORLD(strip))
         pixels->highest[r] -= strip->coefficients[strip->args.world_plane] * skg_world_v(strip, r);
 }
 
@@ -263,7 +263,7 @@ static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
 static void skg_collimate(const skg_strip *strip, skg_pixels *pixels) {
     /* The logarithm is that of skg_logarithm. */
     const skg_realv stopped =
-        (skg_realv)(strip->args.shown == SKG_SHOW_INTENSITY ? (skg_real)(0) : 126 * (skg_real)SKG_LN2);
+        (skg_realv)(SKG_SHOWN_OF(strip) == SKG_SHOW_INTENSITY ? (skg_real)(0) : 126 * (skg_real)SKG_LN2);
     const int in_rows = strip->row >= strip->args.window[2] && strip->row < strip->args.window[3];
     const int from = strip->args.window[0], to = in_rows ? strip->args.window[1] : from;
     SKG_EACH_RUN {
@@ -351,7 +351,7 @@ static void skg_attenuate_runs(const skg_strip *strip) {
     skg_list_planes(strip, &pixels);
 #endif
     skg_exponents(strip->coefficients, &pixels, pixels.highest);
-    if (strip->args.shown == SKG_SHOW_EXPONENT) {
+    if (SKG_SHOWN_OF(strip) == SKG_SHOW_EXPONENT) {
         SKG_EACH_RUN {
             pixels.shown[0][r] = pixels.highest[r];
             pixels.highest[r] = -pixels.highest[r];
@@ -360,7 +360,7 @@ static void skg_attenuate_runs(const skg_strip *strip) {
         skg_add_nodes(strip, &pixels);
         SKG_EACH_RUN skg_finish(strip, &pixels, r);
     }
-    if (strip->args.collimated) skg_collimate(strip, &pixels);
+    if (SKG_IS_COLLIMATED(strip)) skg_collimate(strip, &pixels);
     SKG_EACH_CHANNEL skg_show_channel(strip, pixels.shown[c], c);
 #if SKG_GENERAL
     if (strip->args.noise == SKG_NOISE_APART) SKG_EACH_CHANNEL skg_show_channel(strip, pixels.spread[c], SKG_CHANNELS + c);

@@ -71,12 +71,12 @@ SKG_APART void skg_uncompare(const skg_strip *strip, const skg_realv *amounts, i
 
 /* From derivatives by what is shown to those by the sums over nodes, of run r. */
 static void skg_unfinish(const skg_strip *strip, const skg_pixels *pixels, skg_realv slope[SKG_CHANNELS][SKG_RUNS], int r) {
-    if (strip->args.shown == SKG_SHOW_LOGARITHM) {
+    if (SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM) {
         SKG_EACH_CHANNEL slope[c][r] =
             pixels->shown[c][r] > (skg_realv)(0) ? -slope[c][r] / pixels->shown[c][r] : (skg_realv)(0);
         return;
     }
-    if (strip->args.ratio) {
+    if (SKG_IS_RATIO(strip)) {
         skg_realv amounts[SKG_SHADES_MAX];
         skg_copy_shades(strip, pixels, r, amounts);
         SKG_EACH_CHANNEL {
@@ -184,7 +184,7 @@ static void skg_put_rays(const skg_strip *strip, const skg_weighing *weighing, c
         skg_put_weights(strip, skg_weighed(strip) + 1, shown, weighing->weights);
     } else if (weighing->rays == SKG_RAYS_SUMS) {
         SKG_EACH_RUN {
-            const skg_realv falls = strip->args.falloff ? 3 * shown[r] : (skg_realv)(0);
+            const skg_realv falls = SKG_FALLS_OFF(strip) ? 3 * shown[r] : (skg_realv)(0);
             const skg_realv share = (path[r] - falls) / (length[r] * length[r]);
             found->lengths += share;
             found->across = fma(share, (skg_real)(strip->column + r * SKG_WIDE) + SKG_LANES, found->across);
@@ -222,23 +222,23 @@ static void skg_weigh_runs(const skg_strip *strip, const skg_weighing *weighing,
         skg_read_adjoint(strip, weighing->adjoint, slope);
     else
         skg_choose_channel(strip, weighing->channel, slope);
-    if (strip->args.collimated) skg_collimate_adjoint(strip, slope);
+    if (SKG_IS_COLLIMATED(strip)) skg_collimate_adjoint(strip, slope);
     SKG_EACH_RUN shown[r] = path[r] = (skg_realv)(0);
     SKG_EACH_SUMMED SKG_EACH_RUN total[p][r] = (skg_realv)(0);
-    if (strip->args.shown == SKG_SHOW_EXPONENT) {
+    if (SKG_SHOWN_OF(strip) == SKG_SHOW_EXPONENT) {
         SKG_EACH_SUMMED SKG_EACH_RUN total[p][r] = strip->coefficients[p] * slope[0][r];
     } else {
 #if SKG_GENERAL
         skg_list_planes(strip, &pixels);
 #endif
-        if (strip->args.shown == SKG_SHOW_LOGARITHM) {
+        if (SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM) {
             skg_exponents(strip->coefficients, &pixels, pixels.highest);
             skg_add_nodes(strip, &pixels);
         } else if (weighing->relative) {
             skg_lift(strip, weighing, &pixels);
         }
         SKG_EACH_RUN skg_unfinish(strip, &pixels, slope, r);
-        const int lifted = strip->args.shown == SKG_SHOW_LOGARITHM || weighing->relative;
+        const int lifted = SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM || weighing->relative;
         skg_add_slopes(strip, &pixels, slope, lifted, needed, total, shown);
     }
     SKG_EACH_SUMMED SKG_EACH_RUN path[r] = fma(total[p][r], pixels.x[p][r], path[r]);

@@ -37,7 +37,8 @@ static const double LOG2_E = 1.4426950408889634;
     X(RUNS, shape.runs, SKG_CPU_RUNS)                                                                        \
     X(STRIP, shape.strip, SKG_CPU_STRIP)                                                                     \
     X(FINE, sums->fine, 1)                                                                                   \
-    X(GENERAL, is_general(attenuation), 0)
+    X(GENERAL, is_general(attenuation), 0)                                                                   \
+    X(PLAIN, is_plain(attenuation), 0)
 #define DEFINE_NUMBER(name, value, first) DEFINE_##name,
 #define DEFINE(name, value, first) {"SKG_" #name, value},
 #define DEFINE_FIRST(name, value, first) {"SKG_" #name, first},
@@ -78,6 +79,14 @@ static int32_t shades_of(const skg_attenuation *attenuation) {
 /* Whether a general program is needed (kernels/attenuation/planes.clh), and the planes that a program has memory for. */
 static int is_general(const skg_attenuation *attenuation) {
     return attenuation->planes > SKG_FEW_PLANES || shades_of(attenuation) > 0 || attenuation->noise;
+}
+
+/* Whether a program is worth its compilation that has constants for what is shown (kernels/attenuation/planes.clh). Images of one plane
+ * are quick, and share the program of path lengths. */
+static int is_plain(const skg_attenuation *attenuation) {
+    return !is_general(attenuation) && attenuation->planes > 1 && attenuation->shown == SKG_SHOW_INTENSITY &&
+           attenuation->world_plane < 0 && !attenuation->ratio && !attenuation->falloff &&
+           !attenuation->collimated;
 }
 
 static int64_t planes_of(const skg_attenuation *attenuation) {
@@ -376,7 +385,8 @@ skg_status skg_attenuate_transpose(skg_attenuator *attenuator, const skg_sums *s
     skg_attenuation mean = *attenuation;
     mean.noise = 0;
     mean.range = (skg_buffer){0};
-    const kernel_key key = key_of(sums, &mean, &place);
+    kernel_key key = key_of(sums, &mean, &place);
+    key.defines[DEFINE_PLAIN].value = 0; /* one program serves all that is shown */
     const int is_double = key.options.precision == SKG_PRECISION_DOUBLE;
     skg_attenuate_double args = scalars_of(sums, camera, &mean, &place);
     skg_attenuate_float rounded;
