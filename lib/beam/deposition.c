@@ -174,78 +174,18 @@ static void absorb(const skg_deposition *d, collision *c) {
 }
 
 /* Moments of what an interaction leaves in each cell, of a photon in one direction: what does not depend on row `self`. The rest are
- * factors of that row's values by direction, and of its means in the mean square; self -1: there is none. */
+ * factors of that row's values by direction, and of its means in the mean square. */
 typedef struct {
     double first[CELLS], second[CELLS], own_first[WAYS], own_second[WAYS], cross[WAYS];
 } balance;
 
-static void add_photon(const skg_deposition *d, double chance, double lost, double kev, int64_t low,
-                       double part, int64_t self, const double ways[WAYS], balance *b) {
-    const double shares[2] = {1 - part, part};
-    for (int c = 0; c < CELLS; c++) b->first[c] += chance * lost, b->second[c] += chance * lost * lost;
-    for (int k = 0; k < 2; k++) {
-        const row *r = &d->rows[low + k];
-        const double one = chance * shares[k] * kev, two = one * kev, mixed = 2 * lost * one;
-        if (!(shares[k] > 0)) continue;
-        for (int m = 0; m < WAYS && low + k == self; m++)
-            b->own_first[m] += ways[m] * one, b->own_second[m] += ways[m] * two,
-                b->cross[m] += ways[m] * mixed;
-        for (int m = 0; m < WAYS && low + k != self; m++) {
-            if (!(ways[m] > 0)) continue;
-            for (int c = 0; c < CELLS; c++) {
-                b->first[c] += ways[m] * one * r->first[m][c];
-                b->second[c] += ways[m] * (two * r->second[m][c] + mixed * r->first[m][c]);
-            }
-        }
-    }
-}
-
-/* rows: those that are known, and `self` if it is one of them */
-static void find_balance(const skg_deposition *d, const collision *c, int64_t rows, int64_t self, turning to,
-                         balance *b) {
-    double part = 0;
-    memset(b, 0, sizeof *b);
-    memcpy(b->first, c->first, sizeof b->first);
-    memcpy(b->second, c->second, sizeof b->second);
-    for (int q = 0; q < ANGLES; q++) {
-        int64_t low = find_row(d, rows, c->after[q], &part);
-        add_photon(d, c->compton * c->weight[0][q], c->kev - c->after[q], c->after[q], low, part, self,
-                   to[0][q], b);
-        low = find_row(d, rows, c->kev, &part);
-        add_photon(d, c->rayleigh * c->weight[1][q], 0, c->kev, low, part, self, to[1][q], b);
-    }
-}
-
-/* The share of photons from the middle of a cell that interact in each of the cells. */
-static void find_flight(const skg_deposition *d, double per_mm, double way, double reaches[CELLS][CELLS]) {
-    const double along = per_mm / fabs(way);
-    for (int c = 0; c < CELLS; c++)
-        for (int to = 0; to < CELLS; to++) {
-            /* How far both bounds are ahead. */
-            const double side = way > 0 ? 1 : -1, low = side * (d->bounds[to] - d->middles[c]),
-                         high = side * (d->bounds[to + 1] - d->middles[c]);
-            const double from = fmax(fmin(low, high), 0), end = fmax(fmax(low, high), 0);
-            reaches[c][to] = end > from ? -exp(-along * from) * expm1(-along * (end - from)) : 0;
-        }
-}
-
-/* Of one direction of a row, after the balances of all directions are known: what it leaves from each cell on. */
-static void sweep(row *r, double kev, int m, double reaches[CELLS][CELLS], const balance *b) {
-    double first[CELLS], second[CELLS];
-    for (int c = 0; c < CELLS; c++) {
-        first[c] = b->first[c], second[c] = b->second[c];
-        for (int w = 0; w < WAYS; w++) {
-            first[c] += b->own_first[w] * r->first[w][c];
-            second[c] += b->own_second[w] * r->second[w][c] + b->cross[w] * r->first[w][c];
-        }
-    }
-    for (int c = 0; c < CELLS; c++) {
-        double one = 0, two = 0;
-        for (int to = 0; to < CELLS; to++)
-            one += reaches[c][to] * first[to], two += reaches[c][to] * second[to];
-        r->first[m][c] = one / kev, r->second[m][c] = two / (kev * kev);
-    }
-}
+/* What a scattered photon leaves in each cell by its direction, and what the scattering has left. */
+typedef struct {
+    double lost, kev;                               /* keV of the electron and of the photon */
+    double own;                                     /* the photon's share of the row `self` */
+    double other;                                   /* of rows before it */
+    double first[WAYS][CELLS], second[WAYS][CELLS]; /* by those; 0 where it has no share of them */
+} scattered;
 
 /* Memory of a solution; too much for the stack. */
 typedef struct {
@@ -253,6 +193,106 @@ typedef struct {
     balance balances[WAYS];
     double reaches[WAYS][CELLS][CELLS];
 } workspace;
+
+/* rows: those that are known */
+static void find_scattered(const skg_deposition *d, double lost, double kev, int64_t rows, int64_t self,
+                           scattered *to) {
+    double part = 0;
+    const int64_t low = find_row(d, rows, kev, &part);
+    const double shares[2] = {low < self ? 1 - part : 0, low + 1 < self ? part : 0};
+    const double one[2] = {shares[0] * kev, shares[1] * kev};
+    const row *r = &d->rows[low];
+    to->lost = lost, to->kev = kev;
+    to->own = (low == self ? 1 - part : 0) + (low + 1 == self ? part : 0);
+    to->other = shares[0] + shares[1];
+    for (int m = 0; m < WAYS && to->other > 0; m++)
+        for (int c = 0; c < CELLS; c++) {
+            const double mean = one[0] * r[0].first[m][c] + one[1] * r[1].first[m][c];
+            const double square = one[0] * r[0].second[m][c] + one[1] * r[1].second[m][c];
+            to->first[m][c] = mean;
+            to->second[m][c] = kev * square + 2 * lost * mean;
+        }
+}
+
+static void add_cells(double share, const double *restrict from, double *restrict to) {
+    for (int c = 0; c < CELLS; c++) to[c] += share * from[c];
+}
+
+/* ways: where the scattering leads */
+static void add_scattered(const scattered *s, double chance, const double ways[WAYS], balance *b) {
+    const double lost = chance * s->lost, squares = lost * s->lost, own = chance * s->own * s->kev;
+    for (int c = 0; c < CELLS; c++) b->first[c] += lost, b->second[c] += squares;
+    for (int m = 0; m < WAYS; m++) {
+        if (!(ways[m] > 0)) continue;
+        b->own_first[m] += ways[m] * own;
+        b->own_second[m] += ways[m] * own * s->kev;
+        b->cross[m] += 2 * s->lost * ways[m] * own;
+        if (!(s->other > 0)) continue;
+        add_cells(chance * ways[m], s->first[m], b->first);
+        add_cells(chance * ways[m], s->second[m], b->second);
+    }
+}
+
+/* to, balances: of `count` directions. rows: those that are known; self: the one to be solved, or d->count */
+static void find_balances(const skg_deposition *d, const collision *c, int64_t rows, int64_t self, int count,
+                          turning *to, balance *balances) {
+    scattered s;
+    for (int m = 0; m < count; m++) {
+        memset(&balances[m], 0, sizeof *balances);
+        memcpy(balances[m].first, c->first, sizeof c->first);
+        memcpy(balances[m].second, c->second, sizeof c->second);
+    }
+    for (int q = 0; q < ANGLES; q++) {
+        find_scattered(d, c->kev - c->after[q], c->after[q], rows, self, &s);
+        for (int m = 0; m < count; m++)
+            add_scattered(&s, c->compton * c->weight[0][q], to[m][0][q], &balances[m]);
+    }
+    find_scattered(d, 0, c->kev, rows, self, &s);
+    for (int q = 0; q < ANGLES; q++)
+        for (int m = 0; m < count; m++)
+            add_scattered(&s, c->rayleigh * c->weight[1][q], to[m][1][q], &balances[m]);
+}
+
+/* The cells that a photon flies through from cell c on: the first, and one past the last, in steps of `side`. */
+#define EACH_AHEAD(to, c, side) for (int to = (c); to >= 0 && to < CELLS; to += (side))
+
+/* The share of photons from the middle of a cell that interact in each of the cells ahead. */
+static void find_flight(const skg_deposition *d, double per_mm, double way, double reaches[CELLS][CELLS]) {
+    const double along = per_mm / fabs(way);
+    const int side = way > 0 ? 1 : -1;
+    double stays[CELLS], half[CELLS]; /* of those that enter, and of those that start in the middle */
+    for (int c = 0; c < CELLS; c++) {
+        const double width = d->bounds[c + 1] - d->bounds[c];
+        stays[c] = -expm1(-along * width);
+        half[c] = -expm1(-along * width / 2);
+    }
+    for (int c = 0; c < CELLS; c++) {
+        double passes = 1;
+        EACH_AHEAD(to, c, side) {
+            const double here = to == c ? half[to] : stays[to];
+            reaches[c][to] = passes * here;
+            passes *= 1 - here;
+        }
+    }
+}
+
+/* Of one direction of a row, after the balances of all directions are known: what it leaves from each cell on. */
+static void sweep(row *r, double kev, int m, int side, double reaches[CELLS][CELLS], const balance *b) {
+    double first[CELLS], second[CELLS];
+    memcpy(first, b->first, sizeof first);
+    memcpy(second, b->second, sizeof second);
+    for (int w = 0; w < WAYS; w++) {
+        if (!(b->own_first[w] > 0)) continue;
+        add_cells(b->own_first[w], r->first[w], first);
+        add_cells(b->own_second[w], r->second[w], second);
+        add_cells(b->cross[w], r->first[w], second);
+    }
+    for (int c = 0; c < CELLS; c++) {
+        double one = 0, two = 0;
+        EACH_AHEAD(to, c, side) one += reaches[c][to] * first[to], two += reaches[c][to] * second[to];
+        r->first[m][c] = one / kev, r->second[m][c] = two / (kev * kev);
+    }
+}
 
 static void solve_row(skg_deposition *d, int64_t k, workspace *w) {
     collision c;
@@ -262,12 +302,11 @@ static void solve_row(skg_deposition *d, int64_t k, workspace *w) {
     skg_mixed_sections(d->material->count, d->material->parts, d->kev[k], sections);
     const double per_mm = skg_total_section(sections) * d->material->density / 10;
     if (k > 0) d->rows[k] = d->rows[k - 1];
-    for (int m = 0; m < WAYS; m++) {
-        find_balance(d, &c, k + 1, k, w->to[m], &w->balances[m]);
-        find_flight(d, per_mm, d->way[m], w->reaches[m]);
-    }
+    find_balances(d, &c, k + 1, k, WAYS, w->to, w->balances);
+    for (int m = 0; m < WAYS; m++) find_flight(d, per_mm, d->way[m], w->reaches[m]);
     for (int s = 0; s < SWEEPS; s++)
-        for (int m = 0; m < WAYS; m++) sweep(&d->rows[k], d->kev[k], m, w->reaches[m], &w->balances[m]);
+        for (int m = 0; m < WAYS; m++)
+            sweep(&d->rows[k], d->kev[k], m, d->way[m] > 0 ? 1 : -1, w->reaches[m], &w->balances[m]);
 }
 
 static int by_energy(const void *a, const void *b) {
@@ -334,7 +373,7 @@ void skg_deposition_moments(const skg_deposition *d, double energy_kev, double p
     find_turning(d, 1 / oblique, to);
     find_collision(d, energy_kev, &c);
     absorb(d, &c);
-    find_balance(d, &c, d->count, -1, to, &b);
+    find_balances(d, &c, d->count, d->count, 1, &to, &b);
     *energy = *square = 0;
     for (int cell = 0; cell < CELLS; cell++) {
         const double here =
