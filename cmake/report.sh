@@ -20,12 +20,13 @@ skg_times() {
     echo "Time: ${skg_stages}in all $(($(date +%s) - skg_began)) s on $(nproc) CPUs."
 }
 
-# skg_test DIRECTORY [CTEST OPTION...]: runs tests of a build and counts them.
+# skg_test DIRECTORY [CTEST OPTION...]: runs tests of a build and counts them. One more than there are CPUs, because tests of pages,
+# servers and packages wait.
 skg_test() {
     build=$1
     shift
     rm -f "$build/passed"
-    { ctest --test-dir "$build" -j "${skg_jobs:-$(nproc)}" --output-on-failure "$@" && touch "$build/passed"; } 2>&1 | tee "$build/tests.log"
+    { ctest --test-dir "$build" -j "${skg_jobs:-$(($(nproc) + 1))}" --output-on-failure "$@" && touch "$build/passed"; } 2>&1 | tee "$build/tests.log"
     counts=$(awk '/^ *[0-9]+\/[0-9]+ Test +#/ { if (/ Passed /) passed++; else if (/\*\*\*Skipped/) skipped++; else failed++ }
         END { print passed + 0, failed + 0, skipped + 0 }' "$build/tests.log")
     skg_count "$counts"
