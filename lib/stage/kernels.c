@@ -68,9 +68,9 @@ int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *
 }
 
 skg_status skg_kernels_get_first(skg_context *context, cl_program *program) {
-    static const char *const files[] = {"fine.clh",        "project.cl",  "batch.clh",
-                                        "draw.clh",        "collect.clh", "raster_copies.cl",
-                                        "exponential.clh", "planes.clh",  "attenuate.cl"};
+    static const char *const files[] = {"fine.clh",   "project.cl",  "batch.clh",        "deposit.clh",
+                                        "draw.clh",   "collect.clh", "raster_copies.cl", "exponential.clh",
+                                        "planes.clh", "attenuate.cl"};
     static const skg_define shape[] = {{"SKG_RUNS", SKG_CPU_RUNS}, {"SKG_STRIP", SKG_CPU_STRIP}};
     return skg_kernels_get(context, &first_options, (int32_t)(sizeof files / sizeof *files), files,
                            SKG_DEFINES(shape), program);

@@ -91,7 +91,7 @@ static const skg_buffer *find_listed(const skg_raster *raster, int64_t *first) {
 
 const skg_raster_strategy skg_raster_bands = {
     .takes = takes,
-    .files = {"bands.cl", "batch.clh", "draw.clh", "collect.clh", "raster_bands.cl"},
+    .files = {"bands.cl", "batch.clh", "deposit.clh", "draw.clh", "collect.clh", "raster_bands.cl"},
     .kernels = {"skg_bands_sort", "skg_raster_bands"},
     .lay_out = lay_out,
     .allocate = allocate,

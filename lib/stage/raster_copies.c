@@ -37,7 +37,7 @@ static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *
 
 const skg_raster_strategy skg_raster_copies = {
     .takes = takes,
-    .files = {"batch.clh", "draw.clh", "collect.clh", "raster_copies.cl"},
+    .files = {"batch.clh", "deposit.clh", "draw.clh", "collect.clh", "raster_copies.cl"},
     .kernels = {"skg_raster_copies"},
     .lay_out = lay_out,
     .get_program = get_program,

@@ -34,7 +34,7 @@ static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *
 
 const skg_raster_strategy skg_raster_passes_together = {
     .takes = takes,
-    .files = {"batch.clh", "draw.clh", "collect.clh", "raster_passes.cl"},
+    .files = {"batch.clh", "deposit.clh", "draw.clh", "collect.clh", "raster_passes.cl"},
     .kernels = {"skg_raster_passes"},
     .run = run,
 };

@@ -8,7 +8,7 @@
 
 enum {
     SKG_RASTER_GROUP = 64, /* local size where a work-item takes a triangle */
-    SKG_STRATEGY_FILES = 5,
+    SKG_STRATEGY_FILES = 6,
     SKG_STRATEGY_KERNELS = 4
 };
 

@@ -174,14 +174,14 @@ static const struct {
     {"raster_passes.cl", "(p.y, q.y, r.y, s.y)", "(p.y, q.y, r.y, r.y)", SKG_SELF_TEST_SIDE},
     {"collect.clh", "pass * target->image_size", "0", SKG_SELF_TEST_SIDE},
     {"sums.clh", "(size_t)(layout->first_plane + plane)", "(size_t)plane", SKG_SELF_TEST_PASSES},
-    {"draw.clh", "skg_hit_v(&line, i) & (i < right) & (j < bottom)",
-     "skg_hit_v(&line, i) & (i < right - 1) & (j < bottom)", SKG_SELF_TEST_COPIES},
+    {"draw.clh", "skg_hit_v(&line, i) & (i < right) & inside",
+     "skg_hit_v(&line, i) & (i < right - 1) & inside", SKG_SELF_TEST_COPIES},
     {"draw.clh", "SKG_DRAW_BLOCK(1, SKG_BLOCK_1)", "SKG_DRAW_BLOCK(1, SKG_BLOCK_0)", SKG_SELF_TEST_COPIES},
     {"draw.clh", "skg_hit_v(&lower, i), 0)", "skg_hit_v(&upper, i), 0)", SKG_SELF_TEST_COPIES},
     {"draw.clh", "skg_depth_v(&f, &line, more)", "skg_depth_v(&f, &line, i)", SKG_SELF_TEST_COPIES},
-    {"draw.clh", "stored.factor[row], i < line.b, 0)", "stored.factor[row], i < line.b - 1, 0)",
+    {"draw.clh", "SKG_IN_SPAN(&line, i, end), 0)", "SKG_IN_SPAN(&line, i, end - 1), 0)",
      SKG_SELF_TEST_COPIES},
-    {"draw.clh", "skg_between_v(&span, i), i)", "skg_between_v(&span, i + 1), i)", SKG_SELF_TEST_COPIES},
+    {"draw.clh", "skg_between_v(&span, x), x)", "skg_between_v(&span, x + 1), x)", SKG_SELF_TEST_COPIES},
     {"bands.cl", "if (to - from >= SKG_TILES_MAX) {", "if (to - from >= 1) {\n                    continue;",
      SKG_SELF_TEST_TILES},
     {"raster_bands.cl", "skg_draw_list(&target, &batch, blocks, for_all, counters[2], &range)", "",
@@ -222,7 +222,7 @@ static const struct {
     {"attenuate.cl", "(column >= from) & (column < to)", "column >= from", SKG_SELF_TEST_SHADES},
     {"attenuate.cl", "strip->row < strip->args.window[3]", "1", SKG_SELF_TEST_SHADES},
     {"shades.clh", "polynomials + s * SKG_TERMS, s < heels", "polynomials, s < heels", SKG_SELF_TEST_HEEL},
-    {"shades.clh", "column, row) / *length + args->heel[3]", "column, row) / *length", SKG_SELF_TEST_HEEL},
+    {"shades.clh", "i, j) / *length + args->heel[3]", "i, j) / *length", SKG_SELF_TEST_HEEL},
     {"blur.cl", "add ? SKG_LOAD_GLOBAL_V(realv, place) + sum[v] : sum[v]", "sum[v]", SKG_SELF_TEST_DEPTHS},
     {"blur.cl", "add ? place[k] + rest[k] : rest[k]", "rest[k]", SKG_SELF_TEST_DEPTHS},
     {"blur.cl", "weights[j * args.across + i]", "weights[i]", SKG_SELF_TEST_DEPTHS},
@@ -240,7 +240,7 @@ static const struct {
      SKG_SELF_TEST_PICTURE},
     {"show.cl", "strip->through[r] -= share;", "", SKG_SELF_TEST_PICTURE},
     {"scatter.cl", "p->weight *= fall / ", "p->weight *= ", SKG_SELF_TEST_SCATTER},
-    {"scatter.cl", "*left = kev * ratio", "*left = kev", SKG_SELF_TEST_SCATTER},
+    {"tally.clh", "*left = kev * ratio", "*left = kev", SKG_SELF_TEST_SCATTER},
     {"scatter.cl", "p->changed |= changes | emits;", "p->weight *= (skg_fv)(0.8f);", SKG_SELF_TEST_SCATTER},
     {"sight.clh", "s->sr = g0 + g1 - s->k", "s->sr = g0 + g1", SKG_SELF_TEST_SCATTER},
     {"gather.clh", "fma(value, (skg_realv)((skg_real)row), own->rows)", "own->rows", SKG_SELF_TEST_GRADIENT},
@@ -305,6 +305,15 @@ START_TEST(wrong_kernels_are_found) {
     }
     skg_context_release(&context);
     remove_kernels();
+}
+END_TEST
+
+/* Else the list would grow old unseen between two nights. */
+START_TEST(errors_are_of_the_kernels_as_they_are) {
+    for (size_t e = 0; e < sizeof errors / sizeof *errors; e++) {
+        copy_kernels(errors[e].file, errors[e].old, errors[e].new);
+        remove_kernels();
+    }
 }
 END_TEST
 
@@ -470,6 +479,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, make_cache_folder, remove_cache_folder);
     tcase_add_loop_test(tests, wrong_kernels_are_found, 0, SKG_WRONG_KERNELS ? wrong : 2);
     if (SKG_WRONG_KERNELS) return;
+    tcase_add_test(tests, errors_are_of_the_kernels_as_they_are);
     tcase_add_test(tests, boxes_have_known_lengths);
     tcase_add_test(tests, meshes_of_boxes_are_closed_unless_split);
     tcase_add_test(tests, a_right_device_passes);
