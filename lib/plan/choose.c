@@ -203,3 +203,21 @@ int32_t skg_passes_choose(const skg_passes_request *request, int32_t *side) {
     if (pays && even(request->passes, workers, SIDE)) *side = SIDE;
     return *side > 1 || even(request->passes, workers, 1) ? (int32_t)(*side * workers) : 1;
 }
+
+/* Frames are drawn together if launches and waiting are a large share of them. */
+enum { FRAMES_LEAST = 8 };
+
+int32_t skg_frames_most(int32_t workers) {
+    return SIDE * workers + FRAMES_LEAST;
+}
+
+int32_t skg_frames_choose(const skg_passes_request *request, int32_t *side) {
+    skg_passes_request turn = *request;
+    const int64_t left = request->image_bytes - SIDE_TRIANGLE * request->triangles;
+    turn.passes = (int64_t)SIDE * request->workers;
+    const int32_t each = left <= SIDE_IMAGE ? skg_passes_choose(&turn, side) : 1;
+    const int32_t together = each > 1 ? (FRAMES_LEAST + each - 1) / each * each : 1;
+    if (together > 1 && together <= request->passes) return together;
+    *side = 1;
+    return 1;
+}
