@@ -1,9 +1,16 @@
-/* Passes that wait to be drawn together: samples of the source of one frame, or frames of a job. */
+/* What passes need before they are drawn, and passes that wait to be drawn together: samples of the source of one frame, or frames of a job. */
 #include "frame/frames.h"
 
 #include <string.h>
 
-/* Bytes before the extents of the passes: the pass that is claimed next. */
+skg_status skg_frame_update_meshes(skg_job *job) {
+    const skg_recipe *recipe = job->recipe;
+    if (job->then.meshes) return SKG_OK;
+    SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
+    return skg_geometry_update(&job->machine->geometry, recipe->meshes.meshes, &job->staging);
+}
+
+/* Numbers before the extents of the passes: the pass that is claimed next. */
 enum { CLAIM = 1 };
 
 static skg_status begin(const skg_pass *pass, skg_waiting *g) {

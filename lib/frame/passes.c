@@ -118,13 +118,6 @@ skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg
     return status;
 }
 
-skg_status skg_frame_update_meshes(skg_job *job) {
-    const skg_recipe *recipe = job->recipe;
-    if (job->then.meshes) return SKG_OK;
-    SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
-    return skg_geometry_update(&job->machine->geometry, recipe->meshes.meshes, &job->staging);
-}
-
 /* Enqueues the raster of all parts, and what priorities and leaky parts change in its sums. */
 static skg_status draw_sums(skg_job *job, const skg_frame_work *work, const skg_pass *pass) {
     skg_machine *machine = job->machine;

@@ -39,14 +39,18 @@ class Batch:
         frames = struct("skg_frame", count)
         parts = ffi.new("int64_t[]", list(self.parts)) if self.parts else ffi.NULL
         keep += [frames, parts]
+        poses, posed = ffi.NULL, len(self.parts)
+        if self.poses is not None:
+            poses = ffi.cast("double *", self.poses.__array_interface__["data"][0])
         for i in range(count):
-            frames[i].index = self.index + first + i
+            frame = frames[i]
+            frame.index = self.index + first + i
             if self.poses is not None:
-                frames[i].pose_count, frames[i].pose_parts = len(self.parts), parts
-                frames[i].poses = ffi.cast("double *", self.poses[first + i].__array_interface__["data"][0])
+                frame.pose_count, frame.pose_parts = posed, parts
+                frame.poses = poses + 16 * posed * (first + i)
             if self.views:
                 keep.append(self.views[(first + i) % len(self.views)]._write(struct("skg_view")))
-                frames[i].view = keep[-1]
+                frame.view = keep[-1]
             if self.complete:
                 self.complete(frames + i)
         return frames
