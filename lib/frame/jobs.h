@@ -137,7 +137,7 @@ void skg_submission_continue(skg_job *job);
 /* Enqueues what is left of a context's earlier job, so that its jobs run in order. */
 void skg_submission_flush(const skg_context *context);
 
-/* Enqueues the reads of what is reported, and the marker that is waited for, if that was not done. */
+/* Enqueues the reads of what is reported, of which the last is waited for, if that was not done. */
 skg_status skg_submission_finish(skg_job *job);
 
 /* --- Waiting for a job, and giving the device its frames meanwhile */

@@ -199,13 +199,12 @@ skg_status skg_submission_finish(skg_job *job) {
     if (machine->context->held == job) machine->context->held = NULL;
     if (job->last) return SKG_OK;
     results->frames = job->enqueued / job->steps;
-    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 4 * sizeof *results->negative,
-                             results->negative));
     SKG_TRY(read_bad(job));
     if (job->main.raster) /* scatter alone has none */
         SKG_TRY(skg_raster_read_listed(job->main.raster, results->listed));
     SKG_TRY(read_outside(job));
-    SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
+    SKG_CL_TRY(clEnqueueReadBuffer(queue, machine->negative.memory, CL_FALSE, 0,
+                                   4 * sizeof *results->negative, results->negative, 0, NULL, &job->last));
     return skg_queue_flush(machine->context);
 }
 
