@@ -1,10 +1,10 @@
-/* Several passes of a frame, or of frames, strategy `copies`: passes differ in their tables of parts and contributions alone. Each work-group
- * (one work-item, wide vectors) claims whole passes until none are left: it projects the vertices into memory of its own, and
+/* Several passes of a frame, or of frames, strategy `copies`: passes differ in their tables of parts and contributions alone. Each
+ * work-group (one work-item, wide vectors) claims whole passes until none are left: it projects the vertices into memory of its own, and
  * adds all triangles up in the only copy of the pass's sums. used[0]: all planes; used[1]: the pass that is claimed next; then the extents
  * of the planes of all passes (skg_shared.h). */
 
-/* Projects the vertices of SKG_SIDE passes. bad_vertex: of each of them. Of several, x of a vertex in all passes stand side by side, then y, z and t; behind
- * those of all vertices there is room for a run of each pass. */
+/* Projects the vertices of SKG_SIDE passes. bad_vertex: of each of them. Of several, x of a vertex in all passes stand side by side, then
+ * y, z and t; behind those of all vertices there is room for a run of each pass. */
 static void skg_project_passes(const skg_raster_layout *layout, __global const skg_part_entry *const *parts,
                                __global const int *blocks, __global const skg_real *vertices,
                                __global skg_real4 *projected, __global int *const *bad_vertex) {

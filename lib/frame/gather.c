@@ -1,4 +1,5 @@
-/* What passes need before they are drawn, and passes that wait to be drawn together: samples of the source of one frame, or frames of a job. */
+/* What passes need before they are drawn, and passes that wait to be drawn together: samples of the source of one frame, or frames of a
+ * job. */
 #include "frame/frames.h"
 
 #include <string.h>

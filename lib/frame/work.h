@@ -59,8 +59,8 @@ static inline int skg_output_is_scatter(int32_t kind) {
 skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view *view, skg_machine *machine,
                                   int64_t frame, skg_image_place *place);
 
-/* Enqueues the read of an output into the caller's host memory. Does nothing if it stays on the device. end: gets the event of the read, if it is one
- * command; NULL: is not asked for */
+/* Enqueues the read of an output into the caller's host memory. Does nothing if it stays on the device. end: gets the event of the
+ * read, if it is one command; NULL: is not asked for */
 skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_view *view,
                                       const skg_machine *machine, int64_t frame, skg_stage_log *log,
                                       cl_event *end);
