@@ -59,10 +59,9 @@ struct skg_job {
     skg_aside *feeder;   /* goes on with the job while nobody asks; NULL: nothing does */
     int32_t finished;    /* 1: everything enqueued is done */
     int32_t of_plan;     /* 1: a plan that is made waits for it: skg_context_interrupt ends it */
-    int32_t
-        together; /* its frames are small, and drawn together where they can be, so many side by side; 0: each by itself */
-    int32_t uncounted; /* 1: the count of negative exponents is 0 */
-    int32_t followed;  /* 1: that count is of several frames, of which the last is not the job's */
+    int32_t together;    /* its small frames are drawn together, so many side by side; 0: each by itself */
+    int32_t uncounted;   /* 1: the count of negative exponents is 0 */
+    int32_t followed;    /* 1: that count is of several frames, of which the last is not the job's */
     atomic_int cancelled, references;
     atomic_int over;    /* 1: the job was waited for, and nothing of it is left but this and the two above */
     skg_status failure; /* of a frame that was to be enqueued after the submission */

@@ -112,7 +112,7 @@ static int64_t steps_ahead(const skg_job *job) {
     return frames > 2 ? (frames < (double)job->count ? (int64_t)frames : job->count) : 2;
 }
 
-/* How many frames are drawn side by side: of a device that is given so many at once, if they are nearly all there is to do. */
+/* How many frames are drawn side by side, if the device is given all of them at once, or two launches' worth; 0: each by itself. */
 static int32_t together_of(const skg_job *job, int64_t ahead) {
     const int64_t all = skg_job_steps(job), enough = 2 * skg_together_most(job->machine);
     if (job->kind->begin || job->each || job->output_count != 1 || (ahead < all && ahead < enough)) return 0;
