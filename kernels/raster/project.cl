@@ -70,9 +70,10 @@ SKG_APART void skg_project_run(int number, const skg_raster_layout *layout, __gl
     }
 }
 
+/* bad_vertex: of each frame of a job; frame: which one this is. */
 __kernel void skg_project(skg_raster_layout layout, __global const skg_part_entry *parts, __global const int *blocks,
                           __global const skg_real *vertices, __global skg_real4 *projected,
-                          __global int *bad_vertex) {
+                          __global int *bad_vertex, int frame) {
     const int first = SKG_RUN * (int)get_global_id(0);
-    skg_project_run(first, &layout, parts, blocks, vertices, projected + first, bad_vertex);
+    skg_project_run(first, &layout, parts, blocks, vertices, projected + first, bad_vertex + frame);
 }

@@ -2,7 +2,7 @@
  * names alone (lib/stage); a test compares each list with the names that the OpenCL compiler reports for the kernel.
  *
  * SKG_ARGUMENTS_<KERNEL>(X) is X(KERNEL, name) for each argument. Scalars stand in a struct of skg_shared.h, the first
- * argument; a kernel with few arguments may have one scalar more. Every buffer is an argument of its own, because OpenCL 1.2 has
+ * argument; a kernel with few arguments may have a scalar or two more. Every buffer is an argument of its own, because OpenCL 1.2 has
  * no pointers in such structs. The lists do not depend on -D names: a buffer that a program does not use is NULL. Host only. */
 #ifndef SKG_ARGUMENTS_H
 #define SKG_ARGUMENTS_H
@@ -10,7 +10,7 @@
 /* clang-format off */
 #define SKG_ARGUMENTS_PROJECT(X) \
     X(PROJECT, layout) X(PROJECT, parts) X(PROJECT, blocks) X(PROJECT, vertices) X(PROJECT, projected) \
-    X(PROJECT, bad_vertex)
+    X(PROJECT, bad_vertex) X(PROJECT, frame)
 
 #define SKG_ARGUMENTS_PLACE(X) \
     X(PLACE, args) X(PLACE, given) X(PLACE, first) X(PLACE, taken) X(PLACE, vertices) X(PLACE, outside)
@@ -22,7 +22,8 @@
 #define SKG_ARGUMENTS_RASTER_PASSES(X) \
     X(RASTER_PASSES, layout) X(RASTER_PASSES, corners) X(RASTER_PASSES, vertices) X(RASTER_PASSES, tables) \
     X(RASTER_PASSES, contributions) X(RASTER_PASSES, blocks) X(RASTER_PASSES, vertex_blocks) \
-    X(RASTER_PASSES, projected) X(RASTER_PASSES, sums) X(RASTER_PASSES, used) X(RASTER_PASSES, bad_vertex)
+    X(RASTER_PASSES, projected) X(RASTER_PASSES, sums) X(RASTER_PASSES, used) X(RASTER_PASSES, bad_vertex) \
+    X(RASTER_PASSES, frame) X(RASTER_PASSES, each)
 
 #define SKG_ARGUMENTS_RASTER_ATOMICS(X) \
     X(RASTER_ATOMICS, layout) X(RASTER_ATOMICS, corners) X(RASTER_ATOMICS, projected) X(RASTER_ATOMICS, parts) \

@@ -34,6 +34,7 @@ typedef struct skg_device {
     int32_t simulates;    /* 1: a simulator, which is not tested and caches nothing */
     uint64_t passed;      /* bit n: enum skg_self_test */
     int32_t self_testing; /* > 0: a self-test is running, whose own calls need none */
+    int32_t planes;       /* of the plan that asks for self-tests: that of energies has as many */
     skg_watch compiling;
 } skg_device;
 

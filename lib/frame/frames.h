@@ -37,7 +37,17 @@ static inline int64_t skg_frame_first_pass(const skg_recipe *recipe) {
     return skg_recipe_averages(recipe) ? 0 : -1;
 }
 
-/* Enqueues the passes from number `first` on, before `end`. */
+/* Whether nothing but the raster makes the sums, so that passes may be drawn together. */
+int skg_frame_gathers(const skg_recipe *recipe, const skg_machine *machine);
+
+/* Pins the raster by which the pass of a frame is drawn together with those of the job's other frames, and reports its layout; none if it
+ * is better drawn by itself. */
+skg_status skg_frame_pin_together(const skg_job *job, skg_pass *pass);
+
+/* Uploads the positions of meshes that have changed. After the submission they are no longer looked at. */
+skg_status skg_frame_update_meshes(skg_job *job);
+
+/* Enqueues the passes from number `first` on, before `end`; of a frame that was drawn already (work->drawn) its share of the image. */
 skg_status skg_frame_draw_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end);
 
 /* The steps of an output (enum skg_output_kind) of which an image's have `each` passes; 0: all. */
@@ -45,6 +55,27 @@ int64_t skg_frame_steps(const skg_recipe *recipe, int32_t shows, int64_t each);
 
 /* Enqueues a step of a frame. When the device is done with the last one the result is in its place. */
 skg_status skg_frame_render(skg_job *job, const skg_frame_work *work);
+
+/* --- Passes that one launch draws */
+
+/* Passes that wait to be drawn together: `count` of them, in a raster of `room`. All zero but for the staging: none. */
+typedef struct {
+    skg_pass *passes; /* [room] */
+    int32_t count, room;
+    skg_pass_tables tables;
+    cl_int *placed;       /* what skg_raster_run_passes uploads */
+    skg_staging *staging; /* of tables and extents */
+} skg_waiting;
+
+/* Adds a pass to those that wait, which takes it over if it succeeds. There is room. */
+skg_status skg_waiting_add(skg_job *job, const skg_pass *pass, skg_waiting *gathered);
+
+/* Enqueues their sums. read: the event from which on the staging may go; NULL: none. */
+skg_status skg_waiting_draw(skg_job *job, const skg_waiting *gathered, cl_event *read);
+
+/* Releases the passes; and the memory for them. */
+void skg_waiting_empty(skg_waiting *gathered);
+void skg_waiting_release(skg_waiting *gathered);
 
 /* --- What the parts of one pass contribute and where they lie */
 

@@ -59,6 +59,9 @@ struct skg_job {
     skg_aside *feeder;   /* goes on with the job while nobody asks; NULL: nothing does */
     int32_t finished;    /* 1: everything enqueued is done */
     int32_t of_plan;     /* 1: a plan that is made waits for it: skg_context_interrupt ends it */
+    int32_t together;    /* its small frames are drawn together, so many side by side; 0: each by itself */
+    int32_t uncounted;   /* 1: the count of negative exponents is 0 */
+    int32_t followed;    /* 1: that count is of several frames, of which the last is not the job's */
     atomic_int cancelled, references;
     atomic_int over;    /* 1: the job was waited for, and nothing of it is left but this and the two above */
     skg_status failure; /* of a frame that was to be enqueued after the submission */
@@ -103,6 +106,27 @@ extern const skg_job_kind skg_job_images;
 skg_status skg_frame_render_output(skg_job *job, const skg_frame_output *output, int64_t index,
                                    skg_frame_work *work);
 
+/* --- Small frames, of which one launch draws several (frame/together.c) */
+
+/* How many of a job's frames a worker draws side by side, if they are to be drawn together; 0: they are not. What single frames call for is
+ * found out when they come. outputs: the only one */
+int32_t skg_together_side(const skg_recipe *recipe, const skg_machine *machine, int64_t frames,
+                          const skg_output *outputs);
+
+/* The most frames that are drawn together. */
+int64_t skg_together_most(const skg_machine *machine);
+
+/* How many frames of a job the raster of the last one draws. */
+int32_t skg_job_room(const skg_job *job);
+
+/* Enqueues frames from job->enqueued on, before number `end`: as many as one launch draws. submitted: how many; 0: the next one has to be
+ * drawn by itself. */
+skg_status skg_together_submit(skg_job *job, const skg_frame *frames, const double **poses, int64_t end,
+                               int64_t *submitted);
+
+/* Enqueues the step of a frame that was read, which comes next. end: the number before which others follow at once */
+skg_status skg_submit_step(skg_job *job, int64_t end, skg_frame_work *work);
+
 /* Counts the steps that are done, and gives the device others. */
 skg_status skg_job_look(skg_job *job);
 
@@ -112,7 +136,7 @@ void skg_submission_continue(skg_job *job);
 /* Enqueues what is left of a context's earlier job, so that its jobs run in order. */
 void skg_submission_flush(const skg_context *context);
 
-/* Enqueues the reads of what is reported, and the marker that is waited for, if that was not done. */
+/* Enqueues the reads of what is reported, of which the last is waited for, if that was not done. */
 skg_status skg_submission_finish(skg_job *job);
 
 /* --- Waiting for a job, and giving the device its frames meanwhile */

@@ -217,7 +217,8 @@ static skg_status read_channel(const skg_frame_output *output, const skg_view *v
 }
 
 skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_view *view,
-                                      const skg_machine *machine, int64_t frame, skg_stage_log *log) {
+                                      const skg_machine *machine, int64_t frame, skg_stage_log *log,
+                                      cl_event *end) {
     const skg_output *to = &output->to;
     if (to->buffer) return SKG_OK;
     if (output->direct) return settle(output, view, machine, frame);
@@ -228,8 +229,9 @@ skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_
             SKG_TRY(read_channel(output, view, machine, c, first, log));
         return SKG_OK;
     }
-    cl_event event = NULL, *wanted = skg_stage_event(log, &event);
+    cl_event event = NULL, *wanted = end ? &event : skg_stage_event(log, &event);
     SKG_CL_TRY(clEnqueueReadBuffer(machine->context->device->queue, machine->image.memory, CL_FALSE, 0,
                                    (size_t)(output->channels * size * element), first, 0, NULL, wanted));
+    if (end) SKG_CL_TRY(clRetainEvent(*end = event));
     return skg_stage_log_add(log, "read back", event);
 }

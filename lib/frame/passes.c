@@ -14,25 +14,30 @@ static int32_t tile_of(const skg_recipe *recipe, const skg_pass *pass) {
     return tile && pass->fine > 1 && tile < least ? (int32_t)least : tile;
 }
 
-/* How many passes the raster of this one draws together. What other kernels do to its sums needs a pass by itself. */
+int skg_frame_gathers(const skg_recipe *recipe, const skg_machine *machine) {
+    return recipe->leaky_count == 0 && machine->volumes.count == 0 && !recipe->priority_possible;
+}
+
+/* How many passes the raster of this one draws together. What other kernels do to its sums needs a pass by itself. frames: those that
+ * may be drawn together, or else 1. */
 static int32_t passes_together(const skg_recipe *recipe, const skg_machine *machine, int64_t number,
-                               const skg_pass *pass, int32_t *side) {
+                               int64_t frames, const skg_pass *pass, int32_t *side) {
     const skg_passes_request request = {.strategy = recipe->strategy,
                                         .workers = machine->context->device->info.compute_units,
-                                        .passes = skg_samples_passes(&recipe->samples),
+                                        .passes = frames > 1 ? frames : skg_samples_passes(&recipe->samples),
                                         .triangles = skg_scene_triangles(recipe->scene),
                                         .image_bytes = pass->camera.columns * pass->camera.rows *
                                                        pass->planes * pass->kernels.bits / 8};
-    const int alone = number < 0 || recipe->leaky_count > 0 || machine->volumes.count > 0 ||
-                      recipe->priority_possible || (pass->kernels.source_plane && !pass->kernels.parallel) ||
-                      pass->kernels.half || pass->kernels.curved;
+    const int alone = (number < 0 && frames < 2) || !skg_frame_gathers(recipe, machine) ||
+                      (pass->kernels.source_plane && !pass->kernels.parallel) || pass->kernels.half ||
+                      pass->kernels.curved;
     *side = 1;
-    return alone ? 1 : skg_passes_choose(&request, side);
+    return alone ? 1 : (frames > 1 ? skg_frames_choose : skg_passes_choose)(&request, side);
 }
 
 /* The raster that a pass calls for. */
 static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine *machine, int64_t number,
-                                    const skg_pass *pass) {
+                                    int64_t frames, const skg_pass *pass) {
     skg_raster_options options = {
         .kernels = pass->kernels,
         .strategy = recipe->strategy,
@@ -43,21 +48,36 @@ static skg_raster_options raster_of(const skg_recipe *recipe, const skg_machine 
         .planes = pass->planes,
         .triangles = machine->geometry.triangles,
     };
-    options.passes = passes_together(recipe, machine, number, pass, &options.side);
+    options.passes = passes_together(recipe, machine, number, frames, pass, &options.side);
     return options;
 }
 
-/* Pins the raster that a pass calls for, and reports its layout. alone: 1: the pass is drawn by itself. */
-static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, int64_t number, skg_pass *pass,
-                             int alone, skg_outcome *outcome) {
+/* Pins a raster for a pass, and reports its layout. */
+static skg_status pin(skg_machine *machine, const skg_raster_options *options, skg_pass *pass,
+                      skg_outcome *outcome) {
     skg_plan_report *report = &outcome->report;
-    skg_raster_options options = raster_of(recipe, machine, number, pass);
-    if (alone) options.passes = options.side = 1;
-    SKG_TRY(skg_raster_cache_pin(&machine->rasters, &options, &pass->main));
-    outcome->side = options.passes > 1 ? options.side : 0;
+    SKG_TRY(skg_raster_cache_pin(&machine->rasters, options, &pass->main));
     report->plane_bits = pass->scale.bits;
     skg_raster_tiles(pass->main.raster, &report->tile_columns, &report->tile_rows, &report->tiles);
     return SKG_OK;
+}
+
+/* Pins the raster that a pass calls for. alone: 1: the pass is drawn by itself. */
+static skg_status pin_raster(const skg_recipe *recipe, skg_machine *machine, int64_t number, skg_pass *pass,
+                             int alone, skg_outcome *outcome) {
+    skg_raster_options options = raster_of(recipe, machine, number, 1, pass);
+    if (alone) options.passes = options.side = 1;
+    SKG_TRY(pin(machine, &options, pass, outcome));
+    outcome->side = options.passes > 1 ? options.side : 0;
+    return SKG_OK;
+}
+
+skg_status skg_frame_pin_together(const skg_job *job, skg_pass *pass) {
+    const skg_raster_options options =
+        raster_of(job->recipe, job->machine, skg_frame_first_pass(job->recipe), job->count, pass);
+    return options.passes > 1 && options.side == job->together
+               ? pin(job->machine, &options, pass, job->outcome)
+               : SKG_OK;
 }
 
 /* The first pass of an image of the recipe's view. */
@@ -68,7 +88,7 @@ static skg_status fill_first(const skg_recipe *recipe, const skg_machine *machin
 
 /* The programs of one pass. */
 static skg_status expect_pass(const skg_recipe *recipe, const skg_machine *machine, const skg_pass *pass) {
-    const skg_raster_options options = raster_of(recipe, machine, skg_frame_first_pass(recipe), pass);
+    const skg_raster_options options = raster_of(recipe, machine, skg_frame_first_pass(recipe), 1, pass);
     const skg_sums sums = {.mixed = pass->mix.sums ? recipe->mixed : 0, .fine = pass->fine};
     skg_attenuation shape;
     skg_image_place place = {0};
@@ -98,14 +118,6 @@ skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg
     return status;
 }
 
-/* Uploads the positions of meshes that have changed. After the submission they are no longer looked at. */
-static skg_status update_meshes(skg_job *job) {
-    const skg_recipe *recipe = job->recipe;
-    if (job->then.meshes) return SKG_OK;
-    SKG_TRY(skg_plan_meshes_check(&recipe->meshes, recipe->scene));
-    return skg_geometry_update(&job->machine->geometry, recipe->meshes.meshes, &job->staging);
-}
-
 /* Enqueues the raster of all parts, and what priorities and leaky parts change in its sums. */
 static skg_status draw_sums(skg_job *job, const skg_frame_work *work, const skg_pass *pass) {
     skg_machine *machine = job->machine;
@@ -119,7 +131,7 @@ static skg_status draw_sums(skg_job *job, const skg_frame_work *work, const skg_
                                    .tile = recipe->options.tile};
     cl_int *extents = NULL;
     const cl_kernel projection = skg_raster_projection(pass->main.raster);
-    SKG_TRY(update_meshes(job));
+    SKG_TRY(skg_frame_update_meshes(job));
     SKG_TRY(skg_geometry_weigh(machine->context, &machine->geometry, &pass->camera, pass->parts,
                                pass->scale.scale));
     if (!work->reuses || !skg_geometry_take_projection(&machine->geometry, projection))
@@ -203,62 +215,28 @@ static skg_status attenuate_pass(skg_job *job, const skg_frame_work *work, int64
     if (work->shows == SKG_OUTPUT_VARIANCE && recipe->options.noise)
         attenuation.weights = attenuation.variances;
     memcpy(attenuation.window, pass->window, sizeof attenuation.window);
-    if (number < 0 ||
-        number + 1 == skg_samples_passes(&recipe->samples)) /* the last pass's count is reported */
+    const int is_last = number < 0 || number + 1 == skg_samples_passes(&recipe->samples);
+    if (is_last && !work->followed && !job->uncounted) /* the last pass's count is reported */
         SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
                                        sizeof none, 0, sizeof none, 0, NULL, NULL));
+    job->uncounted = 0;
     skg_sums sums;
     SKG_TRY(skg_frame_sums(job, pass, place_of_pass, &sums));
     return skg_attenuate(machine->attenuator, &sums, &pass->camera, &attenuation, factor, share, least,
                          machine->negative.memory, &noise, &place, &job->staging.log);
 }
 
-/* Passes that wait to be drawn together: `count` of them, from number `first` on, in a raster of `room`. */
-typedef struct {
-    skg_pass *passes;
-    int32_t count, room;
-    int64_t first;
-    skg_pass_tables tables;
-} gathered;
-
-/* Enqueues the passes that wait, from the vertices to their shares of the image. */
-static skg_status draw_gathered(skg_job *job, const skg_frame_work *work, gathered *g) {
-    skg_machine *machine = job->machine;
-    skg_status status = SKG_OK;
-    if (g->count) status = skg_geometry_send_passes(machine->context, &machine->geometry, &g->tables);
-    if (g->count && status == SKG_OK)
-        status =
-            skg_raster_run_passes(g->passes->main.raster, &machine->geometry, g->count, &job->staging.log);
-    for (int32_t p = 0; p < g->count; p++) {
-        if (status == SKG_OK) status = attenuate_pass(job, work, g->first + p, &g->passes[p], p);
-        skg_pass_release(&g->passes[p]);
-    }
-    g->count = 0;
+/* Enqueues the passes that wait, from the vertices to their shares of the image. first: number of the first of them */
+static skg_status draw_gathered(skg_job *job, const skg_frame_work *work, int64_t first, skg_waiting *g) {
+    skg_status status = skg_waiting_draw(job, g, NULL);
+    for (int32_t p = 0; p < g->count && status == SKG_OK; p++)
+        status = attenuate_pass(job, work, first + p, &g->passes[p], p);
+    skg_waiting_empty(g);
     return status;
 }
 
-/* Adds a pass to those that wait, which takes it over. */
-static skg_status gather(skg_job *job, const skg_pass *pass, int64_t number, gathered *g) {
-    skg_machine *machine = job->machine;
-    cl_int *extents = NULL;
-    if (g->count == 0) {
-        g->room = skg_raster_passes(pass->main.raster);
-        g->first = number;
-        g->tables = (skg_pass_tables){0};
-        SKG_TRY(skg_realloc(g->room, sizeof *g->passes, "passes", &g->passes));
-    }
-    SKG_TRY(update_meshes(job));
-    SKG_TRY(skg_geometry_weigh_pass(&machine->geometry, &pass->camera, pass->parts, pass->scale.scale,
-                                    g->room, &g->tables, &job->staging));
-    SKG_TRY(skg_staging_take(&job->staging, 4 * pass->planes, sizeof *extents, "extents", &extents));
-    skg_pass_extents(pass, extents);
-    SKG_TRY(skg_raster_place_pass(pass->main.raster, g->count, extents, &job->staging.log));
-    g->passes[g->count++] = *pass;
-    return SKG_OK;
-}
-
 /* One pass: from the vertices to its share of the image, or to those that wait. */
-static skg_status draw_pass(skg_job *job, const skg_frame_work *work, int64_t number, gathered *g) {
+static skg_status draw_pass(skg_job *job, const skg_frame_work *work, int64_t number, skg_waiting *g) {
     skg_machine *machine = job->machine;
     skg_pass pass;
     skg_status status = SKG_OK;
@@ -267,9 +245,9 @@ static skg_status draw_pass(skg_job *job, const skg_frame_work *work, int64_t nu
     skg_raster_pin_copy(&pass.main, &job->main);
     skg_warn_unseen(machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, job->outcome);
     if (g->count && (g->count == g->room || g->passes->main.raster != pass.main.raster))
-        SKG_TRY_CLEANUP(draw_gathered(job, work, g));
+        SKG_TRY_CLEANUP(draw_gathered(job, work, number - g->count, g));
     if (skg_raster_passes(pass.main.raster) > 1) {
-        SKG_TRY_CLEANUP(gather(job, &pass, number, g));
+        SKG_TRY_CLEANUP(skg_waiting_add(job, &pass, g));
         return SKG_OK;
     }
     SKG_TRY_CLEANUP(draw_sums(job, work, &pass));
@@ -280,14 +258,14 @@ cleanup:
 }
 
 skg_status skg_frame_draw_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end) {
-    gathered g = {0};
+    skg_waiting g = {.staging = &job->staging};
     skg_status status = SKG_OK;
     SKG_ASSERT(-1 <= first && first < end);
+    if (work->drawn) return attenuate_pass(job, work, first, work->drawn, work->drawn_place);
     for (int64_t p = first; p < end; p++) SKG_TRY_CLEANUP(draw_pass(job, work, p, &g));
-    status = draw_gathered(job, work, &g);
+    status = draw_gathered(job, work, end - g.count, &g);
 cleanup:
-    for (int32_t p = 0; p < g.count; p++) skg_pass_release(&g.passes[p]);
-    skg_free(&g.passes);
+    skg_waiting_release(&g);
     return status;
 }
 

@@ -5,6 +5,8 @@
 #include "frame/quiet.h"
 #include "plan/decisions.h"
 
+#include <string.h>
+
 skg_status skg_plan_retain(skg_plan *plan) {
     SKG_NEEDS(plan);
     skg_ref(&plan->refs);
@@ -39,6 +41,7 @@ static skg_status move(skg_plan *plan, const skg_view *view) {
     skg_recipe *recipe = NULL;
     skg_view_init(&moved);
     SKG_TRY(skg_struct_read(view, "skg_view", &moved, sizeof moved));
+    if (memcmp(&moved, &plan->recipe->view, sizeof moved) == 0) return SKG_OK;
     SKG_TRY(skg_decide_view(plan->recipe, &moved));
     SKG_TRY(skg_recipe_copy(plan->recipe, &recipe));
     recipe->view = moved;

@@ -23,6 +23,8 @@ static uint64_t tests_of(const skg_plan *plan, const skg_view *view) {
 
 skg_status skg_plan_self_test(const skg_plan *plan, const skg_view *view) {
     const uint64_t tests = tests_of(plan, view);
+    skg_device *device = plan->context->device;
+    if (!device->self_testing) device->planes = plan->recipe->model.planes;
     for (int test = 0; test < SKG_SELF_TESTS; test++)
         if (tests >> test & 1) SKG_TRY(skg_self_test_need(plan->context, (skg_self_test)test));
     return SKG_OK;

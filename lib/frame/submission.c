@@ -21,7 +21,9 @@ skg_status skg_frame_render_output(skg_job *job, const skg_frame_output *output,
     SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
     SKG_TRY(skg_frame_render(job, work));
     if (work->step + 1 < skg_frame_steps(job->recipe, output->to.kind, work->each)) return SKG_OK;
-    return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log);
+    if (work->end && *work->end) clReleaseEvent(*work->end);
+    if (work->end) *work->end = NULL;
+    return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log, work->end);
 }
 
 /* Enqueues a step of a frame, or all its outputs. What is reported of a frame is that of its last output: images come last. */
@@ -49,24 +51,17 @@ static skg_status fail_cancelled(const skg_job *job) {
 
 const skg_job_kind skg_job_images = {.step = render_frame, .cancelled = fail_cancelled};
 
-static skg_status submit_step(skg_job *job, const skg_frame *frames, const double **poses) {
-    skg_machine *machine = job->machine;
-    const int64_t index = job->enqueued / job->steps, step = job->enqueued % job->steps;
-    int32_t *bad_vertex = job->results.bad_vertex + index;
+/* The next step, of a frame that is drawn by itself. */
+static skg_status submit_alone(skg_job *job, const skg_frame *frames, const double **poses, int64_t end) {
+    const int64_t index = job->enqueued / job->steps;
     skg_view view;
     skg_frame frame;
     skg_frame_work work = {.view = &view, .poses = poses, .frame = &frame};
     SKG_TRY(skg_held_frame_read(job, frames, index, &frame, &view, poses, &work.noise));
-    if (step == 0 && !job->kind->begin) /* what came before was projected for the first step, too */
-        SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
-    SKG_TRY(job->kind->step(job, index, step, &work));
-    if (step + 1 == job->steps)
-        SKG_TRY(
-            skg_staging_read(&job->staging, machine->geometry.bad.memory, sizeof *bad_vertex, bad_vertex));
-    SKG_CL_TRY(
-        clEnqueueMarkerWithWaitList(machine->context->device->queue, 0, NULL, &job->ends[job->enqueued]));
-    job->enqueued++;
-    return SKG_OK;
+    if (job->enqueued % job->steps == 0 &&
+        !job->kind->begin) /* what came before was projected for the first step, too */
+        skg_geometry_begin_frame(&job->machine->geometry, index, 0);
+    return skg_submit_step(job, end, &work);
 }
 
 /* Enqueues steps until number `end`. */
@@ -75,8 +70,12 @@ static skg_status submit_steps(skg_job *job, const skg_frame *frames, int64_t en
     skg_status status = SKG_OK;
     if (job->enqueued >= end) return SKG_OK;
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
-    while (status == SKG_OK && job->enqueued < end && !skg_job_is_cancelled(job))
-        status = submit_step(job, frames, poses);
+    while (status == SKG_OK && job->enqueued < end && !skg_job_is_cancelled(job)) {
+        int64_t submitted = 0;
+        if (job->together) status = skg_together_submit(job, frames, poses, end, &submitted);
+        if (submitted == 0 && job->enqueued == 0) job->together = 0; /* nor will others be */
+        if (status == SKG_OK && submitted == 0) status = submit_alone(job, frames, poses, end);
+    }
     skg_free(&poses);
     return status;
 }
@@ -113,6 +112,13 @@ static int64_t steps_ahead(const skg_job *job) {
     return frames > 2 ? (frames < (double)job->count ? (int64_t)frames : job->count) : 2;
 }
 
+/* How many frames are drawn side by side, if the device is given all of them at once, or two launches' worth; 0: each by itself. */
+static int32_t together_of(const skg_job *job, int64_t ahead) {
+    const int64_t all = skg_job_steps(job), enough = 2 * skg_together_most(job->machine);
+    if (job->kind->begin || job->each || job->output_count != 1 || (ahead < all && ahead < enough)) return 0;
+    return skg_together_side(job->recipe, job->machine, job->count, &job->outputs->to);
+}
+
 /* Divides long frames of many passes into steps. Passes that a raster draws together (skg_passes_choose) stay together. */
 static skg_status divide(skg_job *job) {
     const skg_recipe *recipe = job->recipe;
@@ -142,10 +148,26 @@ static int is_for_later(const skg_job *job) {
 
 /* --- jobs */
 
-static skg_status clear_counters(const skg_machine *machine) {
+static skg_status clear_counters(skg_job *job) {
     const cl_int none = 0;
+    skg_machine *machine = job->machine;
     SKG_CL_TRY(clEnqueueFillBuffer(machine->context->device->queue, machine->negative.memory, &none,
                                    sizeof none, 0, 4 * sizeof none, 0, NULL, NULL));
+    job->uncounted = 1;
+    return job->kind->begin ? SKG_OK
+                            : skg_geometry_clear_bad(machine->context, &machine->geometry, job->count);
+}
+
+/* Enqueues the read of the bad vertices of all frames that were enqueued. */
+static skg_status read_bad(skg_job *job) {
+    const skg_geometry *geometry = &job->machine->geometry;
+    const int64_t frames = job->results.frames;
+    const size_t first =
+        job->kind->begin ? (size_t)geometry->frame : 0; /* its frame may be taken over from another job */
+    if (frames == 0) return SKG_OK;
+    SKG_CL_TRY(clEnqueueReadBuffer(job->machine->context->device->queue, geometry->bad.memory, CL_FALSE,
+                                   first * sizeof(cl_int), (size_t)frames * sizeof(cl_int),
+                                   job->results.bad_vertex, 0, NULL, NULL));
     return SKG_OK;
 }
 
@@ -177,12 +199,12 @@ skg_status skg_submission_finish(skg_job *job) {
     if (machine->context->held == job) machine->context->held = NULL;
     if (job->last) return SKG_OK;
     results->frames = job->enqueued / job->steps;
-    SKG_TRY(skg_staging_read(&job->staging, machine->negative.memory, 4 * sizeof *results->negative,
-                             results->negative));
+    SKG_TRY(read_bad(job));
     if (job->main.raster) /* scatter alone has none */
         SKG_TRY(skg_raster_read_listed(job->main.raster, results->listed));
     SKG_TRY(read_outside(job));
-    SKG_CL_TRY(clEnqueueMarkerWithWaitList(queue, 0, NULL, &job->last));
+    SKG_CL_TRY(clEnqueueReadBuffer(queue, machine->negative.memory, CL_FALSE, 0,
+                                   4 * sizeof *results->negative, results->negative, 0, NULL, &job->last));
     return skg_queue_flush(machine->context);
 }
 
@@ -206,7 +228,8 @@ skg_status skg_frames_submit(skg_job **made, const skg_frame *frames, int at_onc
     for (int64_t o = 0; o < job->output_count && !begins && !job->each; o++)
         skg_frame_output_share(&job->outputs[o], &job->recipe->view, job->machine, job->count);
     const int64_t all = skg_job_steps(job), ahead = is_whole ? all : begins ? 0 : steps_ahead(job);
-    SKG_TRY_CLEANUP(clear_counters(job->machine));
+    SKG_TRY_CLEANUP(clear_counters(job));
+    job->together = together_of(job, ahead);
     SKG_TRY_CLEANUP(submit_steps(job, frames, ahead < all ? ahead : all));
     if (job->enqueued == all) {
         status = skg_submission_finish(job);
@@ -234,8 +257,11 @@ static void hand_over(skg_job *job, int64_t end) {
     if (job->failure != SKG_OK) (void)skg_copy_text(skg_last_error(), &job->sentence);
 }
 
+/* Frames that are drawn together wait until there are as many as that. */
 void skg_submission_continue(skg_job *job) {
-    hand_over(job, job->done + steps_ahead(job));
+    const int64_t all = skg_job_steps(job), end = job->done + steps_ahead(job);
+    if (job->together && end < all && end - job->enqueued < skg_job_room(job)) return;
+    hand_over(job, end);
 }
 
 void skg_submission_flush(const skg_context *context) {

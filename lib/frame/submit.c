@@ -29,6 +29,17 @@ static skg_status test_outputs(const skg_plan *plan, int64_t count, const skg_ou
     return SKG_OK;
 }
 
+/* The self-test of frames that are drawn together. */
+static skg_status test_together(const skg_plan *plan, int64_t count, int64_t output_count,
+                                const skg_output *outputs) {
+    skg_output output = {0};
+    if (output_count != 1 || !outputs) return SKG_OK;
+    SKG_TRY(skg_struct_read(outputs, "skg_output", &output, sizeof output));
+    const int32_t side = skg_together_side(plan->recipe, &plan->machine, count, &output);
+    if (side == 0) return SKG_OK;
+    return skg_self_test_need(plan->context, side > 1 ? SKG_SELF_TEST_SIDE : SKG_SELF_TEST_PASSES);
+}
+
 /* call: the name of the public function. events: NULL: none. */
 static skg_status submit(const char *call, skg_plan *plan, int64_t count, const skg_frame *frames,
                          int64_t output_count, const skg_output *outputs, const skg_caller_events *events,
@@ -39,6 +50,7 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
     SKG_TRY(test_outputs(plan, output_count, outputs));
     if (events) SKG_TRY(skg_caller_events_check(call, events));
     SKG_TRY(skg_plan_renew(plan));
+    SKG_TRY(test_together(plan, count, output_count, outputs));
     SKG_TRY(skg_job_create(call, &skg_job_images, plan->recipe, &plan->machine, &plan->outcome, count,
                            output_count, outputs, &made));
     made->scatterer = &plan->scatterer;

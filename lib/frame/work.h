@@ -21,6 +21,12 @@ typedef struct {
     int64_t step, each;   /* of an image: which step is made, of so many passes; each: 0: all its passes */
     skg_noise_args noise; /* its key */
     skg_image_place place;
+    const struct skg_pass *
+        drawn; /* its sums, which were drawn together with those of other frames; NULL: they are to be drawn */
+    int32_t drawn_place; /* of that pass, among those of its raster */
+    cl_event *end;       /* gets the event of the frame's last command, or NULL; NULL: is not asked for */
+    int32_t
+        followed; /* 1: another frame of the job follows at once, so that nobody reads this one's count of negative exponents */
 } skg_frame_work;
 
 /* --- The outputs of a submission: what is computed, and where it goes */
@@ -53,8 +59,10 @@ static inline int skg_output_is_scatter(int32_t kind) {
 skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view *view, skg_machine *machine,
                                   int64_t frame, skg_image_place *place);
 
-/* Enqueues the read of an output into the caller's host memory. Does nothing if it stays on the device. */
+/* Enqueues the read of an output into the caller's host memory. Does nothing if it stays on the device. end: gets the event of the
+ * read, if it is one command; NULL: is not asked for */
 skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_view *view,
-                                      const skg_machine *machine, int64_t frame, skg_stage_log *log);
+                                      const skg_machine *machine, int64_t frame, skg_stage_log *log,
+                                      cl_event *end);
 
 #endif

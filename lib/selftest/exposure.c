@@ -136,7 +136,7 @@ skg_status skg_self_test_heel(const skg_self_test_scene *scene, int64_t row, int
     const skg_heel_tube tube = {
         .anode = heel->anode, .kvp = heel->kvp, .angle_deg = heel->angle_deg, .bin_kev = heel->bin_kev};
     const double face = heel->angle_deg * SKG_PI / 180, down = scene->view.centre[2] - scene->view.source[2];
-    double x, y, losses[SKG_SELF_TEST_ENERGIES_MAX];
+    double x, y, losses[SKG_SELF_TEST_ENERGIES_MAX] = {0};
     const double length = place_of(&scene->view, row, column, &x, &y);
     const double toward =
         (x * heel->direction[0] + y * heel->direction[1]) / hypot(heel->direction[0], heel->direction[1]);

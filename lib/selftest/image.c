@@ -87,7 +87,7 @@ static double mean_intensity(test_run *run, const skg_samples *samples, int row,
     skg_view *view = &run->scene.view;
     const skg_view point = *view;
     const int p = row * (int)view->columns + column, side = run->scene.options.supersampling;
-    double net[2], shift[2], sum = 0;
+    double net[SKG_SELF_TEST_PARTS], shift[2], sum = 0;
     for (int64_t s = 0; s < samples->spot_count; s++) {
         if (run->scene.options.spot) skg_samples_at(samples, &point, s, view->source, shift);
         for (int k = 0; k < side * side; k++) {
@@ -103,7 +103,8 @@ static double mean_intensity(test_run *run, const skg_samples *samples, int row,
 static skg_status expect(test_run *run) {
     const skg_self_test number = run->scene.number;
     const int columns = (int)run->scene.view.columns;
-    double shares[SKG_SELF_TEST_ENERGIES_MAX] = {1, 1, 1};
+    double shares[SKG_SELF_TEST_ENERGIES_MAX];
+    for (int e = 0; e < SKG_SELF_TEST_ENERGIES_MAX; e++) shares[e] = 1;
     skg_samples samples;
     SKG_TRY(skg_samples_make(run->scene.options.spot, 1, &samples));
     for (int p = 0; p < run->pixels; p++) {

@@ -4,10 +4,14 @@
 #include <math.h>
 #include <stdio.h>
 
-/* Attenuation of the two parts in 1/cm at the energies of the beam, in keV. */
-enum { ENERGIES = SKG_SELF_TEST_ENERGIES_MAX };
-static const double energies[ENERGIES] = {40, 60, 90}, photons[ENERGIES] = {1000, 2000, 500};
-static const double attenuation[2][ENERGIES] = {{0.27, 0.2, 0.17}, {1.28, 0.6, 0.34}};
+/* Attenuation of the parts in 1/cm at the energies of the beam, in keV: numbers of which no part's follow from those of others. A scene
+ * has as many energies as parts, but at least LEAST. */
+enum { ENERGIES = SKG_SELF_TEST_ENERGIES_MAX, PARTS = SKG_SELF_TEST_PARTS, LEAST = 3 };
+static const double energies[ENERGIES] = {40, 60, 90, 110, 130, 150},
+                    photons[ENERGIES] = {1000, 2000, 500, 700, 300, 400};
+static const double attenuation[PARTS][ENERGIES] = {
+    {0.27, 0.2, 0.17, 0.16, 0.15, 0.14}, {1.28, 0.6, 0.34, 0.28, 0.24, 0.22}, {0.9, 0.8, 0.3, 0.9, 0.2, 0.4},
+    {0.3, 0.9, 0.8, 0.2, 0.7, 0.1},      {0.8, 0.1, 0.9, 0.3, 0.1, 0.9},      {0.2, 0.7, 0.1, 0.8, 0.9, 0.3}};
 
 /* Lengths in single precision: numerics.md has 3e-5 of the longest path; three times that for the corners of the boxes,
  * which a mesh keeps as floats. In double precision the latter alone. In half precision depths have 11 bits over the
@@ -40,13 +44,25 @@ static int is_nested(const skg_self_test_scene *scene) {
     return scene->number == SKG_SELF_TEST_DENSITIES;
 }
 
-static int has_two_parts(const skg_self_test_scene *scene) {
-    return scene->number == SKG_SELF_TEST_ENERGIES || has_priority(scene) || is_nested(scene) ||
-           has_volume(scene);
+/* As many parts as the plan that asks has planes, if a program for them has no more than these. */
+static int32_t count_parts(const skg_self_test_scene *scene, int32_t planes) {
+    if (scene->number == SKG_SELF_TEST_ENERGIES) return planes < 2 || planes > PARTS ? 2 : planes;
+    return 1 + (has_priority(scene) || is_nested(scene) || has_volume(scene));
 }
 
-static int has_energies(const skg_self_test_scene *scene) {
-    return scene->number == SKG_SELF_TEST_ENERGIES || scene->number == SKG_SELF_TEST_HEEL;
+/* The boxes of part 0, before those that are parts of their own. */
+static int boxes_of_first(const skg_self_test_scene *scene) {
+    return scene->parts > 2 ? SKG_SELF_TEST_BOXES + 2 - scene->parts : SKG_SELF_TEST_BOXES;
+}
+
+/* The part of a box: the last one is part 1. */
+static int part_of(const skg_self_test_scene *scene, int box) {
+    return box < boxes_of_first(scene) ? 0 : SKG_SELF_TEST_BOXES + 1 - box;
+}
+
+static int count_energies(const skg_self_test_scene *scene) {
+    const int several = scene->number == SKG_SELF_TEST_ENERGIES || scene->number == SKG_SELF_TEST_HEEL;
+    return !several ? 1 : scene->parts > LEAST ? scene->parts : LEAST;
 }
 
 /* The last pixels of a row that fill no vector, and vectors that end before those that are read with them, have code paths of
@@ -96,7 +112,8 @@ static skg_status add_volume(skg_self_test_scene *scene, skg_part *given) {
 }
 
 static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int part) {
-    const skg_box *first = part == 0 ? scene->boxes : scene->boxes + SKG_SELF_TEST_BOXES;
+    const skg_box *first = part == 0 ? scene->boxes : scene->boxes + SKG_SELF_TEST_BOXES + 1 - part;
+    char label[16] = "boxes";
     skg_box elsewhere[SKG_SELF_TEST_BOXES];
     skg_part given;
     skg_part_init(&given);
@@ -104,11 +121,12 @@ static skg_status add_part(skg_context *context, skg_self_test_scene *scene, int
         misplace(scene, elsewhere);
         first = elsewhere;
     }
-    given.label = part == 0 ? "boxes" : "box";
+    if (part > 0) snprintf(label, sizeof label, "box %d", part);
+    given.label = label;
     given.priority = has_priority(scene) ? part : has_volume(scene) ? 1 - part : 0;
     if (part == 1 && is_nested(scene)) given.inside = 0;
     if (part == 1 && has_volume(scene)) return add_volume(scene, &given);
-    skg_status status = skg_boxes_mesh(context, first, part == 0 ? SKG_SELF_TEST_BOXES : 1,
+    skg_status status = skg_boxes_mesh(context, first, part == 0 ? boxes_of_first(scene) : 1,
                                        part == 0 && scene->number == SKG_SELF_TEST_LEAKY, &given.mesh);
     if (status == SKG_OK)
         status =
@@ -181,13 +199,14 @@ skg_status skg_self_test_scene_create(skg_context *context, skg_self_test number
     view->source[2] = -1000;
     view->centre[2] = 200;
     view->column_step[0] = view->row_step[1] = 100.0 / (double)pixels;
+    scene->parts = count_parts(scene, context->device->planes);
     place_boxes(scene);
     choose_spot(context, scene);
     choose_options(scene);
     SKG_TRY(skg_scene_create(context, &scene->scene));
-    SKG_TRY(add_part(context, scene, 0));
-    if (has_two_parts(scene)) SKG_TRY(add_part(context, scene, 1));
-    if (has_energies(scene)) return skg_spectrum_create_bins(ENERGIES, energies, photons, &scene->beam);
+    for (int p = 0; p < scene->parts; p++) SKG_TRY(add_part(context, scene, p));
+    const int bins = count_energies(scene);
+    if (bins > 1) return skg_spectrum_create_bins(bins, energies, photons, &scene->beam);
     return skg_spectrum_create_mono(energies[0], photons[0], &scene->beam);
 }
 
@@ -209,14 +228,16 @@ void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double 
         distance += (pixel[k] - view->source[k]) * (pixel[k] - view->source[k]);
     }
     distance = sqrt(distance);
-    const int other = has_two_parts(scene) &&
+    const int other = scene->parts > 1 &&
                       skg_box_crossed(&scene->boxes[SKG_SELF_TEST_BOXES], view->source, pixel, &from, &to);
     *surface = net[0] = net[1] = 0;
+    for (int p = 2; p < scene->parts; p++) net[p] = 0;
     if (other) net[1] = (to - from) * distance;
     for (int b = 0; b < SKG_SELF_TEST_BOXES; b++) {
         if (!skg_box_crossed(&scene->boxes[b], view->source, pixel, &enters, &leaves)) continue;
-        *surface += (leaves - enters) * distance;
-        net[0] += (leaves - enters) * distance;
+        const int part = part_of(scene, b);
+        if (part == 0) *surface += (leaves - enters) * distance;
+        net[part] += (leaves - enters) * distance;
         if (other && has_priority(scene)) /* part 1 displaces part 0 */
             net[0] -= fmax(0, fmin(leaves, to) - fmax(enters, from)) * distance;
     }
@@ -227,13 +248,14 @@ void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double 
 
 double skg_self_test_intensity(const skg_self_test_scene *scene, const double *shares, const double *net,
                                double *open) {
-    const int bins = has_energies(scene) ? ENERGIES : 1;
+    const int bins = count_energies(scene);
     double shown = 0;
     *open = 0;
     for (int e = 0; e < bins; e++) {
+        double exponent = 0.1 * (attenuation[0][e] * net[0] + attenuation[1][e] * net[1]);
+        for (int p = 2; p < scene->parts; p++) exponent += 0.1 * attenuation[p][e] * net[p];
         *open += photons[e] * energies[e];
-        shown += shares[e] * photons[e] * energies[e] *
-                 exp(-0.1 * (attenuation[0][e] * net[0] + attenuation[1][e] * net[1]));
+        shown += shares[e] * photons[e] * energies[e] * exp(-exponent);
     }
     return shown;
 }

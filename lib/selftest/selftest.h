@@ -7,6 +7,7 @@
 
 #include "device/device.h"
 #include "device/self_tests.h"
+#include "skg_shared.h"
 
 #include <skiagraph/mesh.h>
 #include <skiagraph/options.h>
@@ -38,8 +39,9 @@ int skg_box_crossed(const skg_box *box, const double *from, const double *to, do
 
 enum {
     SKG_SELF_TEST_BOXES = 25,
+    SKG_SELF_TEST_PARTS = SKG_FEW_PLANES, /* at most */
     SKG_SELF_TEST_PIXELS = 96,
-    SKG_SELF_TEST_ENERGIES_MAX = 3,
+    SKG_SELF_TEST_ENERGIES_MAX = SKG_SELF_TEST_PARTS,
     SKG_SELF_TEST_BOWTIE_ROWS = 4,
     SKG_SELF_TEST_DEPTH_COUNT = 3,
     SKG_SELF_TEST_FREQUENCIES = 65
@@ -54,7 +56,10 @@ skg_tolerance skg_self_test_tolerance(skg_self_test number);
 
 typedef struct {
     skg_self_test number;
-    skg_box boxes[SKG_SELF_TEST_BOXES + 1]; /* the last one is a part of its own, if there are two */
+    int32_t parts;
+    skg_box
+        boxes[SKG_SELF_TEST_BOXES +
+              1]; /* the last one is a part of its own, if there are two; of more, those before it are, too */
     skg_detector_blur blur;
     skg_bowtie bowtie;
     double angles[SKG_SELF_TEST_BOWTIE_ROWS]; /* of the bow-tie, degrees */
@@ -88,7 +93,7 @@ skg_status skg_self_test_volume(const skg_box *box, skg_volume **volume);
 double skg_self_test_cells(const skg_self_test_scene *scene, const double *source, const double *pixel);
 
 /* The path lengths in mm of the ray to a place on the detector, in pixels: of part 0 within its surface, and what each part
- * adds to the image. */
+ * adds to the image, at least two. */
 void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double column, double *surface,
                            double *net);
 

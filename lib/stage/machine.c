@@ -1,7 +1,26 @@
 /* What a plan has on the device: released, and counted in bytes. */
 #include "stage/machine.h"
 
+/* Empties a slot that the device reads no more, or never will. */
+static skg_status empty(skg_together_slot *slot) {
+    const cl_int code = slot->read ? clWaitForEvents(1, &slot->read) : CL_SUCCESS;
+    if (slot->read) clReleaseEvent(slot->read);
+    slot->read = NULL;
+    skg_staging_release(&slot->staging);
+    SKG_CL_TRY(code);
+    return SKG_OK;
+}
+
+skg_status skg_machine_slot_take(skg_machine *machine, int64_t frames, skg_together_slot **slot) {
+    const skg_geometry *geometry = &machine->geometry;
+    const int64_t bytes = frames * geometry->parts * (int64_t)skg_geometry_entry_size(geometry);
+    *slot = &machine->together[machine->together_next++ % skg_table_slots(bytes)];
+    (*slot)->staging.context = machine->context;
+    return empty(*slot);
+}
+
 void skg_machine_release(skg_machine *machine) {
+    for (int i = 0; i < SKG_TABLE_SLOTS; i++) (void)empty(&machine->together[i]);
     skg_raster_cache_release(&machine->rasters);
     skg_geometry_release(&machine->geometry);
     skg_placement_release(&machine->placement);

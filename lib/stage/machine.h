@@ -19,6 +19,12 @@ typedef struct {
     int64_t (*bytes)(const void *memory); /* on the device */
 } skg_attachment;
 
+/* Host memory of frames that are drawn together, which is taken again when the device has read it: as many times can be enqueued ahead. */
+typedef struct {
+    skg_staging staging;
+    cl_event read; /* NULL: nothing is enqueued that reads it */
+} skg_together_slot;
+
 typedef struct {
     skg_context *context;
     skg_geometry geometry;
@@ -39,11 +45,16 @@ typedef struct {
     skg_buffer
         negative; /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
     skg_pass_memory pass;
+    skg_together_slot together[SKG_TABLE_SLOTS];
+    int64_t together_next; /* how often one was taken */
     skg_raster_cache rasters;
     skg_attachment attached;
 } skg_machine;
 
 void skg_machine_release(skg_machine *machine);
+
+/* The next slot, empty, for so many frames. Waits until the device has read what it held. */
+skg_status skg_machine_slot_take(skg_machine *machine, int64_t frames, skg_together_slot **slot);
 
 /* Bytes on the device, but for small tables. */
 int64_t skg_machine_bytes(const skg_machine *machine);

@@ -30,7 +30,7 @@ typedef struct {
 skg_status skg_pass_memory_create(int64_t parts, int64_t columns, int64_t rows, skg_pass_memory *memory);
 void skg_pass_memory_release(skg_pass_memory *memory);
 
-typedef struct {
+typedef struct skg_pass {
     const skg_scene *scene; /* borrowed, as the frame's caller keeps it */
     skg_camera camera;
     skg_kernel_options kernels;

@@ -11,12 +11,29 @@ static size_t real_size(const skg_geometry *geometry) {
     return skg_geometry_is_double(geometry) ? sizeof(double) : sizeof(float);
 }
 
-skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry) {
+/* Enqueues that no vertex was bad in the frames from number `first` on. */
+static skg_status fill_bad(skg_context *context, const skg_geometry *geometry, int64_t first, int64_t count) {
     const cl_int none = INT32_MAX;
-    geometry->projected_state = geometry->projections = geometry->bad_stands = 0;
-    SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->bad.memory, &none, sizeof none, 0,
-                                   sizeof none, 0, NULL, NULL));
+    SKG_CL_TRY(clEnqueueFillBuffer(context->device->queue, geometry->bad.memory, &none, sizeof none,
+                                   (size_t)first * sizeof none, (size_t)count * sizeof none, 0, NULL, NULL));
     return SKG_OK;
+}
+
+skg_status skg_geometry_clear_bad(skg_context *context, skg_geometry *geometry, int64_t frames) {
+    SKG_TRY(skg_buffer_reserve(context, &geometry->bad, frames * (int64_t)sizeof(cl_int), CL_MEM_READ_WRITE,
+                               "vertex check"));
+    return fill_bad(context, geometry, 0, frames);
+}
+
+void skg_geometry_begin_frame(skg_geometry *geometry, int64_t frame, int32_t each) {
+    geometry->projected_state = geometry->projections = geometry->bad_stands = 0;
+    geometry->frame = (int32_t)frame;
+    geometry->each = each;
+}
+
+skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry) {
+    skg_geometry_begin_frame(geometry, geometry->frame, 0);
+    return fill_bad(context, geometry, geometry->frame, 1);
 }
 
 skg_status skg_geometry_continue(skg_context *context, skg_geometry *geometry) {
@@ -129,10 +146,9 @@ cleanup:
     return status;
 }
 
-/* The copies together have 4 MiB, but there are at least four of them. */
-static int32_t count_slots(const skg_geometry *geometry) {
+int32_t skg_table_slots(int64_t bytes) {
     enum { BYTES = 1 << 22, LEAST = 4 };
-    const int64_t count = BYTES / (geometry->parts * (int64_t)skg_geometry_entry_size(geometry) + 1);
+    const int64_t count = BYTES / (bytes + 1);
     return (int32_t)(count < LEAST ? LEAST : count < SKG_TABLE_SLOTS ? count : SKG_TABLE_SLOTS);
 }
 
@@ -145,7 +161,7 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
     SKG_TRY_CLEANUP(take_over(geometry, layouts, mesh_of_part));
     SKG_TRY_CLEANUP(skg_alloc(parts + 1, sizeof *first_triangle, "part table", &first_triangle));
     SKG_TRY_CLEANUP(number(geometry, first_triangle));
-    geometry->slot_count = count_slots(geometry);
+    geometry->slot_count = skg_table_slots(parts * (int64_t)skg_geometry_entry_size(geometry));
     for (int i = 0; i < geometry->slot_count; i++) {
         skg_table_slot *slot = &geometry->slots[i];
         SKG_TRY_CLEANUP(skg_alloc(parts, skg_geometry_entry_size(geometry), "part table", &slot->entries));
@@ -165,9 +181,7 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
     SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->projected,
                                        geometry->vertices * 4 * (int64_t)real_size(geometry),
                                        CL_MEM_READ_WRITE, "projected vertices"));
-    SKG_TRY_CLEANUP(
-        skg_buffer_reserve(context, &geometry->bad, sizeof(cl_int), CL_MEM_READ_WRITE, "vertex check"));
-    SKG_TRY_CLEANUP(skg_geometry_reset_bad(context, geometry));
+    SKG_TRY_CLEANUP(skg_geometry_clear_bad(context, geometry, 1));
 cleanup:
     skg_free(&first_triangle);
     if (status != SKG_OK) skg_geometry_release(geometry);
@@ -204,6 +218,7 @@ skg_status skg_geometry_project(skg_context *context, skg_geometry *geometry, cl
         SKG_ARGUMENT(PROJECT, vertices, geometry->offsets.memory),
         SKG_ARGUMENT(PROJECT, projected, geometry->projected.memory),
         SKG_ARGUMENT(PROJECT, bad_vertex, geometry->bad.memory),
+        SKG_ARGUMENT(PROJECT, frame, geometry->frame),
     };
     const int on_gpu = context->device->info.gpu;
     const int64_t run = on_gpu ? 1 : SKG_CPU_RUN;

@@ -41,8 +41,14 @@ skg_status skg_geometry_part_vertices(skg_context *context, skg_geometry *geomet
  * says where merged vertices of a leaky mesh have parted. */
 skg_status skg_geometry_update(skg_geometry *geometry, skg_mesh *const *meshes, skg_staging *staging);
 
-/* Enqueues that no vertex was bad: frames are independent, so each begins with it. Bad vertices are found by the projection, which the
- * frame then has to make again. */
+/* Enqueues that no vertex was bad in any of a job's frames. */
+skg_status skg_geometry_clear_bad(skg_context *context, skg_geometry *geometry, int64_t frames);
+
+/* Frames are independent: what is projected from now on is this one, or with `each` this one and those that follow it. Bad vertices are
+ * found by the projection, which the frame then has to make again. */
+void skg_geometry_begin_frame(skg_geometry *geometry, int64_t frame, int32_t each);
+
+/* Enqueues that no vertex was bad in the frame, which begins anew. */
 skg_status skg_geometry_reset_bad(skg_context *context, skg_geometry *geometry);
 
 /* Enqueues one frame's projection, by its part table (skg_geometry_weigh). kernel: the raster's (skg_raster_projection) */

@@ -58,12 +58,10 @@ int skg_raster_keeps(const skg_raster *raster, const skg_geometry *geometry);
 /* How many passes a raster draws together: at least 1. */
 int32_t skg_raster_passes(const skg_raster *raster);
 
-/* Enqueues the upload of the extents of one of them, which must stay until the device has read them. */
-skg_status skg_raster_place_pass(skg_raster *raster, int32_t pass, const cl_int *extents, skg_stage_log *log);
-
-/* Enqueues the projection and the sums of the first `passes` of them, whose tables are uploaded (skg_geometry_send_passes). */
+/* Enqueues the projection and the sums of the first `passes` of them, whose tables are uploaded (skg_geometry_send_passes). placed: a 0,
+ * then the extents of each of them, [passes][planes][4]; read: the event from which on they need not stay; NULL: none. */
 skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *geometry, int32_t passes,
-                                 skg_stage_log *log);
+                                 const cl_int *placed, cl_event *read, skg_stage_log *log);
 
 /* Enqueues the verdicts on `count` count planes (int planes[], on the device) into int verdicts[first...][1 +
  * SKG_FIRST_BAD]: how many pixels have signed hits that do not cancel, then the first of them, row * columns + column,

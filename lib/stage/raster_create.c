@@ -63,8 +63,7 @@ static skg_status allocate(skg_raster *raster) {
 /* On the host the whole detector for each plane; on the device any extent, until a frame sends its own. */
 static skg_status make_extents(skg_raster *raster) {
     const skg_raster_layout *layout = &raster->layout;
-    SKG_TRY(skg_alloc(4 * (1 + (int64_t)skg_raster_passes(raster)) * layout->planes, sizeof *raster->whole,
-                      "extents", &raster->whole));
+    SKG_TRY(skg_alloc(8 * (int64_t)layout->planes, sizeof *raster->whole, "extents", &raster->whole));
     raster->sent = raster->whole + 4 * layout->planes;
     for (int32_t p = 0; p < layout->planes; p++)
         raster->whole[4 * p + 1] = layout->rows, raster->whole[4 * p + 3] = layout->stride;

@@ -1,4 +1,4 @@
-/* Several passes of a frame together: each worker claims whole passes, projection included. */
+/* Several passes of a frame, or frames, together: each worker claims whole passes, projection included. */
 #include "stage/raster_private.h"
 
 #include <skiagraph/plan.h>
@@ -27,8 +27,9 @@ static skg_status run(skg_raster *raster, const skg_geometry *g, skg_stage_log *
         SKG_ARGUMENT(RASTER_PASSES, sums, raster->sums.memory),
         SKG_ARGUMENT(RASTER_PASSES, used, raster->used.memory),
         SKG_ARGUMENT(RASTER_PASSES, bad_vertex, g->bad.memory),
+        SKG_ARGUMENT(RASTER_PASSES, frame, g->frame),
+        SKG_ARGUMENT(RASTER_PASSES, each, g->each),
     };
-    SKG_TRY(skg_raster_fill(raster, &raster->used, 0, sizeof(cl_int), sizeof(cl_int)));
     return SKG_RASTER_LAUNCH(raster, 0, "raster", skg_raster_by_worker(raster), arguments, log);
 }
 

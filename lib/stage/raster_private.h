@@ -40,9 +40,10 @@ struct skg_raster {
     skg_ray_float rays; /* half */
     int32_t workers;    /* persistent work-groups, if the strategy has such */
     skg_buffer sums;
-    skg_buffer used;    /* sets of the planes of copies, counters of claims, extents of the planes */
-    cl_int *whole;      /* [planes][4] extents of the whole detector */
-    cl_int *sent;       /* [passes][planes][4] extents as the device has them */
+    skg_buffer used; /* sets of the planes of copies, counters of claims, extents of the planes */
+    cl_int *whole;   /* [planes][4] extents of the whole detector */
+    cl_int
+        *sent; /* [planes][4] extents as the device has them; of passes that are drawn together: not used */
     skg_buffer scratch; /* bands: an image for each worker; passes: projected vertices for each worker */
     skg_buffer counts, starts, list,
         for_all;         /* tiles; for bands: counters, pieces, pool, list for all bands */

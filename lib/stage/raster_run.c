@@ -5,18 +5,16 @@
 
 #include <string.h>
 
-skg_status skg_raster_place_pass(skg_raster *raster, int32_t pass, const cl_int *extents,
-                                 skg_stage_log *log) {
+/* Enqueues the upload of a frame's extents, unless the device has them. */
+static skg_status place(skg_raster *raster, const cl_int *extents, skg_stage_log *log) {
     const skg_raster_layout *layout = &raster->layout;
     const size_t bytes = 4 * (size_t)layout->planes * sizeof *extents;
-    cl_int *sent = raster->sent + 4 * (size_t)pass * (size_t)layout->planes;
     if (!extents) extents = raster->whole;
-    if (memcmp(extents, sent, bytes) == 0) return SKG_OK;
-    SKG_TRY(
-        skg_stage_write(raster->context, "upload", raster->used.memory,
-                        SKG_EXTENT(layout->copies, (int64_t)pass * layout->planes) * (int64_t)sizeof *extents,
-                        (int64_t)bytes, extents, log));
-    memcpy(sent, extents, bytes);
+    if (memcmp(extents, raster->sent, bytes) == 0) return SKG_OK;
+    SKG_TRY(skg_stage_write(raster->context, "upload", raster->used.memory,
+                            SKG_EXTENT(layout->copies, 0) * (int64_t)sizeof *extents, (int64_t)bytes, extents,
+                            log));
+    memcpy(raster->sent, extents, bytes);
     return SKG_OK;
 }
 
@@ -65,7 +63,7 @@ skg_status skg_raster_run(skg_raster *raster, const skg_geometry *geometry, cons
                           skg_stage_log *log) {
     raster->state = 0;
     SKG_TRY(skg_raster_set_scene(raster, geometry));
-    SKG_TRY(skg_raster_place_pass(raster, 0, extents, log));
+    SKG_TRY(place(raster, extents, log));
     SKG_TRY(raster->strategy->run(raster, geometry, log));
     return raster->source ? run_source(raster, geometry, log) : SKG_OK;
 }
@@ -79,9 +77,15 @@ int skg_raster_keeps(const skg_raster *raster, const skg_geometry *geometry) {
 }
 
 skg_status skg_raster_run_passes(skg_raster *raster, const skg_geometry *geometry, int32_t passes,
-                                 skg_stage_log *log) {
+                                 const cl_int *placed, cl_event *read, skg_stage_log *log) {
+    const size_t first = sizeof *placed; /* behind the set of planes: the pass that is claimed next */
     raster->state = 0;
     SKG_TRY(skg_raster_set_scene(raster, geometry));
     raster->layout.passes = passes;
+    const size_t count = 1 + 4 * (size_t)passes * (size_t)raster->layout.planes;
+    cl_event event = NULL, *wanted = read ? read : skg_stage_event(log, &event);
+    SKG_CL_TRY(clEnqueueWriteBuffer(raster->context->device->queue, raster->used.memory, CL_FALSE, first,
+                                    count * sizeof *placed, placed, 0, NULL, wanted));
+    SKG_TRY(skg_stage_log_add(log, "upload", event));
     return raster->strategy->run(raster, geometry, log);
 }

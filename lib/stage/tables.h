@@ -53,6 +53,9 @@ static inline skg_camera_place skg_geometry_place(const skg_geometry_part *part,
 /* Host copies of the part and contribution tables. Each stays until the device has read it, so that writing a frame's
  * tables does not wait for the frames before it: as many frames can be enqueued ahead as there are copies. */
 enum { SKG_TABLE_SLOTS = 64 };
+
+/* How many copies of `bytes` there are, at most SKG_TABLE_SLOTS: together they have 4 MiB, but there are at least four of them. */
+int32_t skg_table_slots(int64_t bytes);
 typedef struct {
     void *entries;       /* skg_part_float or skg_part_double [parts]; then the lines of a curved detector */
     int64_t lines_bytes; /* for which there is memory */
@@ -78,13 +81,15 @@ typedef struct {
     int64_t state; /* changes with the tables and vertices on the device; never 0 once they are there */
     int64_t projected_state; /* the state of which `projected` is; 0: not known */
     cl_kernel projected_by;
-    int32_t projections; /* since skg_geometry_reset_bad */
+    int32_t projections; /* since skg_geometry_begin_frame or skg_geometry_reset_bad */
     int32_t bad_stands;  /* 1: `bad` is of the frame before, and is reset by the next projection */
+    int32_t frame;       /* of the job, from which on `bad` is written */
+    int32_t each;        /* 1: passes that are drawn together are frames */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
     skg_buffer
         projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/raster/fine.clh) */
-    /* int: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
+    /* int [frames of a job]: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
     skg_buffer bad;
 } skg_geometry;
 

@@ -159,10 +159,13 @@ class Device:
         if threading.current_thread() is not threading.main_thread():
             return work()
         done: list[Any] = []
+        begun: list[bool] = []
+        given_up: list[bool] = []
 
         def call_it() -> None:
+            begun.append(True)
             try:
-                done.append(work())
+                done.append(None if given_up else work())
             except BaseException as error:
                 done.append(error)
 
@@ -171,11 +174,12 @@ class Device:
             thread.start()
             thread.join()
         except BaseException:
-            while thread.is_alive():
+            given_up.append(True)  # an interrupt of start() comes before the thread counts as alive
+            while begun and not done:
                 lib.skg_context_interrupt(self._handle)
                 with contextlib.suppress(KeyboardInterrupt):
                     thread.join(0.05)
-            if done and not isinstance(done[0], BaseException):
+            if done and done[0] is not None and not isinstance(done[0], BaseException):
                 self.drop(kind, done[0])
             raise
         if isinstance(done[0], BaseException):

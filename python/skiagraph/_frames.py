@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 from ._device import Device, RangeWarning, warn
 from ._interface import ENUMS, OK, RANGE, STALE
 from ._library import call, check, ffi, lib, struct, text
+from ._plans import Pace
 from ._progress import Meter, Progress, Watch
 from .view import View
 
@@ -38,14 +39,18 @@ class Batch:
         frames = struct("skg_frame", count)
         parts = ffi.new("int64_t[]", list(self.parts)) if self.parts else ffi.NULL
         keep += [frames, parts]
+        poses, posed = ffi.NULL, len(self.parts)
+        if self.poses is not None:
+            poses = ffi.cast("double *", self.poses.__array_interface__["data"][0])
         for i in range(count):
-            frames[i].index = self.index + first + i
+            frame = frames[i]
+            frame.index = self.index + first + i
             if self.poses is not None:
-                frames[i].pose_count, frames[i].pose_parts = len(self.parts), parts
-                frames[i].poses = ffi.cast("double *", self.poses[first + i].__array_interface__["data"][0])
+                frame.pose_count, frame.pose_parts = posed, parts
+                frame.poses = poses + 16 * posed * (first + i)
             if self.views:
                 keep.append(self.views[(first + i) % len(self.views)]._write(struct("skg_view")))
-                frames[i].view = keep[-1]
+                frame.view = keep[-1]
             if self.complete:
                 self.complete(frames + i)
         return frames
@@ -59,11 +64,17 @@ class Stale(Exception):
 Submit = Callable[[int, Any, Any, Any], int]
 
 
-def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progress: Progress = False) -> None:
-    """Computes a batch into out, [frame][channel][row][column]. The device's calls are this thread's."""
+def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progress: Progress, pace: Pace,
+        scatters: bool) -> None:
+    """Computes a batch into out, [frame][channel][row][column]. The device's calls are this thread's.
+
+    pace: that of the plan. scatters: frames may have scatter, whose computation answers an interrupt.
+    """
     meter = Meter(progress, batch.count)
     started: list[tuple[Any, int, float]] = []
     size, sent, done, ranged = 1, 0, 0, ""
+    if pace.seconds and not progress:  # progress is told of the first frames soon
+        size = max(1, int(_CHUNK / pace.seconds))
     try:
         while done < batch.count:
             while sent < batch.count and len(started) < 2:
@@ -72,14 +83,16 @@ def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progres
                 keep: list[Any] = []
                 job = device.begin((keep, out))
                 started.append((job, count, begun))
-                _start(submit, batch, sent, count, out, job, keep)
+                _start(submit, batch, sent, count, out, job, keep, scatters)
                 sent += count
             job, count, begun = started[0]
-            wait(job)
+            if not 0 < pace.seconds * count < _NAP:  # sooner than a sleep would end
+                wait(job)
             if check(device.end(job)) == RANGE:
                 ranged = text(lib.skg_last_error())
             started.pop(0)
             seconds = max((time.monotonic() - begun) / (1 + len(started)), 1e-6)
+            pace.seconds = seconds / count
             size = max(1, min(2 * size, int(_CHUNK * count / seconds)))
             done += count
             meter.update(done)
@@ -90,7 +103,8 @@ def run(device: Device, submit: Submit, batch: Batch, out: NDArray[Any], progres
         warn(ranged, RangeWarning)
 
 
-def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[Any], job: Any, keep: list[Any]) -> None:
+def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[Any], job: Any, keep: list[Any],
+           scatters: bool) -> None:
     output = struct("skg_output")
     part = out[first:first + count]
     size = part.itemsize
@@ -99,9 +113,12 @@ def _start(submit: Submit, batch: Batch, first: int, count: int, out: NDArray[An
     output.frame_stride, output.channel_stride, output.row_stride = (
         stride // size if extent > 1 else 0 for stride, extent in zip(part.strides[:3], part.shape[:3]))
     frames = batch.frames(first, count, keep)
-    with Watch(False, "histories") as watch:  # scatter is computed in here
-        for i in range(count):
-            frames[i].progress = watch
+    if scatters:
+        with Watch(False, "histories") as watch:  # scatter is computed in here
+            for i in range(count):
+                frames[i].progress = watch
+            status = check(submit(count, frames, output, job))
+    else:
         status = check(submit(count, frames, output, job))
     if status == STALE:
         raise Stale(text(lib.skg_last_error()))

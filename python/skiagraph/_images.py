@@ -26,7 +26,7 @@ def number_frames(state: State, count: int, index: int | None, options: Mapping[
     if options.get("noise_seed") is not None:
         return 0
     with state.calls():
-        file = state.plans.options(state.options_setup, {}, [])
+        file = state.plans.of_file(state.options_setup)
     given = [options.get("noise"), options.get("electronic_kev")]
     noise, electronic = (own if value is None else value for own, value in zip((file.noise, file.electronic_kev), given))
     first = state.frames
@@ -69,7 +69,7 @@ def channels_of(state: State, options: Mapping[str, Any]) -> int | None:
     if counter is not None and not hasattr(counter, "_handle"):
         raise ArgumentError(f"counter is {counter!r}; give a Counter")
     with state.calls():
-        handle = counter._handle if counter is not None else state.plans.options(state.options_setup, {}, []).counter
+        handle = counter._handle if counter is not None else state.plans.of_file(state.options_setup).counter
         return None if handle == ffi.NULL else integer("skg_counter_thresholds_get", handle)
 
 
@@ -114,7 +114,7 @@ def lengths(state: State, labels: Sequence[str], kind: str, poses: Mapping[str, 
 
     submit = together(targets, choose)
     with state.calls():
-        if state.plans.options(state.options_setup, {}, []).scatter != ffi.NULL:
+        if state.plans.of_file(state.options_setup).scatter != ffi.NULL:
             options = {"scatter": False, **options}  # lengths have none, and it is not for every scene
         compute(state, submit, batch, targets[0], progress, one, False, options)
     return targets
@@ -172,12 +172,18 @@ def compute(state: State, submit: Callable[[Any], Submit], batch: Batch, out: An
             target = _arrays.output(out, given)
         frames = target.reshape(shape) if out is None else _four(target, one, banded)
         try:
-            run(state.device, submit(plan), batch, frames, progress)
+            run(state.device, submit(plan), batch, frames, progress, state.plans.pace(plan), _scatters(state, options))
             break
         except Stale as stale:
             if again:
                 raise SceneError(str(stale)) from None
     return target
+
+
+def _scatters(state: State, options: Mapping[str, Any]) -> bool:
+    """Whether frames may have scatter, which is computed as they are submitted."""
+    given = options.get("scatter")
+    return state.plans.of_file(state.options_setup).scatter != ffi.NULL if given is None else given is not False
 
 
 def _agree(count: int | None, source: str, given: int, what: str) -> tuple[int, str]:

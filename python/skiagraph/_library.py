@@ -5,6 +5,7 @@ Calls release the global lock of the interpreter while they run, because cffi do
 from __future__ import annotations
 
 import difflib
+import functools
 import os
 import pathlib
 from collections.abc import Iterable, Mapping
@@ -106,12 +107,19 @@ def string(name: str, *arguments: Any) -> str:
     return text(result[0])
 
 
+@functools.cache
+def _defaults(kind: str) -> tuple[Any, Any, bytes]:
+    """The types of a pointer and of an array of a kind of struct, and its bytes with the library's defaults."""
+    made, size = ffi.new(f"{kind} *"), ffi.sizeof(kind)
+    getattr(lib, kind + "_init_sized")(made, size)
+    return ffi.typeof(f"{kind} *"), ffi.typeof(f"{kind}[]"), bytes(ffi.buffer(made))
+
+
 def struct(kind: str, count: int | None = None) -> Any:
     """A struct, or an array of them, with the library's defaults."""
-    made = ffi.new(f"{kind} *") if count is None else ffi.new(f"{kind}[]", count)
-    initialise, size = getattr(lib, kind + "_init_sized"), ffi.sizeof(kind)
-    for i in range(1 if count is None else count):
-        initialise(made + i, size)
+    one, many, defaults = _defaults(kind)
+    made = ffi.new(one) if count is None else ffi.new(many, count)
+    ffi.buffer(made)[:] = defaults if count is None else defaults * count
     return made
 
 

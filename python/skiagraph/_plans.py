@@ -19,14 +19,38 @@ _MAX = 4
 _VIEWS = 16
 
 
+class Pace:
+    """How long frames of a plan took."""
+
+    #: Seconds of each of the last frames that were waited for; 0: there were none.
+    seconds = 0.0
+
+
 class Plans:
     def __init__(self, device: Device) -> None:
         self._device = device
         self._kept: OrderedDict[Any, Any] = OrderedDict()
+        self._paces: dict[Any, Pace] = {}
+        self._file: tuple[Any, Any] = (ffi.NULL, ffi.NULL)
 
     def clear(self) -> None:
+        self._file = (ffi.NULL, ffi.NULL)
         while self._kept:
-            self._device.drop("skg_plan", self._kept.popitem()[1])
+            self._drop(self._kept.popitem()[1])
+
+    def _drop(self, plan: Any) -> None:
+        self._paces.pop(plan, None)
+        self._device.drop("skg_plan", plan)
+
+    def pace(self, plan: Any) -> Pace:
+        """That of a plan that is kept."""
+        return self._paces.setdefault(plan, Pace())
+
+    def of_file(self, setup: Any) -> Any:
+        """The library's skg_plan_options as the file says them. They are not to be changed; a set-up never changes them either."""
+        if self._file[0] != setup:
+            self._file = (setup, self.options(setup, {}, []))
+        return self._file[1]
 
     def get(self, setup: Any, scene: Any, view: View, beam: Beam, options: Mapping[str, Any], anew: bool) -> Any:
         """A plan of these options, with this view; anew: also if there is one."""
@@ -37,11 +61,11 @@ class Plans:
             self._kept[key] = plan
             return plan
         if plan is not None:
-            self._device.drop("skg_plan", plan)
+            self._drop(plan)
         plan = self._make(setup, scene, view, beam, given)
         self._kept[key] = plan
         while len(self._kept) > _MAX:
-            self._device.drop("skg_plan", self._kept.popitem(last=False)[1])
+            self._drop(self._kept.popitem(last=False)[1])
         return plan
 
     def _make(self, setup: Any, scene: Any, view: View, beam: Beam, given: dict[str, Any]) -> Any:

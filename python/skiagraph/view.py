@@ -11,6 +11,7 @@ from . import _arrays
 from ._interface import ENUMS, ArgumentError
 from ._library import call, choice, ffi, struct
 
+_FLOAT64 = np.dtype(np.float64)
 _VECTORS = {"source": "source", "detector": "centre", "column_step": "column_step", "row_step": "row_step"}
 
 
@@ -87,9 +88,10 @@ class View:
         pointer.columns, pointer.rows = int(self.pixels[0]), int(self.pixels[1])
         pointer.radius = float(self.radius)
         for name, field in _VECTORS.items():
-            vector = _arrays.vector(getattr(self, name), name)
-            for k in range(3):
-                getattr(pointer, field)[k] = vector[k]
+            vector = getattr(self, name)
+            if type(vector) is not np.ndarray or vector.dtype != _FLOAT64 or vector.shape != (3,):
+                vector = _arrays.vector(vector, name)
+            getattr(pointer, field)[0:3] = vector.tolist()
         return pointer
 
     @classmethod

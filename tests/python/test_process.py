@@ -14,6 +14,7 @@ import numpy as np
 import pytest
 
 import skiagraph as sk
+from skiagraph._library import ffi
 from skiagraph.scene import state_of
 
 
@@ -271,3 +272,28 @@ def test_an_interrupt_ends_the_making_of_a_plan(scene):
     over.set()
     thread.join()
     assert (scene.image() == before).all()
+
+
+def test_an_interrupt_while_the_thread_of_a_plan_starts(scene, monkeypatch):
+    """It comes before the thread counts as alive; nothing goes on afterwards."""
+    wait, pending, log = threading.Event.wait, [True], []
+
+    def interrupt(event, timeout=None):
+        if pending and sys._getframe(1).f_code is threading.Thread.start.__code__:
+            pending.clear()
+            raise KeyboardInterrupt
+        return wait(event, timeout)
+
+    def work():
+        log.append("begun")
+        time.sleep(0.2)
+        log.append("done")
+        return ffi.NULL
+
+    monkeypatch.setattr(threading.Event, "wait", interrupt)
+    with pytest.raises(KeyboardInterrupt):
+        state_of(scene).device.interruptible("skg_plan", work)
+    assert log in ([], ["begun", "done"])
+    found = list(log)
+    time.sleep(0.4)
+    assert log == found and not pending

@@ -3,6 +3,7 @@
 #include "device/cache_folder.h"
 #include "device/choice.h"
 #include "device/self_tests.h"
+#include "frame/plans.h"
 #include "selftest/selftest.h"
 #include "skg_shared.h"
 #include "stage/kernels.h"
@@ -291,6 +292,30 @@ static int is_of_gpus(int number) {
     return gathers || strstr("raster_squares.cl tiles.cl", errors[number].file) != NULL;
 }
 
+/* The self-test of energies has the planes of the plan that asks, and so its program; a general program is tested elsewhere. */
+START_TEST(energies_with_the_planes_of_a_plan) {
+    static const int32_t asked[] = {0, 5, SKG_FEW_PLANES, SKG_FEW_PLANES + 1},
+                         tested[] = {2, 5, SKG_FEW_PLANES, 2};
+    skg_context *context = open_first("");
+    for (int k = 0; k < 4; k++) {
+        skg_self_test_scene scene;
+        skg_plan *plan = NULL;
+        skg_verdict verdict;
+        context->device->planes = asked[k];
+        context->device->self_testing = 1; /* the plan below does not ask */
+        ck_skg(skg_self_test_scene_create(context, SKG_SELF_TEST_ENERGIES, 16, &scene));
+        ck_skg(skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan));
+        ck_assert_int_eq(plan->recipe->model.planes, tested[k]);
+        context->device->self_testing = 0;
+        skg_plan_release(&plan);
+        skg_self_test_scene_release(&scene);
+        ck_skg(skg_self_test_repeat(context, SKG_SELF_TEST_ENERGIES, &verdict));
+        ck_assert_msg(verdict.good, "%d planes: %s", tested[k], verdict.reason);
+    }
+    skg_context_release(&context);
+}
+END_TEST
+
 START_TEST(wrong_kernels_are_found) {
     char more[96];
     skg_verdict verdict;
@@ -483,6 +508,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, boxes_have_known_lengths);
     tcase_add_test(tests, meshes_of_boxes_are_closed_unless_split);
     tcase_add_test(tests, a_right_device_passes);
+    tcase_add_test(tests, energies_with_the_planes_of_a_plan);
     tcase_add_test(tests, a_verdict_is_found_once_and_kept);
     tcase_add_test(tests, a_device_that_failed_is_refused);
 #ifdef SKG_COMMAND
