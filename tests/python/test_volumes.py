@@ -99,7 +99,8 @@ def test_what_cannot_be_is_refused(tmp_path):
         scene.save(tmp_path / "scene.json")
     with pytest.raises(sk.Error, match="no gradient"):
         scene.gradient(np.ones((30, 40)), wrt=("poses",))
-    with pytest.raises(sk.Error, match="volume of cells"):
+    scene.add_volume("mu", np.ones((2, 3, 4)), AFFINE, "mu")
+    with pytest.raises(sk.Error, match="one of 2 volumes of cells"):
         scene.image(scatter=0.1)
 
 
