@@ -14,11 +14,6 @@ typedef SKG_CAT(uint, SKG_WIDE) skg_lanes_uint;
 #define SKG_LANES_ALIGNED __attribute__((aligned(4 * SKG_WIDE)))
 
 /* What a cell adds to the planes of a launch, and its sum over slices. */
-#if SKG_VOLUME_WIDE
-typedef int skg_cell;
-#else
-typedef ushort skg_cell;
-#endif
 #if SKG_VOLUME_PLANES == 1
 typedef float skg_cell_weight;
 typedef long skg_cell_sum;
@@ -44,11 +39,6 @@ typedef struct {
     long slope[2][SKG_WIDE];              /* 2^46 per slice */
     long from[SKG_WIDE], to[SKG_WIDE];    /* along the axis, where the ray is followed; from >= to: nowhere */
 } skg_cell_rays;
-
-/* x q / 2^bits, rounded down; the result fits. */
-static long skg_times(long x, long q, int bits) {
-    return (long)((ulong)mul_hi(x, q) << (64 - bits) | (ulong)(x * q) >> bits);
-}
 
 /* 2^46 part / whole, where |part| <= |whole| and whole is not 0. */
 static long skg_quotient(long part, long whole) {
@@ -81,10 +71,7 @@ static void skg_cell_ends(const skg_volume_args *args, int column, int row, int 
 /* Sets up the ray of a lane. */
 static void skg_set_cell_ray(const skg_volume_args *args, int column, int row, int lane, skg_cell_rays *rays) {
     long base[3], way[3];
-    for (int k = 0; k < 3; k++) {
-        base[k] = args->base[k] + column * args->base_column[k] + row * args->base_row[k];
-        way[k] = args->way[k] + column * args->way_column[k] + row * args->way_row[k];
-    }
+    skg_cell_ray(args, column, row, base, way);
     const ulong x = abs(way[0]), y = abs(way[1]), z = abs(way[2]);
     const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     rays->axis[lane] = axis;
@@ -293,14 +280,7 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
 #endif
 }
 
-/* The place along the axis of a ray where the path parameter is common + depth. */
-static long skg_cell_depth(const skg_cell_rays *rays, int lane, long common, skg_real depth) {
-    const long way = rays->way[lane];
-    return rays->base[lane] + skg_times(way, common, 40) + convert_long_rte(depth * (skg_real)way);
-}
-
-/* Adds to `off` the intervals of a ray in which parts inside the volume, or those that win over it, stand. displacing: the set of
- * slots that do so by being inside */
+/* Adds to `off` the intervals of a ray in which the volume is displaced. */
 SKG_APART void skg_displace_cells(const skg_volume_args *args, const skg_cell_rays *rays, int lane,
                                   __global const skg_listed *hits, int count, __global const int *table,
                                   __global const int *displacing, __global const skg_cell *cells,
@@ -311,15 +291,10 @@ SKG_APART void skg_displace_cells(const skg_volume_args *args, const skg_cell_ra
     for (int k = 0; k < count; k++) winding[hits[k].code / 2] = 0;
     for (int w = 0; w < SKG_WORDS; w++) active[w] = 0;
     for (int k = 0; k + 1 < count; k++) {
-        uint dropped[SKG_WORDS];
         skg_pass_hit(hits[k].code, winding, active);
-        if (!(hits[k + 1].depth > hits[k].depth)) continue;
-        skg_drop(table, active, dropped);
-        int displaced = skg_is_in(dropped, args->slot);
-        for (int w = 0; w < SKG_WORDS; w++) displaced |= (active[w] & (uint)displacing[w]) != 0;
-        if (!displaced) continue;
-        const long a = skg_cell_depth(rays, lane, args->common, hits[k].depth);
-        const long b = skg_cell_depth(rays, lane, args->common, hits[k + 1].depth);
+        if (!(hits[k + 1].depth > hits[k].depth) || !skg_is_displaced(args, table, active, displacing)) continue;
+        const long a = skg_cell_depth(rays->base[lane], rays->way[lane], args->common, hits[k].depth);
+        const long b = skg_cell_depth(rays->base[lane], rays->way[lane], args->common, hits[k + 1].depth);
         from[lane] = clamp(min(a, b), rays->from[lane], rays->to[lane]);
         to[lane] = clamp(max(a, b), rays->from[lane], rays->to[lane]);
         skg_walk_cells(args, rays, rays->axis[lane], lane, lane + 1, from, to, cells, weights, off);

@@ -94,11 +94,12 @@ static double cost_volumes(const skg_effect_facts *f) {
 }
 
 static skg_status refuse_gradient(const char *call, const skg_recipe *recipe, int by_view) {
-    (void)by_view;
-    if (!has_volume(recipe)) return SKG_OK;
-    return skg_fail(SKG_ERR_UNSUPPORTED,
-                    "%s: an image with a volume of cells (%s) has no gradient; give the part as a mesh", call,
-                    first_volume(recipe->scene));
+    if (!has_volume(recipe) || !by_view) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "%s: an image with a volume of cells (%s) has no derivative by source or detector; leave them out, "
+        "or give the part as a mesh",
+        call, first_volume(recipe->scene));
 }
 
 const skg_effect_row skg_effect_volumes = {
@@ -107,6 +108,7 @@ const skg_effect_row skg_effect_volumes = {
     .self_test = SKG_SELF_TEST_VOLUME,
     .refuses_half = has_volume,
     .refuses_gradient = refuse_gradient,
+    .adjoint = "volume_slopes.cl",
     .find = find_volumes,
     .cost = cost_volumes,
 };

@@ -97,8 +97,9 @@ def test_what_cannot_be_is_refused(tmp_path):
         pickle.dumps(scene)
     with pytest.raises(sk.Error, match="not written"):
         scene.save(tmp_path / "scene.json")
-    with pytest.raises(sk.Error, match="no gradient"):
-        scene.gradient(np.ones((30, 40)), wrt=("poses",))
+    with pytest.raises(sk.Error, match="no derivative by source or detector"):
+        scene.gradient(np.ones((30, 40)), wrt=("source",))
+    assert np.isnan(scene.gradient(np.ones((30, 40)), wrt=("poses",))["poses"]["ct"]).all()
     scene.add_volume("mu", np.ones((2, 3, 4)), AFFINE, "mu")
     with pytest.raises(sk.Error, match="one of 2 volumes of cells"):
         scene.image(scatter=0.1)
