@@ -207,6 +207,71 @@ static void skg_add_whole(skg_lanes_float x, skg_cell_sums *sums) {
 }
 #endif
 
+#if SKG_VOLUME_LINEAR
+/* A volume whose values change linearly between the centres of its cells. It is walked in half cells, in each of which a value is a
+ * polynomial of degree 3 along a ray: two points (Gauss) integrate it exactly. The outer half cells have the value of the centre beside. */
+typedef struct {
+    int size[3];     /* of the volume's cells, along the slices and both sides */
+    uint stride[3];
+} skg_linear_grid;
+
+static skg_linear_grid skg_linear_grid_of(const skg_volume_args *args, int axis, int first_side, int second_side) {
+    const int size[3] = {args->cells[0] / 2, args->cells[1] / 2, args->cells[2] / 2};
+    const uint stride[3] = {1, (uint)size[0], (uint)size[0] * (uint)size[1]};
+    const skg_linear_grid grid = {{size[axis], size[first_side], size[second_side]},
+                                  {stride[axis], stride[first_side], stride[second_side]}};
+    return grid;
+}
+
+/* Where a half cell and the place in it lie between two centres: the offsets of both, and the share of the second. */
+static float skg_between_centres(const skg_linear_grid *grid, int k, int half_cell, float within, uint offset[2]) {
+    const int lower = (half_cell - 1) >> 1;
+    offset[0] = (uint)clamp(lower, 0, grid->size[k] - 1) * grid->stride[k];
+    offset[1] = (uint)clamp(lower + 1, 0, grid->size[k] - 1) * grid->stride[k];
+    return fma(clamp(within, 0.0f, 1.0f), 0.5f, half_cell & 1 ? 0.0f : 0.5f);
+}
+
+static skg_cell_weight skg_linear_mix(skg_cell_weight a, skg_cell_weight b, float share) {
+    return fma(b - a, (skg_cell_weight)(share), a);
+}
+
+/* The value in half cells, at places in them. */
+static skg_cell_weight skg_linear_at(const skg_linear_grid *grid, __global const skg_cell *cells, __global const float *weights,
+                                     const int *half_cell, const float *within) {
+    uint x[2], y[2], z[2];
+    const float in_x = skg_between_centres(grid, 0, half_cell[0], within[0], x),
+                in_y = skg_between_centres(grid, 1, half_cell[1], within[1], y),
+                in_z = skg_between_centres(grid, 2, half_cell[2], within[2], z);
+    skg_cell_weight plane[2];
+    for (int k = 0; k < 2; k++) {
+        __global const skg_cell *low = cells + (size_t)z[k] + (size_t)y[0], *high = cells + (size_t)z[k] + (size_t)y[1];
+        plane[k] = skg_linear_mix(skg_linear_mix(SKG_CELL_WEIGHT(low[x[0]]), SKG_CELL_WEIGHT(low[x[1]]), in_x),
+                                  skg_linear_mix(SKG_CELL_WEIGHT(high[x[0]]), SKG_CELL_WEIGHT(high[x[1]]), in_x), in_y);
+    }
+    return skg_linear_mix(plane[0], plane[1], in_z);
+}
+
+/* A lane in a slice: where it enters along both sides, and by what a slice moves it. */
+typedef struct {
+    int slice, cell[2];
+    float place[2], step[2];
+} skg_linear_ray;
+
+/* The integral over a piece of a slice, within one half cell of each side. */
+SKG_APART skg_cell_weight skg_linear_piece(const skg_linear_grid *grid, __global const skg_cell *cells, __global const float *weights,
+                                           const skg_linear_ray *ray, float from, float length, int cell_y, int cell_z) {
+    const int half_cell[3] = {ray->slice, cell_y, cell_z};
+    skg_cell_weight sum = (skg_cell_weight)(0.0f);
+    for (int point = 0; point < 2; point++) {
+        const float at = fma(length, point ? 0.788675135f : 0.211324865f, from);
+        const float within[3] = {at, fma(at, ray->step[0], ray->place[0]) - (float)(cell_y - ray->cell[0]),
+                                 fma(at, ray->step[1], ray->place[1]) - (float)(cell_z - ray->cell[1])};
+        sum += skg_linear_at(grid, cells, weights, half_cell, within);
+    }
+    return sum * (skg_cell_weight)(0.5f * length);
+}
+#endif
+
 /* Adds the integrals of the lanes from `lane` to before `end` whose slices lie along an axis. */
 SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *rays, int axis, int lane, int end,
                               const long *from, const long *to, __global const skg_cell *cells,
@@ -229,10 +294,21 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
 #endif
     skg_begin_side(rays, args->bits, 0, axis, lane, end, span.start, &y);
     skg_begin_side(rays, args->bits, 1, axis, lane, end, span.start, &z);
+#if SKG_VOLUME_LINEAR
+    const skg_linear_grid grid = skg_linear_grid_of(args, axis, first_side, second_side);
+    float steps[2][SKG_WIDE] SKG_LANES_ALIGNED;
+    *(skg_lanes_float *)steps[0] = SKG_LANES_TO_FLOAT(y.cells) + SKG_LANES_TO_FLOAT(y.step) * 0x1p-32f;
+    *(skg_lanes_float *)steps[1] = SKG_LANES_TO_FLOAT(z.cells) + SKG_LANES_TO_FLOAT(z.step) * 0x1p-32f;
+#endif
     for (int slice = span.start; slice < span.end; slice++) {
         skg_lanes_float low = (skg_lanes_float)(0.0f), high = (skg_lanes_float)(1.0f);
         skg_intv next_y, next_z;
         const skg_intv cell_y = y.cell, cell_z = z.cell;
+#if SKG_VOLUME_LINEAR
+        uint enters[2][SKG_WIDE] SKG_LANES_ALIGNED;
+        *(skg_lanes_uint *)enters[0] = y.place;
+        *(skg_lanes_uint *)enters[1] = z.place;
+#endif
         const skg_lanes_float cross_y = skg_cross_slice(&y, &next_y), cross_z = skg_cross_slice(&z, &next_z);
         const skg_intv y_first = cross_y <= cross_z;
         skg_lanes_float one = y_first ? cross_y : cross_z, two = y_first ? cross_z : cross_y;
@@ -258,11 +334,32 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
         *(skg_lanes_float *)share[0] = in[0] ? one - low : none;
         *(skg_lanes_float *)share[1] = in[1] ? two - one : none;
         *(skg_lanes_float *)share[2] = in[2] ? high - two : none;
+#if SKG_VOLUME_LINEAR
+        float begin[3][SKG_WIDE] SKG_LANES_ALIGNED;
+        int in_y[3][SKG_WIDE] SKG_LANES_ALIGNED, in_z[3][SKG_WIDE] SKG_LANES_ALIGNED;
+        const skg_intv all_y[3] = {cell_y, middle_y, next_y}, all_z[3] = {cell_z, middle_z, next_z};
+        const skg_lanes_float all_from[3] = {low, one, two};
+        for (int piece = 0; piece < 3; piece++) {
+            *(skg_lanes_float *)begin[piece] = all_from[piece];
+            *(skg_intv *)in_y[piece] = all_y[piece];
+            *(skg_intv *)in_z[piece] = all_z[piece];
+        }
+#else
         __global const skg_cell *at = cells + (size_t)slice * strides[axis];
+#endif
         for (int l = lane; l < end; l++) {
+#if SKG_VOLUME_LINEAR
+            const skg_linear_ray ray = {slice, {in_y[0][l], in_z[0][l]}, {(float)enters[0][l] * 0x1p-32f, (float)enters[1][l] * 0x1p-32f},
+                                        {steps[0][l], steps[1][l]}};
+            skg_cell_weight sum = (skg_cell_weight)(0.0f);
+            for (int piece = 0; piece < 3; piece++)
+                if (share[piece][l] > 0)
+                    sum += skg_linear_piece(&grid, cells, weights, &ray, begin[piece][l], share[piece][l], in_y[piece][l], in_z[piece][l]);
+#else
             skg_cell_weight sum = SKG_CELL_WEIGHT(at[place[0][l]]) * share[0][l];
             sum = fma(SKG_CELL_WEIGHT(at[place[1][l]]), (skg_cell_weight)(share[1][l]), sum);
             sum = fma(SKG_CELL_WEIGHT(at[place[2][l]]), (skg_cell_weight)(share[2][l]), sum);
+#endif
 #if SKG_VOLUME_PLANES == 1
             own[l] = sum;
         }

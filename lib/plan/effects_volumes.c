@@ -94,6 +94,13 @@ static double cost_volumes(const skg_effect_facts *f) {
 }
 
 static skg_status refuse_gradient(const char *call, const skg_recipe *recipe, int by_view) {
+    for (int64_t p = 0; has_volume(recipe) && p < recipe->scene->count; p++)
+        if (recipe->scene->parts[p].volume && recipe->scene->parts[p].volume->linear)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "%s: the values of %s are linear between its cells, where there are no derivatives; take "
+                "Interpolation cells",
+                call, recipe->scene->parts[p].label);
     if (!has_volume(recipe) || !by_view) return SKG_OK;
     return skg_fail(
         SKG_ERR_UNSUPPORTED,

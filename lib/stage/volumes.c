@@ -195,6 +195,8 @@ static skg_status fill_rays(const skg_placed_volume *placed, const skg_pass *pas
     double to_cells[16];
     skg_cell_rays rays;
     skg_volume_to_cells(placed->volume, pass->parts[placed->part].pose, to_cells);
+    /* Between centres values are polynomials in half cells, and these are walked. */
+    for (int k = 0; k < 12 && placed->volume->linear; k++) to_cells[k] *= 2;
     skg_cell_rays_find(camera, to_cells, &rays);
     args->bits = bits_for(camera, &rays);
     if (args->bits == 0)
@@ -210,7 +212,7 @@ static skg_status fill_rays(const skg_placed_volume *placed, const skg_pass *pas
         args->way[k] = fixed(rays.way[0][k], args->bits);
         args->way_column[k] = fixed(rays.way[1][k], args->bits);
         args->way_row[k] = fixed(rays.way[2][k], args->bits);
-        args->cells[k] = (SKG_INT)placed->volume->size[k];
+        args->cells[k] = (SKG_INT)(placed->volume->size[k] * (placed->volume->linear ? 2 : 1));
         args->start[k] = (float)camera->start[k];
     }
     args->whole = camera->parallel && camera->start[0] < -1e29;
@@ -238,6 +240,7 @@ skg_status skg_volume_program(const skg_placed_volume *placed, const skg_pass *p
                               int32_t count, const char *const *files, cl_program *program) {
     const skg_define defines[] = {{"SKG_VOLUME_PLANES", placed->volume->wide ? 1 : placed->lanes},
                                   {"SKG_VOLUME_WIDE", placed->volume->wide},
+                                  {"SKG_VOLUME_LINEAR", placed->volume->linear},
                                   {"SKG_SLOTS", skg_priority_slots(&pass->priority)}};
     return skg_kernels_get(context, &pass->kernels, count, files, SKG_DEFINES(defines), program);
 }
