@@ -13,24 +13,6 @@ typedef SKG_CAT(uint, SKG_WIDE) skg_lanes_uint;
 #define SKG_LANES_LOAD(type, array) (*(const type *)(array))
 #define SKG_LANES_ALIGNED __attribute__((aligned(4 * SKG_WIDE)))
 
-/* What a cell adds to the planes of a launch, and its sum over slices. */
-#if SKG_VOLUME_PLANES == 1
-typedef float skg_cell_weight;
-typedef long skg_cell_sum;
-#define SKG_CELL_SUM_OF(sum, p) (sum)
-#else
-typedef SKG_CAT(float, SKG_VOLUME_PLANES) skg_cell_weight;
-typedef SKG_CAT(long, SKG_VOLUME_PLANES) skg_cell_sum;
-/* What is behind the point of a number of 2^30 is cut off: rounding takes longer than all else on some processors. */
-#define SKG_CELL_WHOLE(x) (SKG_CAT(convert_long, SKG_VOLUME_PLANES)(SKG_CAT(convert_int, SKG_VOLUME_PLANES)(x)))
-#define SKG_CELL_SUM_OF(sum, p) (((const long *)&(sum))[p])
-#endif
-#if SKG_VOLUME_WIDE
-#define SKG_CELL_WEIGHT(cell) ((float)(cell))
-#else
-#define SKG_CELL_WEIGHT(cell) (((__global const skg_cell_weight *)weights)[cell])
-#endif
-
 /* Rays in the axes of the volume. */
 typedef struct {
     int axis[SKG_WIDE];                   /* of its slices */
@@ -204,71 +186,6 @@ static void skg_add_whole(skg_lanes_float x, skg_cell_sums *sums) {
     const skg_intv whole = SKG_TO_INT_V(x);
     sums->low += SKG_LANES_AS_UINT(whole);
     sums->high += (whole >> 31) - (sums->low < SKG_LANES_AS_UINT(whole));
-}
-#endif
-
-#if SKG_VOLUME_LINEAR
-/* A volume whose values change linearly between the centres of its cells. It is walked in half cells, in each of which a value is a
- * polynomial of degree 3 along a ray: two points (Gauss) integrate it exactly. The outer half cells have the value of the centre beside. */
-typedef struct {
-    int size[3];     /* of the volume's cells, along the slices and both sides */
-    uint stride[3];
-} skg_linear_grid;
-
-static skg_linear_grid skg_linear_grid_of(const skg_volume_args *args, int axis, int first_side, int second_side) {
-    const int size[3] = {args->cells[0] / 2, args->cells[1] / 2, args->cells[2] / 2};
-    const uint stride[3] = {1, (uint)size[0], (uint)size[0] * (uint)size[1]};
-    const skg_linear_grid grid = {{size[axis], size[first_side], size[second_side]},
-                                  {stride[axis], stride[first_side], stride[second_side]}};
-    return grid;
-}
-
-/* Where a half cell and the place in it lie between two centres: the offsets of both, and the share of the second. */
-static float skg_between_centres(const skg_linear_grid *grid, int k, int half_cell, float within, uint offset[2]) {
-    const int lower = (half_cell - 1) >> 1;
-    offset[0] = (uint)clamp(lower, 0, grid->size[k] - 1) * grid->stride[k];
-    offset[1] = (uint)clamp(lower + 1, 0, grid->size[k] - 1) * grid->stride[k];
-    return fma(clamp(within, 0.0f, 1.0f), 0.5f, half_cell & 1 ? 0.0f : 0.5f);
-}
-
-static skg_cell_weight skg_linear_mix(skg_cell_weight a, skg_cell_weight b, float share) {
-    return fma(b - a, (skg_cell_weight)(share), a);
-}
-
-/* The value in half cells, at places in them. */
-static skg_cell_weight skg_linear_at(const skg_linear_grid *grid, __global const skg_cell *cells, __global const float *weights,
-                                     const int *half_cell, const float *within) {
-    uint x[2], y[2], z[2];
-    const float in_x = skg_between_centres(grid, 0, half_cell[0], within[0], x),
-                in_y = skg_between_centres(grid, 1, half_cell[1], within[1], y),
-                in_z = skg_between_centres(grid, 2, half_cell[2], within[2], z);
-    skg_cell_weight plane[2];
-    for (int k = 0; k < 2; k++) {
-        __global const skg_cell *low = cells + (size_t)z[k] + (size_t)y[0], *high = cells + (size_t)z[k] + (size_t)y[1];
-        plane[k] = skg_linear_mix(skg_linear_mix(SKG_CELL_WEIGHT(low[x[0]]), SKG_CELL_WEIGHT(low[x[1]]), in_x),
-                                  skg_linear_mix(SKG_CELL_WEIGHT(high[x[0]]), SKG_CELL_WEIGHT(high[x[1]]), in_x), in_y);
-    }
-    return skg_linear_mix(plane[0], plane[1], in_z);
-}
-
-/* A lane in a slice: where it enters along both sides, and by what a slice moves it. */
-typedef struct {
-    int slice, cell[2];
-    float place[2], step[2];
-} skg_linear_ray;
-
-/* The integral over a piece of a slice, within one half cell of each side. */
-SKG_APART skg_cell_weight skg_linear_piece(const skg_linear_grid *grid, __global const skg_cell *cells, __global const float *weights,
-                                           const skg_linear_ray *ray, float from, float length, int cell_y, int cell_z) {
-    const int half_cell[3] = {ray->slice, cell_y, cell_z};
-    skg_cell_weight sum = (skg_cell_weight)(0.0f);
-    for (int point = 0; point < 2; point++) {
-        const float at = fma(length, point ? 0.788675135f : 0.211324865f, from);
-        const float within[3] = {at, fma(at, ray->step[0], ray->place[0]) - (float)(cell_y - ray->cell[0]),
-                                 fma(at, ray->step[1], ray->place[1]) - (float)(cell_z - ray->cell[1])};
-        sum += skg_linear_at(grid, cells, weights, half_cell, within);
-    }
-    return sum * (skg_cell_weight)(0.5f * length);
 }
 #endif
 

@@ -247,8 +247,9 @@ skg_status skg_volume_program(const skg_placed_volume *placed, const skg_pass *p
 
 static skg_status get_program(const skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
                               cl_program *program) {
-    static const char *const files[] = {"pixel.clh", "intervals.clh", "cell_rays.clh", "volume.cl"};
-    return skg_volume_program(placed, pass, context, 4, files, program);
+    static const char *const files[] = {"pixel.clh", "intervals.clh", "cell_rays.clh", "cell_values.clh",
+                                        "volume.cl"};
+    return skg_volume_program(placed, pass, context, 5, files, program);
 }
 
 static skg_status launch(const skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
