@@ -13,29 +13,6 @@ typedef SKG_CAT(uint, SKG_WIDE) skg_lanes_uint;
 #define SKG_LANES_LOAD(type, array) (*(const type *)(array))
 #define SKG_LANES_ALIGNED __attribute__((aligned(4 * SKG_WIDE)))
 
-/* What a cell adds to the planes of a launch, and its sum over slices. */
-#if SKG_VOLUME_WIDE
-typedef int skg_cell;
-#else
-typedef ushort skg_cell;
-#endif
-#if SKG_VOLUME_PLANES == 1
-typedef float skg_cell_weight;
-typedef long skg_cell_sum;
-#define SKG_CELL_SUM_OF(sum, p) (sum)
-#else
-typedef SKG_CAT(float, SKG_VOLUME_PLANES) skg_cell_weight;
-typedef SKG_CAT(long, SKG_VOLUME_PLANES) skg_cell_sum;
-/* What is behind the point of a number of 2^30 is cut off: rounding takes longer than all else on some processors. */
-#define SKG_CELL_WHOLE(x) (SKG_CAT(convert_long, SKG_VOLUME_PLANES)(SKG_CAT(convert_int, SKG_VOLUME_PLANES)(x)))
-#define SKG_CELL_SUM_OF(sum, p) (((const long *)&(sum))[p])
-#endif
-#if SKG_VOLUME_WIDE
-#define SKG_CELL_WEIGHT(cell) ((float)(cell))
-#else
-#define SKG_CELL_WEIGHT(cell) (((__global const skg_cell_weight *)weights)[cell])
-#endif
-
 /* Rays in the axes of the volume. */
 typedef struct {
     int axis[SKG_WIDE];                   /* of its slices */
@@ -44,11 +21,6 @@ typedef struct {
     long slope[2][SKG_WIDE];              /* 2^46 per slice */
     long from[SKG_WIDE], to[SKG_WIDE];    /* along the axis, where the ray is followed; from >= to: nowhere */
 } skg_cell_rays;
-
-/* x q / 2^bits, rounded down; the result fits. */
-static long skg_times(long x, long q, int bits) {
-    return (long)((ulong)mul_hi(x, q) << (64 - bits) | (ulong)(x * q) >> bits);
-}
 
 /* 2^46 part / whole, where |part| <= |whole| and whole is not 0. */
 static long skg_quotient(long part, long whole) {
@@ -81,10 +53,7 @@ static void skg_cell_ends(const skg_volume_args *args, int column, int row, int 
 /* Sets up the ray of a lane. */
 static void skg_set_cell_ray(const skg_volume_args *args, int column, int row, int lane, skg_cell_rays *rays) {
     long base[3], way[3];
-    for (int k = 0; k < 3; k++) {
-        base[k] = args->base[k] + column * args->base_column[k] + row * args->base_row[k];
-        way[k] = args->way[k] + column * args->way_column[k] + row * args->way_row[k];
-    }
+    skg_cell_ray(args, column, row, base, way);
     const ulong x = abs(way[0]), y = abs(way[1]), z = abs(way[2]);
     const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     rays->axis[lane] = axis;
@@ -242,10 +211,21 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
 #endif
     skg_begin_side(rays, args->bits, 0, axis, lane, end, span.start, &y);
     skg_begin_side(rays, args->bits, 1, axis, lane, end, span.start, &z);
+#if SKG_VOLUME_LINEAR
+    const skg_linear_grid grid = skg_linear_grid_of(args, axis, first_side, second_side);
+    float steps[2][SKG_WIDE] SKG_LANES_ALIGNED;
+    *(skg_lanes_float *)steps[0] = SKG_LANES_TO_FLOAT(y.cells) + SKG_LANES_TO_FLOAT(y.step) * 0x1p-32f;
+    *(skg_lanes_float *)steps[1] = SKG_LANES_TO_FLOAT(z.cells) + SKG_LANES_TO_FLOAT(z.step) * 0x1p-32f;
+#endif
     for (int slice = span.start; slice < span.end; slice++) {
         skg_lanes_float low = (skg_lanes_float)(0.0f), high = (skg_lanes_float)(1.0f);
         skg_intv next_y, next_z;
         const skg_intv cell_y = y.cell, cell_z = z.cell;
+#if SKG_VOLUME_LINEAR
+        uint enters[2][SKG_WIDE] SKG_LANES_ALIGNED;
+        *(skg_lanes_uint *)enters[0] = y.place;
+        *(skg_lanes_uint *)enters[1] = z.place;
+#endif
         const skg_lanes_float cross_y = skg_cross_slice(&y, &next_y), cross_z = skg_cross_slice(&z, &next_z);
         const skg_intv y_first = cross_y <= cross_z;
         skg_lanes_float one = y_first ? cross_y : cross_z, two = y_first ? cross_z : cross_y;
@@ -271,11 +251,32 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
         *(skg_lanes_float *)share[0] = in[0] ? one - low : none;
         *(skg_lanes_float *)share[1] = in[1] ? two - one : none;
         *(skg_lanes_float *)share[2] = in[2] ? high - two : none;
+#if SKG_VOLUME_LINEAR
+        float begin[3][SKG_WIDE] SKG_LANES_ALIGNED;
+        int in_y[3][SKG_WIDE] SKG_LANES_ALIGNED, in_z[3][SKG_WIDE] SKG_LANES_ALIGNED;
+        const skg_intv all_y[3] = {cell_y, middle_y, next_y}, all_z[3] = {cell_z, middle_z, next_z};
+        const skg_lanes_float all_from[3] = {low, one, two};
+        for (int piece = 0; piece < 3; piece++) {
+            *(skg_lanes_float *)begin[piece] = all_from[piece];
+            *(skg_intv *)in_y[piece] = all_y[piece];
+            *(skg_intv *)in_z[piece] = all_z[piece];
+        }
+#else
         __global const skg_cell *at = cells + (size_t)slice * strides[axis];
+#endif
         for (int l = lane; l < end; l++) {
+#if SKG_VOLUME_LINEAR
+            const skg_linear_ray ray = {slice, {in_y[0][l], in_z[0][l]}, {(float)enters[0][l] * 0x1p-32f, (float)enters[1][l] * 0x1p-32f},
+                                        {steps[0][l], steps[1][l]}};
+            skg_cell_weight sum = (skg_cell_weight)(0.0f);
+            for (int piece = 0; piece < 3; piece++)
+                if (share[piece][l] > 0)
+                    sum += skg_linear_piece(&grid, cells, weights, &ray, begin[piece][l], share[piece][l], in_y[piece][l], in_z[piece][l]);
+#else
             skg_cell_weight sum = SKG_CELL_WEIGHT(at[place[0][l]]) * share[0][l];
             sum = fma(SKG_CELL_WEIGHT(at[place[1][l]]), (skg_cell_weight)(share[1][l]), sum);
             sum = fma(SKG_CELL_WEIGHT(at[place[2][l]]), (skg_cell_weight)(share[2][l]), sum);
+#endif
 #if SKG_VOLUME_PLANES == 1
             own[l] = sum;
         }
@@ -293,14 +294,7 @@ SKG_APART void skg_walk_cells(const skg_volume_args *args, const skg_cell_rays *
 #endif
 }
 
-/* The place along the axis of a ray where the path parameter is common + depth. */
-static long skg_cell_depth(const skg_cell_rays *rays, int lane, long common, skg_real depth) {
-    const long way = rays->way[lane];
-    return rays->base[lane] + skg_times(way, common, 40) + convert_long_rte(depth * (skg_real)way);
-}
-
-/* Adds to `off` the intervals of a ray in which parts inside the volume, or those that win over it, stand. displacing: the set of
- * slots that do so by being inside */
+/* Adds to `off` the intervals of a ray in which the volume is displaced. */
 SKG_APART void skg_displace_cells(const skg_volume_args *args, const skg_cell_rays *rays, int lane,
                                   __global const skg_listed *hits, int count, __global const int *table,
                                   __global const int *displacing, __global const skg_cell *cells,
@@ -311,15 +305,10 @@ SKG_APART void skg_displace_cells(const skg_volume_args *args, const skg_cell_ra
     for (int k = 0; k < count; k++) winding[hits[k].code / 2] = 0;
     for (int w = 0; w < SKG_WORDS; w++) active[w] = 0;
     for (int k = 0; k + 1 < count; k++) {
-        uint dropped[SKG_WORDS];
         skg_pass_hit(hits[k].code, winding, active);
-        if (!(hits[k + 1].depth > hits[k].depth)) continue;
-        skg_drop(table, active, dropped);
-        int displaced = skg_is_in(dropped, args->slot);
-        for (int w = 0; w < SKG_WORDS; w++) displaced |= (active[w] & (uint)displacing[w]) != 0;
-        if (!displaced) continue;
-        const long a = skg_cell_depth(rays, lane, args->common, hits[k].depth);
-        const long b = skg_cell_depth(rays, lane, args->common, hits[k + 1].depth);
+        if (!(hits[k + 1].depth > hits[k].depth) || !skg_is_displaced(args, table, active, displacing)) continue;
+        const long a = skg_cell_depth(rays->base[lane], rays->way[lane], args->common, hits[k].depth);
+        const long b = skg_cell_depth(rays->base[lane], rays->way[lane], args->common, hits[k + 1].depth);
         from[lane] = clamp(min(a, b), rays->from[lane], rays->to[lane]);
         to[lane] = clamp(max(a, b), rays->from[lane], rays->to[lane]);
         skg_walk_cells(args, rays, rays->axis[lane], lane, lane + 1, from, to, cells, weights, off);

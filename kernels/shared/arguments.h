@@ -96,6 +96,11 @@
     X(VOLUME_ADD, args) X(VOLUME_ADD, cells) X(VOLUME_ADD, weights) X(VOLUME_ADD, counts) X(VOLUME_ADD, starts) \
     X(VOLUME_ADD, hits) X(VOLUME_ADD, table) X(VOLUME_ADD, displacing) X(VOLUME_ADD, sums)
 
+#define SKG_ARGUMENTS_VOLUME_SLOPES(X) \
+    X(VOLUME_SLOPES, args) X(VOLUME_SLOPES, of) X(VOLUME_SLOPES, cells) X(VOLUME_SLOPES, weights) X(VOLUME_SLOPES, counts) \
+    X(VOLUME_SLOPES, starts) X(VOLUME_SLOPES, hits) X(VOLUME_SLOPES, table) X(VOLUME_SLOPES, displacing) \
+    X(VOLUME_SLOPES, losses) X(VOLUME_SLOPES, slopes)
+
 #define SKG_ARGUMENTS_GRADIENT_FACES(X) \
     X(GRADIENT_FACES, args) X(GRADIENT_FACES, corners) X(GRADIENT_FACES, projected) X(GRADIENT_FACES, parts) \
     X(GRADIENT_FACES, blocks) X(GRADIENT_FACES, contributions) X(GRADIENT_FACES, weights) X(GRADIENT_FACES, scales) \
@@ -196,7 +201,7 @@
     X(RASTER_BANDS, skg_raster_bands) X(RASTER_HALF, skg_raster_half) X(SOURCE_PLANE, skg_source_plane) \
     X(HITS_CLEAR, skg_hits_clear) X(HITS_LIST, skg_hits_list) X(HITS_SOURCE_PLANE, skg_hits_source_plane) X(HITS_PLACE, skg_hits_place) \
     X(HITS_SETTLE, skg_hits_settle) X(HITS_SLOPES, skg_hits_slopes) X(VOLUME_ADD, skg_volume_add) \
-    X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_BATCHES, skg_gradient_batches) \
+    X(VOLUME_SLOPES, skg_volume_slopes) X(GRADIENT_FACES, skg_gradient_faces) X(GRADIENT_BATCHES, skg_gradient_batches) \
     X(COUNT_BAD_ROWS, skg_count_bad_rows) X(COUNT_BAD, skg_count_bad) \
     X(LEAKY_ADD, skg_leaky_add) X(LEAKY_GAPS, skg_leaky_gaps) X(LEAKY_REPAIR, skg_leaky_repair) \
     X(LEAKY_PUT, skg_leaky_put) X(ATTENUATE, skg_attenuate) X(WEIGHTS, skg_weights) X(LOGARITHM, skg_logarithm) \

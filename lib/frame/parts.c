@@ -70,6 +70,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
     int64_t contributing = 0;
     pass->parts = memory->parts;
     pass->extents = memory->extents;
+    pass->volumes = memory->volumes;
     for (int64_t p = 0; p < scene->count; p++) {
         const skg_mesh *mesh = scene->parts[p].mesh;
         const double *pose = work->poses && work->poses[p] ? work->poses[p] : scene->parts[p].pose;

@@ -7,16 +7,14 @@
 #ifndef SKG_GRADIENT_EDGES_H
 #define SKG_GRADIENT_EDGES_H
 
-#include "gradient/steep.h"
-#include "gradient/work.h"
+#include "gradient/edge_volumes.h"
 
-/* The weights of a pass on the host. */
+/* The weights of a pass on the host, and what competes there. */
 typedef struct {
-    const skg_pass *pass;
-    skg_weight_layout layout;
-    skg_host_view *planes;      /* [layout.planes] not open: not read */
+    skg_edge_planes read;
     skg_crossings *competitors; /* [pass->priority.count] NULL: no competitor has had such a face so far */
     int32_t *slots, *table;     /* of skg_priority_tables, with competitors */
+    skg_edge_volumes volumes;   /* that compete, with competitors */
 } skg_edge_weights;
 
 /* The same for one part: the `user` of skg_edge_weigh. */

@@ -4,6 +4,7 @@
 #include "core/maths.h"
 #include "gradient/forces.h"
 #include "gradient/scales.h"
+#include "gradient/volumes.h"
 
 #include <skiagraph/plan.h>
 
@@ -141,8 +142,9 @@ skg_status skg_gather_slopes(const skg_gather_run *run) {
         SKG_ARGUMENT(HITS_SLOPES, weights, run->memory->weights.memory),
         SKG_ARGUMENT(HITS_SLOPES, slopes, run->memory->slopes.memory),
     };
-    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_slopes", "gradient", &work, arguments,
-                           &run->staging->log);
+    SKG_TRY(SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_slopes", "gradient", &work, arguments,
+                            &run->staging->log));
+    return skg_gather_volumes(run);
 }
 
 skg_status skg_gather_batches(const skg_gather_run *run) {

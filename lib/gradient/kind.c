@@ -12,6 +12,7 @@
 #include "gradient/pass.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <string.h>
 
 /* --- what comes before the first pass */
@@ -143,7 +144,9 @@ static skg_status finish_gradient(skg_job *job) {
     const skg_scene *scene = job->recipe->scene;
     const skg_gradient_work *work = skg_gradient_of(job);
     const skg_gradient *wanted = &work->wanted;
-    if (wanted->poses) memcpy(wanted->poses, work->poses, 6 * (size_t)scene->count * sizeof *work->poses);
+    for (int64_t p = 0; wanted->poses && p < scene->count; p++)
+        for (int k = 0; k < 6; k++)
+            wanted->poses[6 * p + k] = scene->parts[p].volume ? (double)NAN : work->poses[6 * p + k];
     if (wanted->densities)
         memcpy(wanted->densities, work->densities, (size_t)scene->count * sizeof *work->densities);
     for (int64_t i = 0; wanted->attenuations && i < scene->count * work->node_count; i++)

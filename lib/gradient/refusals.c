@@ -36,6 +36,39 @@ static skg_status check_wanted(const char *call, const skg_recipe *recipe, const
     return SKG_OK;
 }
 
+/* Cells have derivatives neither by their own places nor by their matter. */
+static skg_status check_volumes(const char *call, const skg_scene *scene, const skg_gradient *wanted) {
+    for (int64_t p = 0; p < scene->count && scene->volumes > 0; p++) {
+        if (!scene->parts[p].volume) continue;
+        if (wanted->densities || wanted->attenuations)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "%s: beside %s, a volume of cells, there are no derivatives by densities and attenuation "
+                "coefficients; leave them out, or give the part as a mesh",
+                call, scene->parts[p].label);
+        if (wanted->vertices && wanted->vertices[p])
+            return skg_fail(SKG_ERR_UNSUPPORTED,
+                            "%s: %s is a volume of cells, and has no vertices of its own", call,
+                            scene->parts[p].label);
+    }
+    return SKG_OK;
+}
+
+skg_status skg_gradient_check_moving(const char *call, const skg_scene *scene, const double *poses,
+                                     const double *const *vertices) {
+    for (int64_t p = 0; p < scene->count && scene->volumes > 0; p++) {
+        int moves = vertices && vertices[p];
+        for (int k = 0; k < 6 && poses; k++) moves |= poses[6 * p + k] != 0;
+        if (scene->parts[p].volume && moves)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "%s: %s is a volume of cells, and images have no derivative by its place; move the other "
+                "parts, or give it as a mesh",
+                call, scene->parts[p].label);
+    }
+    return SKG_OK;
+}
+
 /* Densities of parts that are filled in part have no gradient. */
 static skg_status check_frame(const char *call, const skg_frame *frame, const skg_gradient *wanted) {
     skg_frame ours;
@@ -59,6 +92,7 @@ static skg_status check_nodes(const char *call, int64_t count, const void *atten
 skg_status skg_gradient_check(const char *call, const skg_plan *plan, const skg_frame *frame,
                               const skg_gradient *wanted) {
     SKG_TRY(check_wanted(call, plan->recipe, &plan->machine, wanted));
+    SKG_TRY(check_volumes(call, plan->recipe->scene, wanted));
     SKG_TRY(check_nodes(call, plan->recipe->model.nodes, wanted->attenuations, wanted->nodes));
     return check_frame(call, frame, wanted);
 }

@@ -1,6 +1,8 @@
 /* How large the sums of a gradient can become, and by what they are multiplied to be integers of 64 bits. */
 #include "gradient/scales.h"
 
+#include "gradient/volumes.h"
+
 #include "core/maths.h"
 
 #include <math.h>
@@ -44,7 +46,7 @@ static double hit_bound(const skg_gather_run *run, int64_t part, const double *m
 
 /* What priorities add to the bound of every part that competes. */
 static double competing_of(const skg_gather_run *run, const double *most) {
-    double competing = 0;
+    double competing = run->pass->priority.count ? skg_gather_volumes_bound(run, most) : 0;
     for (int64_t s = 0; s < run->pass->priority.count; s++) {
         const int64_t p = run->pass->priority.parts[s];
         const double layers = (double)run->pass->scene->parts[p].mesh->layers;

@@ -1,5 +1,6 @@
 /* The derivatives of a loss by the sums of a pass: what hits are worth (kernels/gradient/weights.cl). */
 #include "gradient/gather.h"
+#include "gradient/volumes.h"
 
 #include <skiagraph/plan.h>
 
@@ -38,6 +39,7 @@ static void mark_planes(const skg_pass *pass, const skg_weights_wanted *wanted, 
     for (int64_t p = 0; wanted->of == SKG_WEIGHTS_OF_PARTS && p < pass->scene->count; p++)
         for (int32_t c = 0; (!wanted->parts || wanted->parts[p]) && c < pass->parts[p].contributions; c++)
             planes[pass->parts[p].contribution[c].plane] = 1;
+    if (wanted->of == SKG_WEIGHTS_OF_PARTS) skg_volumes_mark(pass->volumes, wanted->parts, planes);
 }
 
 /* Uploads which planes are wanted, unless the device has it from before. */

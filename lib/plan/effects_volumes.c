@@ -22,16 +22,29 @@ static const char *first_volume(const skg_scene *scene) {
     return scene->parts[p].label;
 }
 
+/* What scatters has elements, and cells of the object take those of one volume. */
+static skg_status check_scatter(const skg_recipe *recipe, int64_t part) {
+    const skg_scene *scene = recipe->scene;
+    if (!recipe->options.scatter) return SKG_OK;
+    if (scene->parts[part].volume->values == SKG_VOLUME_MU)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "scatter: the values of %s are attenuation coefficients, which do not say how it scatters; give "
+            "densities or Hounsfield numbers, or leave out the scatter",
+            scene->parts[part].label);
+    if (recipe->volume_count == 1) return SKG_OK;
+    return skg_fail(SKG_ERR_UNSUPPORTED,
+                    "scatter: %s is one of %" PRId64
+                    " volumes of cells, and photons are followed through one; join them, or leave out the "
+                    "scatter",
+                    scene->parts[part].label, recipe->volume_count);
+}
+
 skg_status skg_volumes_check(const skg_recipe *recipe) {
     const skg_scene *scene = recipe->scene;
     for (int64_t p = 0; p < scene->count; p++) {
         const int64_t parent = scene->parts[p].inside;
-        if (scene->parts[p].volume && recipe->options.scatter)
-            return skg_fail(
-                SKG_ERR_UNSUPPORTED,
-                "scatter: %s is a volume of cells, in which scattered photons are not followed; leave out the "
-                "scatter, or give the part as a mesh",
-                scene->parts[p].label);
+        if (scene->parts[p].volume) SKG_TRY(check_scatter(recipe, p));
         if (scene->parts[p].volume && recipe->options.unite)
             return skg_fail(
                 SKG_ERR_UNSUPPORTED,
@@ -81,11 +94,19 @@ static double cost_volumes(const skg_effect_facts *f) {
 }
 
 static skg_status refuse_gradient(const char *call, const skg_recipe *recipe, int by_view) {
-    (void)by_view;
-    if (!has_volume(recipe)) return SKG_OK;
-    return skg_fail(SKG_ERR_UNSUPPORTED,
-                    "%s: an image with a volume of cells (%s) has no gradient; give the part as a mesh", call,
-                    first_volume(recipe->scene));
+    for (int64_t p = 0; has_volume(recipe) && p < recipe->scene->count; p++)
+        if (recipe->scene->parts[p].volume && recipe->scene->parts[p].volume->linear)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "%s: the values of %s are linear between its cells, where there are no derivatives; take "
+                "Interpolation cells",
+                call, recipe->scene->parts[p].label);
+    if (!has_volume(recipe) || !by_view) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "%s: an image with a volume of cells (%s) has no derivative by source or detector; leave them out, "
+        "or give the part as a mesh",
+        call, first_volume(recipe->scene));
 }
 
 const skg_effect_row skg_effect_volumes = {
@@ -94,6 +115,7 @@ const skg_effect_row skg_effect_volumes = {
     .self_test = SKG_SELF_TEST_VOLUME,
     .refuses_half = has_volume,
     .refuses_gradient = refuse_gradient,
+    .adjoint = "volume_slopes.cl",
     .find = find_volumes,
     .cost = cost_volumes,
 };

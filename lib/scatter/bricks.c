@@ -73,7 +73,7 @@ static void cross(const brick *b, int64_t face, const double from[3], const doub
     double share;
     const int sign = skg_face_crossed(b->corners[face], from, to, &share);
     const int64_t *more = b->p->amounts[b->p->part[b->faces[face]]];
-    for (int k = 0; sign && k < SKG_SCATTER_RANK; k++) state[k] += sign * more[k];
+    for (int k = 0; sign && k < SKG_CELL_AMOUNTS; k++) state[k] += sign * more[k];
 }
 
 static int holds(const brick *b, int64_t fine, uint32_t face) {
@@ -115,11 +115,13 @@ static skg_status write_brick(brick *b, uint32_t *word) {
         uint32_t medium = 0, made = 0;
         int64_t count = 0;
         double at[3];
+        skg_cell_amount all;
         for (int64_t i = b->first[c]; i < b->first[c + 1]; i++)
             if (b->list[i] % 2) own[count++] = b->faces[b->list[i] / 2];
         fine_place(b, c, at);
         for (int k = 0; k < 3; k++) at[k] = b->low[k] + at[k] / (double)b->n;
-        status = skg_media_find(&b->p->media, (const int64_t *)b->state[c], &medium);
+        skg_cell_all(b->p->cells, b->cell, b->state[c], all);
+        status = skg_media_find(&b->p->media, (const int64_t *)all, &medium);
         made = skg_cell_word(SKG_CELL_MEDIUM, medium);
         if (status == SKG_OK && count) status = skg_plant_list(b->p, medium, at, count, own, &made);
         if (status == SKG_OK) b->p->tree.of[place + 1 + c] = made;

@@ -24,7 +24,7 @@ typedef struct {
 } pile;
 
 static void add(int64_t *sum, const int64_t *more, int64_t factor) {
-    for (int k = 0; k < SKG_SCATTER_RANK; k++) sum[k] += factor * more[k];
+    for (int k = 0; k < SKG_CELL_AMOUNTS; k++) sum[k] += factor * more[k];
 }
 
 /* From a depth on there is more. */
@@ -34,7 +34,7 @@ static void deposit(void *user, double depth, const int64_t *more, int64_t facto
     const double place = (depth - p->cells->low[2]) * (double)cells / p->cells->size[2];
     const int64_t cell = place < 0 ? 0 : place < (double)cells ? (int64_t)place : cells - 1;
     const double rest = fmin(fmax((double)(cell + 1) - place, 0), 1);
-    for (int k = 0; k < SKG_SCATTER_RANK; k++) p->own[cell][k] += factor * llrint((double)more[k] * rest);
+    for (int k = 0; k < SKG_CELL_AMOUNTS; k++) p->own[cell][k] += factor * llrint((double)more[k] * rest);
     add(p->behind[cell + 1], more, factor);
     if (!p->known) return;
     const double next = floor(place - SKG_KNOWN[2]) + 1;
@@ -85,10 +85,12 @@ static int counts(const skg_cell_parts *parts, const inside *in, int64_t part) {
 }
 
 static void sum_up(const skg_cell_parts *parts, const amount *amounts, const inside *in, int64_t *sum) {
-    for (int k = 0; k < SKG_SCATTER_RANK; k++) sum[k] = 0;
+    for (int k = 0; k < SKG_CELL_AMOUNTS; k++) sum[k] = 0;
     for (int64_t i = 0; i < in->count; i++)
         if (counts(parts, in, in->part[i]))
             add(sum, amounts[in->part[i]], parts->unite ? in->times[i] > 0 : in->times[i]);
+    /* What several parts displace is away once, and outside of its box there is nothing to displace. */
+    if (sum[SKG_CELL_TIMES] < 0) sum[SKG_CELL_TIMES] = 0;
 }
 
 static void settle_column(const skg_cell_parts *parts, const amount *amounts, skg_columns *grid,
@@ -101,7 +103,7 @@ static void settle_column(const skg_cell_parts *parts, const amount *amounts, sk
         amount now, more;
         pass(&in, hit->part, hit->sign * parts->sign[hit->part]);
         sum_up(parts, amounts, &in, now);
-        for (int k = 0; k < SKG_SCATTER_RANK; k++) more[k] = now[k] - before[k], before[k] = now[k];
+        for (int k = 0; k < SKG_CELL_AMOUNTS; k++) more[k] = now[k] - before[k], before[k] = now[k];
         change(user, hit->depth, more, 1);
     }
 }
@@ -120,20 +122,33 @@ void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts,
 
 skg_status skg_cells_amounts(const skg_cell_parts *parts, skg_cell_amount **amounts) {
     SKG_TRY(skg_alloc(parts->count, sizeof **amounts, "cells", amounts));
-    for (int64_t i = 0; i < parts->count; i++)
+    for (int64_t i = 0; i < parts->count; i++) {
         for (int k = 0; k < SKG_SCATTER_RANK; k++)
             (*amounts)[i][k] = llrint(parts->coefficients[i][k] * SKG_CELL_UNIT);
+        if (parts->volume) (*amounts)[i][SKG_CELL_TIMES] = parts->volume->times[i] * (int64_t)SKG_CELL_UNIT;
+    }
     return SKG_OK;
 }
 
 /* --- all cells */
 
+/* The mixture of a cell from what begins before it and in it. */
+static void mix(const filling *f, int64_t cell, const int64_t *before, const int64_t *own, float *mixture) {
+    const double *base = f->parts->base;
+    const double each = 1 / (SKG_CELL_UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) {
+        double sum = (double)(before[k] + own[k]) * each + (base ? base[k] : 0);
+        if (f->cells->within)
+            sum += (double)(before[SKG_CELL_TIMES] + own[SKG_CELL_TIMES]) * each *
+                   ((double)f->cells->within[cell][k] / SKG_CELL_UNIT);
+        mixture[k] = (float)sum;
+    }
+}
+
 /* The cells of one row along x, all through z. */
 static skg_status fill_row(void *user, int64_t row) {
     const filling *f = user;
     const int64_t side = f->cells->count[0], depth = f->cells->count[2];
-    const double *base = f->parts->base;
-    const double each = 1 / (SKG_CELL_UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
     skg_columns grid = *f->grid;
     amount *own = NULL, *behind = NULL, *known = NULL;
     int64_t *inside_of = NULL;
@@ -155,14 +170,13 @@ static skg_status fill_row(void *user, int64_t row) {
     for (int64_t x = 0; x < side; x++) {
         amount sum = {0}, *of = f->cells->known + row * side + x;
         for (int64_t z = 0; z < depth; z++) {
-            float *mixture = f->cells->mixtures[(z * f->cells->count[1] + row) * side + x];
+            const int64_t cell = (z * f->cells->count[1] + row) * side + x;
             if (z)
                 memcpy(of[z * f->cells->count[1] * side], of[(z - 1) * f->cells->count[1] * side],
                        sizeof *of);
             add(of[z * f->cells->count[1] * side], known[x * (depth + 1) + z], 1);
             add(sum, behind[x * (depth + 1) + z], 1);
-            for (int k = 0; k < SKG_SCATTER_RANK; k++)
-                mixture[k] = (float)((double)(sum[k] + own[x * depth + z][k]) * each + (base ? base[k] : 0));
+            mix(f, cell, sum, own[x * depth + z], f->cells->mixtures[cell]);
         }
     }
 cleanup:
@@ -193,6 +207,7 @@ static skg_status fill(filling *f) {
     SKG_TRY(skg_cells_amounts(f->parts, &f->amounts));
     SKG_TRY(skg_alloc(total, sizeof *cells->mixtures, "cells", &cells->mixtures));
     SKG_TRY(skg_alloc(total, sizeof *cells->known, "cells", &cells->known));
+    if (f->parts->volume) SKG_TRY(skg_cells_within(f->parts->volume, cells));
     SKG_TRY(skg_parallel(cells->count[1], fill_row, f));
     for (int64_t c = 0; c < total; c++)
         for (int k = 0; k < SKG_SCATTER_RANK; k++)
@@ -221,6 +236,7 @@ skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cell
 void skg_cells_free(skg_cells *cells) {
     skg_free(&cells->mixtures);
     skg_free(&cells->known);
+    skg_free(&cells->within);
     skg_free(&cells->media);
     skg_free(&cells->tree);
     skg_free(&cells->faces);

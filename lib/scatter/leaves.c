@@ -109,7 +109,10 @@ static double contrast_of(skg_planting *p, int64_t cell) {
         double more = 0;
         if (p->seen[part] == cell + 1) continue;
         p->seen[part] = cell + 1;
-        for (int k = 0; k < SKG_SCATTER_RANK; k++) more += p->mu[k] * p->parts->coefficients[part][k];
+        const int32_t times = p->parts->volume ? p->parts->volume->times[part] : 0;
+        for (int k = 0; k < SKG_SCATTER_RANK; k++)
+            more += p->mu[k] * (p->parts->coefficients[part][k] +
+                                (times ? times * ((double)cells->within[cell][k] / SKG_CELL_UNIT) : 0));
         sum += fabs(more) * side;
     }
     return sum;
@@ -129,7 +132,9 @@ static skg_status make_word(skg_planting *p, int64_t cell, uint32_t *word) {
         p->cells->traced++;
         return skg_plant_brick(p, cell, count, faces, word);
     }
-    SKG_TRY(skg_media_find(&p->media, (const int64_t *)p->cells->known[cell], &medium));
+    skg_cell_amount all;
+    skg_cell_all(p->cells, cell, p->cells->known[cell], all);
+    SKG_TRY(skg_media_find(&p->media, (const int64_t *)all, &medium));
     *word = skg_cell_word(SKG_CELL_MEDIUM, medium);
     if (count == 0) return SKG_OK;
     double at[3];
@@ -155,11 +160,14 @@ static skg_status prepare(skg_planting *p) {
             p->amounts[i][k] *= p->parts->sign[i];
             more[k] = (float)((double)p->amounts[i][k] / SKG_CELL_UNIT);
         }
+        p->amounts[i][SKG_CELL_TIMES] *= p->parts->sign[i];
         SKG_TRY(skg_media_add(&p->media, more, &p->more[i]));
     }
     SKG_TRY(skg_cells_settled(p->parts, p->cells, &p->settled));
     SKG_TRY(find_faces(p));
-    return sort_faces(p);
+    SKG_TRY(sort_faces(p));
+    p->originals = p->cells->face_count;
+    return p->parts->volume ? skg_plant_copies(p) : SKG_OK;
 }
 
 static skg_status plant(skg_planting *p) {
@@ -199,7 +207,8 @@ static skg_status write_faces(const skg_planting *p) {
     if (cells->traced == 0) cells->face_count = 0;
     SKG_TRY(skg_alloc(cells->face_count + 1, sizeof *cells->faces, "cells", &cells->faces));
     for (int64_t f = 0; f < cells->face_count; f++) {
-        memcpy(&cells->faces[f][3], &p->more[p->part[f]], sizeof cells->faces[f][3]);
+        const uint32_t *more = f < p->originals ? &p->more[p->part[f]] : &p->own[f - p->originals];
+        memcpy(&cells->faces[f][3], more, sizeof cells->faces[f][3]);
         write_face(cells, p->corners[f], cells->faces[f]);
     }
     cells->face_count++; /* a buffer is not empty */
@@ -228,6 +237,7 @@ cleanup:
     skg_free(&p.part);
     skg_free(&p.amounts);
     skg_free(&p.more);
+    skg_free(&p.own);
     skg_free(&p.seen);
     skg_free(&p.first);
     skg_free(&p.faces_of);

@@ -13,7 +13,10 @@ typedef struct {
     int32_t *part;            /* [faces] */
     skg_cell_amount *amounts; /* [parts] with the sign of the solid */
     uint32_t *more;           /* [parts] the medium that a face adds */
-    int64_t *seen;            /* [parts] 1 + the cell that a part was last seen in */
+    uint32_t *
+        own; /* [copies] likewise of faces beyond `originals`, copies for single cells of a volume (volume_faces.c) */
+    int64_t originals;
+    int64_t *seen; /* [parts] 1 + the cell that a part was last seen in */
     skg_media media;
     skg_words tree;
     int64_t *first;     /* [cells + 1] */
@@ -31,6 +34,19 @@ static inline void skg_cell_place(const skg_cells *cells, int64_t cell, double p
     place[1] = (double)(cell / cells->count[0] % cells->count[1]);
     place[2] = (double)(cell / cells->count[0] / cells->count[1]);
 }
+
+/* What amounts at a place in a coarse cell are, with what the volume holds there. */
+static inline void skg_cell_all(const skg_cells *cells, int64_t cell, const int64_t *amounts,
+                                skg_cell_amount all) {
+    const int64_t times = amounts[SKG_CELL_TIMES] / (int64_t)SKG_CELL_UNIT;
+    for (int k = 0; k < SKG_SCATTER_RANK; k++)
+        all[k] = amounts[k] + (times ? times * cells->within[cell][k] : 0);
+    all[SKG_CELL_TIMES] = 0;
+}
+
+/* Beside a volume: gives each cell copies of its own of faces at which the volume begins or ends, and settles cells where its box and what
+ * displaces it meet. */
+skg_status skg_plant_copies(skg_planting *p);
 
 /* A list of faces, and its word. at: where the medium is known, in coarse cells */
 skg_status skg_plant_list(skg_planting *p, uint32_t medium, const double at[3], int64_t count,

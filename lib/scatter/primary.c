@@ -23,7 +23,7 @@ typedef struct {
     skg_columns grid;    /* in columns, rows and depths */
     double direction[3]; /* of parallel rays */
     int is_point;
-    double sign; /* -1: columns, rows and depths are a mirrored frame */
+    int32_t turn; /* -1: columns, rows and depths are a mirrored frame */
     const skg_beam_lines *lines;
     double mu[SKG_SCATTER_RANK][SKG_SCATTER_RANK]; /* [lines] 1/mm per coefficient */
     double (*sent)[WAYS];                          /* [RAYS * RAYS] of the energy */
@@ -86,12 +86,30 @@ typedef struct {
     const judge *j;
     double length; /* of ray.way */
     double mm[SKG_SCATTER_RANK];
+    const ray *along;
+    double from;     /* where the ray enters the cells */
+    int exact;       /* 1: lines; 0: coefficients */
+    double *amounts; /* [curves of a volume] workspace */
 } sum;
+
+/* From a depth on a volume of cells is there `times` times. */
+static void add_volume(sum *s, double depth, double times) {
+    const double to = way_to(s->j, depth);
+    double ends[2][3], through[SKG_SCATTER_RANK] = {0};
+    if (times == 0 || !(to > s->from)) return;
+    for (int k = 0; k < 3; k++) {
+        ends[0][k] = s->along->on[k] + s->from * s->along->way[k];
+        ends[1][k] = s->along->on[k] + to * s->along->way[k];
+    }
+    skg_volume_between(s->j->parts->volume, s->exact, ends[0], ends[1], s->amounts, through);
+    for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= times * through[k] * (to - s->from) * s->length;
+}
 
 static void add_change(void *user, double depth, const int64_t *more, int64_t factor) {
     sum *s = user;
-    const double mm = s->j->sign * (double)factor * s->length * way_to(s->j, depth) / SKG_CELL_UNIT;
+    const double mm = (double)factor * s->length * way_to(s->j, depth) / SKG_CELL_UNIT;
     for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= (double)more[k] * mm;
+    if (s->j->parts->volume) add_volume(s, depth, (double)(factor * more[SKG_CELL_TIMES]) / SKG_CELL_UNIT);
 }
 
 /* What scatters straight on once and passes, but for a factor. depth: of each line */
@@ -128,9 +146,12 @@ static skg_status judge_row(void *user, int64_t row) {
     judge *j = user;
     skg_columns grid = j->grid;
     int64_t *work = NULL;
+    double *amounts = NULL;
     skg_status status = SKG_OK;
     grid.first_row = row;
     grid.rows = 1;
+    if (j->parts->volume)
+        SKG_TRY_CLEANUP(skg_alloc(j->parts->volume->volume->curve_count, sizeof *amounts, "cells", &amounts));
     SKG_TRY_CLEANUP(skg_alloc(2 * j->parts->count, sizeof *work, "cells", &work));
     SKG_TRY_CLEANUP(skg_columns_gather(&grid, j->parts->count, j->parts->solids, j->rows));
     for (int64_t c = 0; c < RAYS; c++) {
@@ -140,7 +161,12 @@ static skg_status judge_row(void *user, int64_t row) {
         if (!enter(j->cells, &r, &from, &to)) continue;
         for (int exact = 0; exact < 2; exact++) {
             const double *base = exact ? j->lines->world : j->parts->base;
-            sum s = {.j = j, .length = skg_length(r.way)};
+            sum s = {.j = j,
+                     .length = skg_length(r.way),
+                     .along = &r,
+                     .from = from,
+                     .exact = exact,
+                     .amounts = amounts};
             skg_cells_walk(j->parts, (const skg_cell_amount *)j->amounts[exact], &grid, c, work, add_change,
                            &s);
             for (int k = 0; k < SKG_SCATTER_RANK && base; k++) s.mm[k] += base[k] * (to - from) * s.length;
@@ -159,6 +185,7 @@ static skg_status judge_row(void *user, int64_t row) {
 cleanup:
     skg_columns_free(&grid);
     skg_free(&work);
+    skg_free(&amounts);
     return status;
 }
 
@@ -205,8 +232,9 @@ static double spread(const judge *j) {
     return all > 0 ? sqrt(off / all) : 0;
 }
 
-/* The solids in columns, rows and depths. *in_front: 0 if one reaches behind the source. */
-static skg_status project_solids(const judge *j, skg_solid *solids, double **positions, int *in_front) {
+/* The solids in columns, rows and depths, and the signs of their hits there. *in_front: 0 if one reaches behind the source. */
+static skg_status project_solids(const judge *j, skg_solid *solids, int32_t *sign, double **positions,
+                                 int *in_front) {
     int64_t vertices = 0;
     for (int64_t p = 0; p < j->parts->count; p++) vertices += j->parts->solids[p].vertices;
     SKG_TRY(skg_alloc(3 * vertices, sizeof **positions, "cells", positions));
@@ -214,6 +242,7 @@ static skg_status project_solids(const judge *j, skg_solid *solids, double **pos
     double *to = *positions;
     for (int64_t p = 0; p < j->parts->count && *in_front; p++) {
         solids[p] = j->parts->solids[p];
+        sign[p] = j->turn * j->parts->sign[p];
         *in_front = project(j, solids[p].vertices, solids[p].positions, to);
         solids[p].positions = to;
         to += 3 * solids[p].vertices;
@@ -230,7 +259,7 @@ static void find_frame(judge *j) {
     else
         skg_add_scaled(view->centre, -1, view->source, j->direction);
     skg_cross(view->column_step, view->row_step, normal);
-    j->sign = skg_dot(normal, j->direction) < 0 ? -1 : 1;
+    j->turn = skg_dot(normal, j->direction) < 0 ? -1 : 1;
     j->grid.side = RAYS;
     for (int k = 0; k < 2; k++) {
         j->grid.low[k] = -0.5;
@@ -252,15 +281,17 @@ skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physic
     skg_cell_parts projected = *parts;
     skg_solid *solids = NULL;
     double *positions = NULL;
+    int32_t *sign = NULL;
     int in_front = 0;
     skg_status status = SKG_OK;
     *judged = (skg_judged){0};
     if (!cells->mixtures) return SKG_OK;
     find_frame(&j);
     SKG_TRY_CLEANUP(skg_alloc(parts->count, sizeof *solids, "cells", &solids));
-    SKG_TRY_CLEANUP(project_solids(&j, solids, &positions, &in_front));
+    SKG_TRY_CLEANUP(skg_alloc(parts->count, sizeof *sign, "cells", &sign));
+    SKG_TRY_CLEANUP(project_solids(&j, solids, sign, &positions, &in_front));
     if (!in_front) goto cleanup;
-    projected.solids = solids;
+    projected.solids = solids, projected.sign = sign;
     j.parts = &projected;
     SKG_TRY_CLEANUP(find_amounts(parts, &j));
     find_coefficients(physics, &j);
@@ -273,6 +304,7 @@ skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physic
     judged->rough = spread(&j);
 cleanup:
     skg_free(&solids);
+    skg_free(&sign);
     skg_free(&positions);
     skg_free(&j.amounts[0]);
     skg_free(&j.amounts[1]);

@@ -243,15 +243,18 @@ static void warn_of_mixtures(const skg_context *context, const skg_scatter_physi
 
 static void warn_of_cells(const skg_context *context, const skg_scatter_object *object, skg_scatterer *s) {
     const skg_cells *cells = &object->cells;
+    const int of_volume = cells->within != NULL;
     if (s->cells_warned || !(object->settled_error > CELLS_ERROR)) return;
     s->cells_warned = 1;
     skg_log(
         context, SKG_LOG_WARNING,
-        "scatter: cells of %.3g x %.3g x %.3g mm scatter %.2g %% more or less straight on than the parts do, because parts of "
-        "different priority, or clipped ones, are thinner or smaller; the scatter may be wrong by as much, which is in its stated "
-        "error. Give these parts one priority where they do not overlap, or Scatter a smaller Voxel",
+        "scatter: cells of %.3g x %.3g x %.3g mm scatter %.2g %% more or less straight on than the parts do, because %s; the scatter "
+        "may be wrong by as much, which is in its stated error. Give %sScatter a smaller Voxel",
         cells->size[0] / (double)cells->count[0], cells->size[1] / (double)cells->count[1],
-        cells->size[2] / (double)cells->count[2], 100 * object->settled_error);
+        cells->size[2] / (double)cells->count[2], 100 * object->settled_error,
+        of_volume ? "each holds the mean of those of the volume in it"
+                  : "parts of different priority, or clipped ones, are thinner or smaller",
+        of_volume ? "" : "these parts one priority where they do not overlap, or ");
 }
 
 skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_scatter_work *work) {

@@ -24,21 +24,41 @@ static void find_range(const skg_cells *cells, const skg_solid *solid, int64_t f
     }
 }
 
-static void mark(const skg_cells *cells, const skg_solid *solid, uint8_t *settled) {
-    int64_t first[3], last[3];
-    find_range(cells, solid, first, last);
+static void mark(const skg_cells *cells, const int64_t first[3], const int64_t last[3], uint8_t *settled) {
     for (int64_t z = first[2]; z <= last[2]; z++)
         for (int64_t y = first[1]; y <= last[1]; y++)
             for (int64_t x = first[0]; x <= last[0]; x++)
                 settled[(z * cells->count[1] + y) * cells->count[0] + x] = 1;
 }
 
+static int displaces(const skg_cell_parts *parts, int64_t part) {
+    return parts->volume && parts->volume->times[part] < 0;
+}
+
+/* Where two parts that displace a volume may overlap, its cells are away once. */
+static void mark_pair(const skg_cells *cells, const skg_solid *a, const skg_solid *b, uint8_t *settled) {
+    int64_t first[2][3], last[2][3];
+    find_range(cells, a, first[0], last[0]);
+    find_range(cells, b, first[1], last[1]);
+    for (int k = 0; k < 3; k++) {
+        if (first[1][k] > first[0][k]) first[0][k] = first[1][k];
+        if (last[1][k] < last[0][k]) last[0][k] = last[1][k];
+    }
+    mark(cells, first[0], last[0], settled);
+}
+
 skg_status skg_cells_settled(const skg_cell_parts *parts, const skg_cells *cells, uint8_t **settled) {
     SKG_TRY(skg_alloc(cells->count[0] * cells->count[1] * cells->count[2], 1, "cells", settled));
     if (!parts->priority || parts->count == 0) return SKG_OK;
     const int32_t lowest = lowest_priority(parts);
-    for (int64_t i = 0; i < parts->count; i++)
-        if (parts->clip || parts->unite || parts->priority[i] > lowest)
-            mark(cells, &parts->solids[i], *settled);
+    for (int64_t i = 0; i < parts->count; i++) {
+        if (parts->clip || parts->unite || parts->priority[i] > lowest) {
+            int64_t first[3], last[3];
+            find_range(cells, &parts->solids[i], first, last);
+            mark(cells, first, last, *settled);
+        }
+        for (int64_t j = 0; displaces(parts, i) && j < i; j++)
+            if (displaces(parts, j)) mark_pair(cells, &parts->solids[i], &parts->solids[j], *settled);
+    }
     return SKG_OK;
 }

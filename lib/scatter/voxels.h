@@ -33,15 +33,17 @@ skg_status skg_scatter_columns(int64_t count, skg_material *const *materials, co
 
 enum { SKG_CELLS_DEFAULT = 64, SKG_CELLS_MAX = 128, SKG_CELL_COLUMNS = 2 };
 
-/* Whole multiples of a unit, of which sums of 2^22 hits fit in 63 bits. */
+/* Whole multiples of a unit, of which sums of 2^22 hits fit in 63 bits: of the coefficients, and how many times a volume of cells is there. */
 #define SKG_CELL_UNIT 0x1p40
-typedef int64_t skg_cell_amount[SKG_SCATTER_RANK];
+enum { SKG_CELL_TIMES = SKG_SCATTER_RANK, SKG_CELL_AMOUNTS };
+typedef int64_t skg_cell_amount[SKG_CELL_AMOUNTS];
 
 typedef struct {
-    int64_t count[3];              /* cells along x, y, z; along x and y as many */
-    double low[3], size[3];        /* mm, of the box of all parts */
-    skg_mixture *mixtures;         /* [z][y][x] coefficients of skg_scatter_physics per mm */
-    skg_cell_amount *known;        /* [z][y][x] what is at one place of each, beyond the base: SKG_KNOWN */
+    int64_t count[3];        /* cells along x, y, z; along x and y as many */
+    double low[3], size[3];  /* mm, of the box of all parts */
+    skg_mixture *mixtures;   /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    skg_cell_amount *known;  /* [z][y][x] what is at one place of each, beyond the base: SKG_KNOWN */
+    skg_cell_amount *within; /* [z][y][x] what the volume of cells holds there, on average; NULL: none */
     double mean[SKG_SCATTER_RANK]; /* over the cells */
     /* As photons read them (walk.clh), by skg_cells_trace: */
     skg_mixture *media; /* [media_count] mixtures per mm, and what faces of each part add */
@@ -57,6 +59,16 @@ typedef struct {
  * rarely contain it. */
 #define SKG_KNOWN ((const double[3]){0.3660254037844386, 0.20710678118654755, 0.5772156649015329})
 
+/* A volume of cells among the parts. What it holds differs from place to place, and is no part's amount: it is added where amounts say that
+ * the volume is there. */
+typedef struct {
+    const skg_volume *volume;
+    double to_cells[16];  /* from mm of the world */
+    const int32_t *times; /* [parts] 1: its box; -1: a part inside it, which displaces it */
+    double (*coefficients)[SKG_SCATTER_RANK]; /* [curves] of an amount of 1, per mm */
+    double (*lines)[SKG_SCATTER_RANK];        /* likewise of the beam's lines */
+} skg_cell_volume;
+
 /* Closed parts. */
 typedef struct {
     int64_t count;
@@ -68,6 +80,7 @@ typedef struct {
         *priority; /* of each, which decides where solids with the same parent overlap; NULL: amounts add */
     int32_t clip;  /* 1, with priority: a solid counts only inside its parent */
     int32_t unite; /* 1: a solid counts once where its winding number is above 0 */
+    const skg_cell_volume *volume; /* NULL: none */
 } skg_cell_parts;
 
 /* The coefficients of each part in these units; the caller frees them. */
@@ -79,6 +92,14 @@ typedef void skg_cell_change(void *user, double depth, const int64_t *more, int6
 /* Gives all changes along a column, which cancel in the end; by depth where priorities decide. work: [2][parts] */
 void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts, skg_columns *grid,
                     int64_t column, int64_t *work, skg_cell_change *change, void *user);
+
+/* What the volume of cells holds in each cell, on average over the places in it that are within the volume. */
+skg_status skg_cells_within(const skg_cell_volume *volume, skg_cells *cells);
+
+/* Adds the integral of what a volume holds from one place of the world to another, as shares of the way: coefficients, or lines. amounts:
+ * [curves] workspace */
+void skg_volume_between(const skg_cell_volume *volume, int lines, const double from[3], const double to[3],
+                        double *amounts, double sums[SKG_SCATTER_RANK]);
 
 /* Makes the cells of parts. voxel_mm: about; 0: SKG_CELLS_DEFAULT cells along each side. Without any triangle there are no cells. */
 skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cells *cells);
@@ -146,7 +167,8 @@ typedef struct {
     double world[SKG_SCATTER_RANK]; /* coefficients of the world; 0: vacuum */
     skg_cells cells;
     skg_judged judged;
-    double settled_error; /* judged.cells if no other cells than those where parts compete hold mixtures */
+    double
+        settled_error; /* judged.cells if no other cells hold mixtures than those where parts compete, and of a volume */
 } skg_scatter_object;
 
 /* The share of a tolerance that the object may use up. */

@@ -87,6 +87,9 @@ static skg_status check_source(const skg_volume_source *s, const char *name) {
     if (s->values < SKG_VOLUME_HU || s->values > SKG_VOLUME_MU)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: values %d; SKG_VOLUME_HU, _DENSITY or _MU", name,
                         (int)s->values);
+    if (s->interpolation < SKG_VOLUME_CELLS || s->interpolation > SKG_VOLUME_LINEAR)
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: interpolation %d; SKG_VOLUME_CELLS or _LINEAR", name,
+                        (int)s->interpolation);
     if (s->type < SKG_VOLUME_INT16 || s->type > SKG_VOLUME_FLOAT64)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: type %d; SKG_VOLUME_INT16, _UINT16, _FLOAT32 or _FLOAT64",
                         name, (int)s->type);
@@ -288,6 +291,7 @@ static skg_status make(making *m) {
     SKG_TRY(check_source(s, v->name));
     SKG_TRY(check_classes(s, v->name));
     v->values = s->values;
+    v->linear = s->interpolation == SKG_VOLUME_LINEAR;
     v->size[0] = s->columns, v->size[1] = s->rows, v->size[2] = s->slices;
     memcpy(v->affine, s->affine, sizeof v->affine);
     m->count = s->columns * s->rows * s->slices;

@@ -16,6 +16,7 @@ struct skg_volume {
     double affine[16]; /* from (column, row, slice), of the centre of a cell, to mm */
     int32_t values;    /* enum skg_volume_values */
     int32_t wide;      /* 1: cells of 32 bits */
+    int32_t linear;    /* 1: values change linearly between the centres of cells */
     void *cells;       /* uint16_t or int32_t */
     int64_t codes;     /* cells of 16 bits: of the table */
     double low, high;  /* least and greatest value */

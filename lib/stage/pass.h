@@ -45,9 +45,10 @@ typedef struct skg_pass {
     skg_geometry_part *parts; /* [parts] borrowed; leaky ones without contributions */
     skg_extent *extents;      /* [parts] borrowed */
     skg_scale scale;
-    skg_priority priority; /* closed parts that compete for intervals */
-    int32_t rules;         /* SKG_RULE_... */
-    int32_t fine;          /* pixels of the camera along each side of a pixel of the image */
+    skg_priority priority;             /* closed parts that compete for intervals */
+    const struct skg_volumes *volumes; /* borrowed: of the machine; NULL: not known */
+    int32_t rules;                     /* SKG_RULE_... */
+    int32_t fine;                      /* pixels of the camera along each side of a pixel of the image */
     int32_t
         window[4]; /* of the camera: the pixels that jaws leave (skg_field_window), of an image with jaws */
     skg_raster_pin main; /* the raster of the closed parts */

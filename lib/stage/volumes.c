@@ -154,18 +154,13 @@ skg_status skg_volumes_weigh(skg_context *context, const skg_scene *scene, const
 
 /* --- a pass */
 
-/* The rays of a camera in the axes of a volume, in double. */
-typedef struct {
-    double base[3][3], way[3][3]; /* of pixel (0, 0), what a column adds, and a row */
-} cell_rays;
-
 static void turn(const double *to_cells, const double *vector, double *turned) {
     for (int r = 0; r < 3; r++) turned[r] = skg_dot(to_cells + 4 * r, vector);
 }
 
-static void find_rays(const skg_camera *camera, const double *to_cells, cell_rays *rays) {
+void skg_cell_rays_find(const skg_camera *camera, const double *to_cells, skg_cell_rays *rays) {
     double origin[3];
-    *rays = (cell_rays){0};
+    *rays = (skg_cell_rays){0};
     skg_add_scaled(camera->origin, camera->parallel ? -1 : 0, camera->first, origin);
     skg_pose_point(to_cells, origin, rays->base[0]);
     turn(to_cells, camera->first, rays->way[0]);
@@ -174,7 +169,7 @@ static void find_rays(const skg_camera *camera, const double *to_cells, cell_ray
 }
 
 /* The bits behind the point that the farthest place leaves. */
-static int32_t bits_for(const skg_camera *camera, const cell_rays *rays) {
+static int32_t bits_for(const skg_camera *camera, const skg_cell_rays *rays) {
     double most = 1;
     int exponent = 0;
     for (int k = 0; k < 3; k++) {
@@ -198,9 +193,11 @@ static SKG_LONG fixed(double x, int32_t bits) {
 static skg_status fill_rays(const skg_placed_volume *placed, const skg_pass *pass, skg_volume_args *args) {
     const skg_camera *camera = &pass->camera;
     double to_cells[16];
-    cell_rays rays;
+    skg_cell_rays rays;
     skg_volume_to_cells(placed->volume, pass->parts[placed->part].pose, to_cells);
-    find_rays(camera, to_cells, &rays);
+    /* Between centres values are polynomials in half cells, and these are walked. */
+    for (int k = 0; k < 12 && placed->volume->linear; k++) to_cells[k] *= 2;
+    skg_cell_rays_find(camera, to_cells, &rays);
     args->bits = bits_for(camera, &rays);
     if (args->bits == 0)
         return skg_fail(
@@ -215,7 +212,7 @@ static skg_status fill_rays(const skg_placed_volume *placed, const skg_pass *pas
         args->way[k] = fixed(rays.way[0][k], args->bits);
         args->way_column[k] = fixed(rays.way[1][k], args->bits);
         args->way_row[k] = fixed(rays.way[2][k], args->bits);
-        args->cells[k] = (SKG_INT)placed->volume->size[k];
+        args->cells[k] = (SKG_INT)(placed->volume->size[k] * (placed->volume->linear ? 2 : 1));
         args->start[k] = (float)camera->start[k];
     }
     args->whole = camera->parallel && camera->start[0] < -1e29;
@@ -239,13 +236,20 @@ static skg_status fill_lists(skg_placed_volume *placed, const skg_pass *pass, co
                              "parts inside a volume");
 }
 
-static skg_status get_program(const skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
-                              cl_program *program) {
-    static const char *const files[] = {"pixel.clh", "intervals.clh", "volume.cl"};
+skg_status skg_volume_program(const skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
+                              int32_t count, const char *const *files, cl_program *program) {
     const skg_define defines[] = {{"SKG_VOLUME_PLANES", placed->volume->wide ? 1 : placed->lanes},
                                   {"SKG_VOLUME_WIDE", placed->volume->wide},
+                                  {"SKG_VOLUME_LINEAR", placed->volume->linear},
                                   {"SKG_SLOTS", skg_priority_slots(&pass->priority)}};
-    return skg_kernels_get(context, &pass->kernels, 3, files, SKG_DEFINES(defines), program);
+    return skg_kernels_get(context, &pass->kernels, count, files, SKG_DEFINES(defines), program);
+}
+
+static skg_status get_program(const skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
+                              cl_program *program) {
+    static const char *const files[] = {"pixel.clh", "intervals.clh", "cell_rays.clh", "cell_values.clh",
+                                        "volume.cl"};
+    return skg_volume_program(placed, pass, context, 5, files, program);
 }
 
 static skg_status launch(const skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
@@ -285,25 +289,36 @@ static void fill_window(const skg_pass *pass, int64_t part, SKG_INT window[4]) {
     window[3] = pixels[1] < rows ? pixels[1] : (SKG_INT)rows;
 }
 
+skg_status skg_volume_args_fill(skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
+                                skg_staging *staging, skg_volume_args *args) {
+    *args = (skg_volume_args){.layout = pass->main.raster->layout};
+    SKG_TRY(fill_rays(placed, pass, args));
+    SKG_TRY(fill_lists(placed, pass, hits, staging, args));
+    if (args->slot >= 0) args->common = fixed(skg_hits_common(pass), 40);
+    return SKG_OK;
+}
+
+void skg_volume_args_planes(const skg_placed_volume *placed, int64_t first, skg_volume_args *args) {
+    const int64_t left = placed->plane_count - first, count = left < placed->lanes ? left : placed->lanes;
+    args->plane_count = (SKG_INT)count;
+    for (int64_t k = 0; k < count; k++) args->planes[k] = placed->planes[first + k];
+    args->first_weight = (SKG_INT)(first * (placed->volume->wide ? 1 : placed->volume->codes));
+}
+
 static skg_status add(skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
                       skg_staging *staging) {
-    skg_volume_args args = {.layout = pass->main.raster->layout};
+    skg_volume_args args;
     if (placed->volume->hull->version != 1)
         return skg_fail(
             SKG_ERR_SCENE,
             "%s: the vertices of its box were moved, which moves no cell; move the part by its pose",
             pass->scene->parts[placed->part].label);
     if (!pass->extents[placed->part].on_detector || placed->plane_count == 0) return SKG_OK;
-    SKG_TRY(fill_rays(placed, pass, &args));
-    SKG_TRY(fill_lists(placed, pass, hits, staging, &args));
+    SKG_TRY(skg_volume_args_fill(placed, pass, hits, staging, &args));
     fill_window(pass, placed->part, args.window);
-    if (args.slot >= 0) args.common = fixed(skg_hits_common(pass), 40);
     args.unit = (float)ldexp(pass->scale.scale, args.bits - placed->exponent);
     for (int64_t first = 0; first < placed->plane_count; first += placed->lanes) {
-        const int64_t left = placed->plane_count - first, count = left < placed->lanes ? left : placed->lanes;
-        args.plane_count = (SKG_INT)count;
-        for (int64_t k = 0; k < count; k++) args.planes[k] = placed->planes[first + k];
-        args.first_weight = (SKG_INT)(first * (placed->volume->wide ? 1 : placed->volume->codes));
+        skg_volume_args_planes(placed, first, &args);
         SKG_TRY(launch(placed, pass, hits, &args, staging));
     }
     return SKG_OK;

@@ -36,6 +36,24 @@ int64_t skg_volumes_bytes(const skg_volumes *volumes);
 /* The largest weight of a cell of a part; 0: it is no volume. */
 double skg_volumes_most(const skg_volumes *volumes, int64_t part);
 
+/* The rays of a camera in the axes of a volume, in double. A ray is at base + t way; both change from pixel to pixel. */
+typedef struct {
+    double base[3][3], way[3][3]; /* of pixel (0, 0), what a column adds, and a row */
+} skg_cell_rays;
+
+void skg_cell_rays_find(const skg_camera *camera, const double *to_cells, skg_cell_rays *rays);
+
+/* Fills what kernels know of a volume's rays in a pass, and uploads which parts displace it: all but window, unit and planes. */
+skg_status skg_volume_args_fill(skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
+                                skg_staging *staging, skg_volume_args *args);
+
+/* Takes the planes of a launch, from `first` on. */
+void skg_volume_args_planes(const skg_placed_volume *placed, int64_t first, skg_volume_args *args);
+
+/* Gets a program that reads the cells of a volume. */
+skg_status skg_volume_program(const skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
+                              int32_t count, const char *const *files, cl_program *program);
+
 /* Enqueues the sums of all volumes behind the raster and the hits of a pass. */
 skg_status skg_volumes_add(const skg_volumes *volumes, const skg_pass *pass, const skg_hits_memory *hits,
                            skg_staging *staging);

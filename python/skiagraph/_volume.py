@@ -16,7 +16,7 @@ from ._interface import ENUMS, ArgumentError
 from ._library import call, encode, ffi, filled, make, struct, text
 from .material import Material, as_material
 
-_VALUES, _TYPES = ENUMS["volume_values"], ENUMS["volume_type"]
+_VALUES, _TYPES, _INTERPOLATIONS = ENUMS["volume_values"], ENUMS["volume_type"], ENUMS["volume_interpolation"]
 
 
 def _of_image(image: Any) -> tuple[NDArray[Any], NDArray[np.float64]]:
@@ -43,12 +43,14 @@ def _cells(array: Any) -> NDArray[Any]:
 
 
 def make_volume(label: str, array: Any, affine: Any, values: str, material: Material | str | None,
-                classes: Sequence[tuple[float, Material | str]] | None) -> tuple[Any, list[Any]]:
+                classes: Sequence[tuple[float, Material | str]] | None, interpolation: str) -> tuple[Any, list[Any]]:
     """A volume, which the caller releases, and what its hash is made of."""
     source, name = struct("skg_volume_source"), ffi.new("char[]", encode(label, "label"))
     if not isinstance(values, str) or values.lower() not in _VALUES:
         raise ArgumentError(f"values is {values!r}; give 'HU', 'density' or 'mu'")
-    source.values, source.name = _VALUES[values.lower()], name
+    if interpolation not in _INTERPOLATIONS:
+        raise ArgumentError(f"interpolation is {interpolation!r}; give 'cells' or 'linear'")
+    source.values, source.name, source.interpolation = _VALUES[values.lower()], name, _INTERPOLATIONS[interpolation]
     of_all = None if material is None else as_material(material)
     if of_all is not None:
         source.material = of_all._handle
@@ -64,7 +66,7 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
             array, affine = _dicom_series.read(pathlib.Path(array))
     if isinstance(array, (str, os.PathLike)):
         return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 1.0, source),
-                [values, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])
+                [values, interpolation, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])
     if hasattr(array, "GetDirection") and affine is None:
         array, affine = _of_image(array)
     if affine is None:
@@ -74,7 +76,7 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     source.slices, source.rows, source.columns = cells.shape
     source.affine = _arrays.matrix(affine, "affine").ravel().tolist()
     return (make("skg_volume_create", "skg_volume", source),
-            [values, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells.tobytes()).hexdigest(), np.asarray(affine, np.float64)])
+            [values, interpolation, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells.tobytes()).hexdigest(), np.asarray(affine, np.float64)])
 
 
 def warn_of(label: str, volume: Any, named: bool) -> None:

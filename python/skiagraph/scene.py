@@ -108,14 +108,15 @@ class Scene(_gradient.Differentiable):
 
     def add_volume(self, label: str, array: Any, affine: Any = None, values: str = "HU", *, material: Material | str | None = None,
                    classes: Sequence[tuple[float, Material | str]] | None = None, inside: str | Part | None = None,
-                   pose: Any = None, priority: int = 0) -> Part:
+                   pose: Any = None, priority: int = 0, interpolation: str = "cells") -> Part:
         """Adds a volume of cells, such as a CT image.
 
         array: cells [z, y, x], copied, an image of SimpleITK, or the path of a file (.mha, .nrrd, .nii) or of a folder of DICOM
         slices of one series (pydicom). affine: 4 x 4 from the indices (x, y, z) of a cell to its centre, mm;
         None: that of the image. values: "HU", "density" (g/cm3) or "mu" (1/cm). material: the composition of all cells;
         classes: [(-1000, "Air"), (-400, "Lung")], from which value on a cell is of which; neither: Schneider's table (HU).
-        inside, pose and priority are as in add(). Parts inside it displace its cells.
+        inside, pose and priority are as in add(). Parts inside it displace its cells. interpolation: "cells": each has one value
+        throughout; "linear": the attenuation changes linearly between their centres.
 
         >>> import numpy as np
         >>> from skiagraph import Mesh, Scene
@@ -134,7 +135,7 @@ class Scene(_gradient.Differentiable):
                 part.inside = state.number(parent)
             if pose is not None:
                 part.pose = _arrays.matrix(pose, "pose").ravel().tolist()
-            part.volume, content = _volume.make_volume(label, array, affine, values, material, classes)
+            part.volume, content = _volume.make_volume(label, array, affine, values, material, classes, interpolation)
             try:
                 _volume.warn_of(label, part.volume, material is not None or bool(classes))
                 made = Part(state, state.add_part(part))

@@ -269,16 +269,11 @@ START_TEST(what_is_not_computed_is_refused) {
     static const double middle[3] = {0, 0, 0};
     skg_scene *scene = make_scene();
     skg_volume_source source;
-    skg_scatter scatter;
     skg_plan_options options;
     skg_mesh *mesh = NULL;
     skg_material *water = NULL;
     source_of(&source, numbers, SKG_VOLUME_INT16, SKG_VOLUME_HU);
     add_volume(scene, &source, -1);
-    skg_scatter_init(&scatter);
-    skg_plan_options_init(&options);
-    options.scatter = &scatter;
-    ck_skg_fails(render(context, scene, &options, image), SKG_ERR_UNSUPPORTED, "volume is a volume of cells");
     skg_plan_options_init(&options);
     options.precision = SKG_PRECISION_HALF;
     ck_skg_fails(render(context, scene, &options, image), SKG_ERR_UNSUPPORTED, "volumes");

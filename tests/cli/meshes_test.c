@@ -286,7 +286,7 @@ static const struct {
 } bad_volumes[] = {
     {", \"Density\": 1", "whose values say the density"},
     {", \"Cube\": [4, \"mm\"]", "stands beside Volume"},
-    {", \"Interpolation\": \"linear\"", "not computed yet"},
+    {", \"Interpolation\": \"cubic\"", "interpolation"},
     {", \"Values\": \"grey\"", "grey"},
     {", \"Values\": \"density\"", "give it a material or classes"},
     {", \"Values\": \"mu\", \"Material\": \"Water\"", "need no material"},

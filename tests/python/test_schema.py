@@ -44,7 +44,7 @@ BASES = [
     scene(Source=dict(SOURCE, Beam={"Bins": [[60, 100]]}),
           Detector=dict(DETECTOR, Curved={"Radius": [1000, "mm"], "Axis": "columns"})),
     {"Source": {"From": "LAO 30", "SOD": [700, "mm"], "SDD": [1000, "mm"], "Beam": SOURCE["Beam"]}, "Samples": [CUBE]},
-    scene(Samples=[{"Label": "ct", "Volume": "ct.mha", "Values": "HU", "Classes": [[-1000, "Air"], [-400, "Water"]]}]),
+    scene(Samples=[{"Label": "ct", "Volume": "ct.mha", "Values": "HU", "Classes": [[-1000, "Air"], [-400, "Water"]], "Interpolation": "linear"}]),
     scene(Breathing={"Organs": {"cube": {"Kind": "Deformable", "Links": [{"To": "rib", "Distance": [15, "mm"]}]}},
                      "Events": [{"Hold": [1, 2]}], "Fit": {"Parameters": ["tendon"]}}),
 ]

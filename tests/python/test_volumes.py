@@ -65,6 +65,19 @@ def test_the_axes_are_z_y_x():
     assert abs((column - 19.5) * 2 / 1.25 + 5) < 1.5 and abs((row - 14.5) * 2 / 1.25 + 8) < 1.5
 
 
+def test_values_are_linear_between_cells():
+    cells = np.zeros((1, 1, 2), np.float32)
+    cells[0, 0] = 0, 1
+    images = []
+    for interpolation in ("cells", "linear"):
+        scene = make_scene()
+        scene.add_volume("two", cells, np.diag([20, 20, 20, 1]), "mu", interpolation=interpolation, pose=sk.translate(-10, 0, 0))
+        images.append(scene.image("attenuation"))
+    # A step, and a ramp over 20 mm with the same sum.
+    assert np.unique(images[0][15].round(2)).size < np.unique(images[1][15].round(2)).size
+    np.testing.assert_allclose(images[1].sum(), images[0].sum(), rtol=0.02)
+
+
 def test_parts_inside_displace_cells():
     images = []
     for volume in (None, np.ones((10, 15, 20), np.int16)):
@@ -86,6 +99,8 @@ def test_what_cannot_be_is_refused(tmp_path):
         scene.add_volume("ct", cells[0], AFFINE)
     with pytest.raises(sk.ArgumentError, match="'HU', 'density' or 'mu'"):
         scene.add_volume("ct", cells, AFFINE, "grey")
+    with pytest.raises(sk.ArgumentError, match="'cells' or 'linear'"):
+        scene.add_volume("ct", cells, AFFINE, interpolation="cubic")
     with pytest.raises(sk.Error, match="singular"):
         scene.add_volume("ct", cells, np.diag([1, 1, 0, 1]))
     with pytest.raises(sk.Error, match="column 1, row 2, slice 0 is nan"):
@@ -97,9 +112,11 @@ def test_what_cannot_be_is_refused(tmp_path):
         pickle.dumps(scene)
     with pytest.raises(sk.Error, match="not written"):
         scene.save(tmp_path / "scene.json")
-    with pytest.raises(sk.Error, match="no gradient"):
-        scene.gradient(np.ones((30, 40)), wrt=("poses",))
-    with pytest.raises(sk.Error, match="volume of cells"):
+    with pytest.raises(sk.Error, match="no derivative by source or detector"):
+        scene.gradient(np.ones((30, 40)), wrt=("source",))
+    assert np.isnan(scene.gradient(np.ones((30, 40)), wrt=("poses",))["poses"]["ct"]).all()
+    scene.add_volume("mu", np.ones((2, 3, 4)), AFFINE, "mu")
+    with pytest.raises(sk.Error, match="one of 2 volumes of cells"):
         scene.image(scatter=0.1)
 
 

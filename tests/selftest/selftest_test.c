@@ -163,7 +163,7 @@ static const struct {
      SKG_SELF_TEST_PRIORITY},
     {"volume.cl", "in[1] ? two - one : none", "none", SKG_SELF_TEST_VOLUME},
     {"volume.cl", "cells - (place < side->step)", "cells", SKG_SELF_TEST_VOLUME},
-    {"volume.cl", "(active[w] & (uint)displacing[w]) != 0", "1", SKG_SELF_TEST_VOLUME},
+    {"cell_rays.clh", "(active[w] & (uint)displacing[w]) != 0", "1", SKG_SELF_TEST_VOLUME},
     {"noise.clh", "(uint)pixel", "(uint)0", SKG_SELF_TEST_NOISE},
     {"blur.cl", "weights[j * args.across + i]", "weights[j * args.across]", SKG_SELF_TEST_BLUR},
     {"project.cl", "(p->anchor_x + across, p->anchor_y + down, r, t)",

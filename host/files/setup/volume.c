@@ -119,7 +119,7 @@ static skg_status note(const skg_setup_reader *reader, const skg_json_node *node
     return SKG_OK;
 }
 
-static skg_status read_values(const skg_json_object *sample, int32_t *values) {
+static skg_status read_values(const skg_json_object *sample, skg_volume_source *source) {
     static const char *const names[] = {"HU", "density", "mu"};
     static const char *const ways[] = {"cells", "linear"};
     const skg_json_node node = skg_json_member(sample, "Values"),
@@ -127,10 +127,8 @@ static skg_status read_values(const skg_json_object *sample, int32_t *values) {
     int64_t choice = 0, linear = 0;
     if (node.value) SKG_TRY(skg_json_choice(&node, "kind of values", names, 3, &choice));
     if (way.value) SKG_TRY(skg_json_choice(&way, "interpolation", ways, 2, &linear));
-    if (linear)
-        return skg_json_fail(&way, SKG_ERR_UNSUPPORTED,
-                             "is not computed yet: each cell has one value throughout; leave it out");
-    *values = (int32_t)choice;
+    source->interpolation = (int32_t)linear;
+    source->values = (int32_t)choice;
     return SKG_OK;
 }
 
@@ -146,7 +144,7 @@ skg_status skg_setup_read_volume(skg_setup_reader *reader, const skg_json_object
     skg_status status = SKG_OK;
     skg_volume_source_init(&source);
     SKG_TRY(refuse_others(sample));
-    SKG_TRY(read_values(sample, &source.values));
+    SKG_TRY(read_values(sample, &source));
     SKG_TRY(skg_json_text(&file, &name));
     if (unit.value) SKG_TRY(skg_json_unit_of_length(&unit, &unit_mm));
     SKG_TRY(skg_setup_find_file(reader, name, &path));

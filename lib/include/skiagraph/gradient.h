@@ -60,7 +60,7 @@ typedef struct {
     /** 0 */
     int32_t reserved;
     /** [parts][6] by the twist of each part alone, per mm and per radian; NULL: not wanted. Parts inside it do not move with
-     * it. */
+     * it. NaN of volumes of cells, which have no derivative by their place. */
     double *poses;
     /** [3] by the position of the source, per mm; in a parallel beam from infinity, by its direction. The pixels stay. NULL:
      * not wanted. */
@@ -103,7 +103,8 @@ SKG_INIT(skg_gradient)
  *                SKG_ERR_UNSUPPORTED, with the reason, for half precision, scatter, leaky meshes, parts that reach the plane of
  *                the source, positions set on the device, and ratios to a flat field that differs from pixel to pixel if
  *                they have noise or steps; for source and detector also for the heel effect, a bow-tie filter, a grid, an
- *                oblique scintillator, jaws, and a world with ratios or in a parallel beam
+ *                oblique scintillator, jaws, and a world with ratios or in a parallel beam; beside volumes of cells for source,
+ *                detector, densities, attenuations and the vertices of the volume
  *     range      SKG_RANGE if a derivative by a path length is not finite
  *     stale      SKG_STALE as skg_plan_submit */
 SKG_API skg_status skg_plan_gradient_submit(skg_plan *plan, const skg_frame *frame,
@@ -156,7 +157,7 @@ SKG_INIT(skg_direction)
  *     limits        as above: faces that contain rays change the means of their pixels
  *     job           result
  *     errors        as of skg_plan_gradient_submit; SKG_ERR_ARGUMENT for fewer than one direction and for numbers that are not
- *                   finite; SKG_ERR_UNSUPPORTED also for a blur that depends on depth */
+ *                   finite; SKG_ERR_UNSUPPORTED also for a blur that depends on depth, and for a volume of cells that moves */
 SKG_API skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, int64_t count,
                                                const skg_direction *directions, double *derivatives,
                                                int64_t *saturated, skg_job **job);

@@ -29,6 +29,15 @@ enum skg_volume_values {
     SKG_VOLUME_MU = 2
 };
 
+/** What values are between the centres of cells. */
+enum skg_volume_interpolation {
+    /** Each cell has one value throughout. */
+    SKG_VOLUME_CELLS = 0,
+    /** The attenuation changes linearly along each axis between the centres of eight cells, and not within the outer half
+     * of the cells at the surface. Integrals along rays are exact for it, too. */
+    SKG_VOLUME_LINEAR = 1
+};
+
 /** Element type of cells in memory. */
 enum skg_volume_type {
     /** int16_t */
@@ -50,8 +59,8 @@ typedef struct {
     int32_t values;
     /** enum skg_volume_type, of cells */
     int32_t type;
-    /** 0 */
-    int32_t reserved;
+    /** enum skg_volume_interpolation */
+    int32_t interpolation;
     /** Number of cells along the first axis, 1 to 32768. */
     int64_t columns;
     /** Number of cells along the second axis. */
