@@ -21,4 +21,29 @@ static inline void set_up_scene(void) {
     write_text("small scene.json", small_scene);
 }
 
+static inline double number(json_t *object, const char *key) {
+    json_t *value = member(object, key);
+    ck_assert_msg(json_is_number(value), "%s is no number", key);
+    return json_number_value(value);
+}
+
+static inline json_t *point_of(json_t *study, json_t *index) {
+    json_t *point = json_array_get(member(study, "points"), (size_t)json_integer_value(index));
+    ck_assert_ptr_nonnull(point);
+    return point;
+}
+
+/* Settings of one dial; values: of `key`, in their order. */
+static inline int list_dial(json_t *study, const char *dial, const char *key, double *values) {
+    json_t *point;
+    size_t index;
+    int count = 0;
+    json_array_foreach(member(study, "points"), index, point) {
+        if (strcmp(json_string_value(member(point, "dial")), dial) != 0) continue;
+        ck_assert_int_lt(count, 16);
+        values[count++] = number(point, key);
+    }
+    return count;
+}
+
 #endif

@@ -23,12 +23,6 @@ static json_t *sensitivity_of(const char *more) {
     return found;
 }
 
-static double number(json_t *object, const char *key) {
-    json_t *value = member(object, key);
-    ck_assert_msg(json_is_number(value), "%s is no number", key);
-    return json_number_value(value);
-}
-
 /* A part moves along x alone: y is along the beam, and z along the rods. */
 static void check_part(json_t *part, const char *label, double expected) {
     json_t *direction = member(part, "direction");
