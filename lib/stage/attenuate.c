@@ -25,9 +25,6 @@ static work_shape shape_of(const skg_context *context, int32_t fine) {
     return shape;
 }
 
-/* log2 of e, to the precision of a double. */
-static const double LOG2_E = 1.4426950408889634;
-
 /* The -D names of the program: X(name, value, value in the program of skg_kernels_get_first). Everything that tells programs of
  * this stage apart stands here and in the options of its kernels. */
 #define DEFINES(X)                                                                                           \
@@ -59,26 +56,10 @@ struct skg_attenuator {
     int64_t sent_count;
 };
 
-static skg_status upload(skg_context *context, int32_t is_double, int64_t count, const double *numbers,
-                         skg_buffer *buffer) {
-    if (is_double)
-        return skg_buffer_write(context, buffer, count * (int64_t)sizeof *numbers, numbers, "attenuation");
-    float *rounded = NULL;
-    SKG_TRY(skg_alloc(count, sizeof *rounded, "attenuation", &rounded));
-    for (int64_t i = 0; i < count; i++) rounded[i] = (float)numbers[i];
-    skg_status status =
-        skg_buffer_write(context, buffer, count * (int64_t)sizeof *rounded, rounded, "attenuation");
-    skg_free(&rounded);
-    return status;
-}
-
-static int32_t shades_of(const skg_attenuation *attenuation) {
-    return attenuation->shades ? attenuation->shades->count : 0;
-}
-
 /* Whether a general program is needed (kernels/attenuation/planes.clh), and the planes that a program has memory for. */
 static int is_general(const skg_attenuation *attenuation) {
-    return attenuation->planes > SKG_FEW_PLANES || shades_of(attenuation) > 0 || attenuation->noise;
+    return attenuation->planes > SKG_FEW_PLANES || skg_attenuation_shades(attenuation) > 0 ||
+           attenuation->noise;
 }
 
 /* Whether a program is worth its compilation that has constants for what is shown (kernels/attenuation/planes.clh). Images of one plane
@@ -91,53 +72,6 @@ static int is_plain(const skg_attenuation *attenuation) {
 
 static int64_t planes_of(const skg_attenuation *attenuation) {
     return is_general(attenuation) ? skg_round_up(attenuation->planes, SKG_PLANES_STEP) : attenuation->planes;
-}
-
-static skg_status upload_shades(skg_context *context, int32_t is_double, skg_attenuation *attenuation) {
-    const skg_shades *shades = attenuation->shades;
-    if (shades_of(attenuation) == 0) return SKG_OK;
-    const int64_t polynomials = shades->heel + shades->oblique;
-    if (polynomials)
-        SKG_TRY(upload(context, is_double, polynomials * SKG_SHADE_TERMS, shades->polynomials[0],
-                       &attenuation->polynomials));
-    if (shades->table_count == 0) return SKG_OK;
-    return upload(context, is_double, shades->table_count, shades->tables, &attenuation->tables);
-}
-
-skg_status skg_attenuation_create(skg_context *context, int32_t precision, const skg_attenuation *shape,
-                                  const skg_attenuation_tables *tables, skg_attenuation *attenuation) {
-    const int32_t is_double = precision == SKG_PRECISION_DOUBLE;
-    const int64_t count = (int64_t)shape->nodes * shape->planes;
-    double *scaled = NULL;
-    SKG_TRY(skg_alloc(count, sizeof *scaled, "attenuation", &scaled));
-    /* The kernel takes powers of two: exp(-x) = 2^(-x log2 e). */
-    for (int64_t i = 0; i < count; i++)
-        scaled[i] = tables->coefficients[i] * (shape->shown == SKG_SHOW_EXPONENT ? 1 : -LOG2_E);
-    *attenuation = *shape;
-    skg_status status = upload(context, is_double, count, scaled, &attenuation->coefficients);
-    skg_free(&scaled);
-    SKG_TRY(status);
-    const int64_t weighted = (int64_t)shape->nodes * shape->channels;
-    if (shape->noise)
-        SKG_TRY(upload(context, is_double, weighted, tables->variances, &attenuation->variances));
-    SKG_TRY(upload_shades(context, is_double, attenuation));
-    if (tables->range)
-        SKG_TRY(upload(context, is_double, 2 * (int64_t)shape->planes, tables->range, &attenuation->range));
-    return upload(context, is_double, weighted, tables->weights, &attenuation->weights);
-}
-
-void skg_attenuation_release(skg_attenuation *attenuation) {
-    skg_buffer_release(&attenuation->coefficients);
-    skg_buffer_release(&attenuation->weights);
-    skg_buffer_release(&attenuation->variances);
-    skg_buffer_release(&attenuation->range);
-    skg_buffer_release(&attenuation->polynomials);
-    skg_buffer_release(&attenuation->tables);
-}
-
-int64_t skg_attenuation_bytes(const skg_attenuation *attenuation) {
-    return attenuation->coefficients.bytes + attenuation->weights.bytes + attenuation->variances.bytes +
-           attenuation->range.bytes + attenuation->polynomials.bytes + attenuation->tables.bytes;
 }
 
 skg_status skg_attenuator_create(skg_context *context, skg_attenuator **attenuator) {
@@ -292,7 +226,7 @@ static skg_attenuate_double scalars_of(const skg_sums *sums, const skg_camera *c
     args.layout.first_plane = sums->pass * args.layout.planes;
     skg_camera_rays(camera, sums->scale, &args.ray);
     find_world(camera, attenuation, args.world);
-    if (shades_of(attenuation)) skg_shades_see(attenuation->shades, camera, &args.shades);
+    if (skg_attenuation_shades(attenuation)) skg_shades_see(attenuation->shades, camera, &args.shades);
     return args;
 }
 
@@ -303,7 +237,7 @@ static skg_status send_lines(skg_attenuator *attenuator, const skg_camera *camer
     *tables = attenuation->tables.memory;
     if (!skg_camera_is_curved(camera)) return SKG_OK;
     const int64_t lines = SKG_LINES_SIZE(camera->rows);
-    const int64_t shades = shades_of(attenuation) ? attenuation->shades->table_count : 0;
+    const int64_t shades = skg_attenuation_shades(attenuation) ? attenuation->shades->table_count : 0;
     double *made = NULL;
     SKG_TRY(skg_alloc(lines + shades, sizeof *made, "attenuation", &made));
     skg_bends_table(camera, 1, made);
@@ -311,7 +245,8 @@ static skg_status send_lines(skg_attenuator *attenuator, const skg_camera *camer
     skg_status status = SKG_OK;
     if (attenuator->sent_count != lines + shades ||
         memcmp(made, attenuator->sent, (size_t)(lines + shades) * sizeof *made) != 0)
-        status = upload(attenuator->context, is_double, lines + shades, made, &attenuator->lines);
+        status =
+            skg_attenuation_upload(attenuator->context, is_double, lines + shades, made, &attenuator->lines);
     skg_free(&attenuator->sent);
     attenuator->sent = made;
     attenuator->sent_count = status == SKG_OK ? lines + shades : 0;
@@ -330,7 +265,7 @@ skg_status skg_attenuate(skg_attenuator *attenuator, const skg_sums *sums, const
     skg_attenuate_float rounded;
     cl_kernel kernel = NULL;
     /* The kernel compares with this limit what it computes: exponents if these are shown, else powers of two. */
-    args.limit = -least * (attenuation->shown == SKG_SHOW_EXPONENT ? 1 : LOG2_E);
+    args.limit = -least * (attenuation->shown == SKG_SHOW_EXPONENT ? 1 : SKG_LOG2_E);
     args.factor = factor;
     args.photons = SKG_FEW_PHOTONS * share;
     if (noise) args.key = *noise;
@@ -370,7 +305,8 @@ skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t 
 
 /* The planes of accumulators that a program of skg_weights has memory for: a power of two, so that few programs serve all scenes. */
 static int64_t weighed_of(const skg_sums *sums, const skg_attenuation *attenuation) {
-    const int32_t needed = sums->mixed ? sums->mixed : attenuation->planes - shades_of(attenuation);
+    const int32_t needed =
+        sums->mixed ? sums->mixed : attenuation->planes - skg_attenuation_shades(attenuation);
     int64_t weighed = 4;
     while (weighed < needed) weighed *= 2;
     return weighed;
