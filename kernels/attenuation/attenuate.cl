@@ -246,7 +246,7 @@ static void skg_finish(const skg_strip *strip, skg_pixels *pixels, int r) {
         }
     }
     /* Only what the parts subtract is counted as negative, by the first node; the highest one may be another. */
-    int of_first = SKG_HAS_WORLD(strip) && SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM;
+    int of_first = SKG_HAS_WORLD(strip) & (SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM);
 #if SKG_GENERAL
     of_first |= strip->args.shades.count > 0;
 #endif
