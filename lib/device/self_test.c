@@ -40,6 +40,8 @@ const char *skg_self_test_name(skg_self_test number) {
         [SKG_SELF_TEST_DENSITIES] = "density gradients",
         [SKG_SELF_TEST_VOLUME] = "volumes",
         [SKG_SELF_TEST_PULSES] = "photon counting",
+        [SKG_SELF_TEST_LINEAR] = "linear volumes",
+        [SKG_SELF_TEST_CELLS] = "volume gradients",
     };
     return names[number];
 }

@@ -41,6 +41,8 @@ typedef enum {
     SKG_SELF_TEST_DENSITIES, /* derivatives of an image by the densities of parts inside each other */
     SKG_SELF_TEST_VOLUME,    /* volumes of cells */
     SKG_SELF_TEST_PULSES,    /* a detector that counts */
+    SKG_SELF_TEST_LINEAR,    /* volumes whose values are linear between their cells' centres */
+    SKG_SELF_TEST_CELLS,     /* derivatives of an image by parts that displace cells of a volume */
     SKG_SELF_TESTS
 } skg_self_test;
 

@@ -7,6 +7,7 @@
 #include "core/text.h"
 #include "material/material.h"
 #include "scene/scene.h"
+#include "scene/volume.h"
 
 #include <inttypes.h>
 #include <string.h>
@@ -155,12 +156,17 @@ static skg_status follow(skg_plan *plan, const skg_dose_options *options, const 
     return status;
 }
 
+/* By which the volume of a part becomes its mass, g/cm3; 0: not known. */
+static double density_of(const skg_scene_part_data *part) {
+    return !part->volume ? part->material->density : part->volume->values == SKG_VOLUME_MU ? 0 : 1;
+}
+
 static skg_status find_masses(const skg_recipe *recipe, const skg_forest *tree, skg_dose *dose) {
     double *volumes = NULL;
     SKG_TRY(skg_alloc(dose->parts, sizeof *volumes, "dose", &volumes));
     const skg_status status = skg_dose_volumes(recipe, tree, volumes);
     for (int64_t i = 0; i < dose->parts && status == SKG_OK; i++) {
-        const double density = recipe->scene->parts[i].material->density, mm3_per_cm3 = 1e3;
+        const double density = density_of(&recipe->scene->parts[i]), mm3_per_cm3 = 1e3;
         dose->part[i] =
             (skg_dose_part){.size = sizeof dose->part[i],
                             .dose_ugy = (double)NAN,

@@ -114,7 +114,7 @@ void skg_dose_found_free(skg_dose_found *found);
 
 /* --- Masses. */
 
-/* The volume of each part, without those inside it, mm3; of leaky parts NAN. */
+/* The volume of each part, without those inside it, mm3; of leaky parts NAN; of cells of a volume, times g/cm3. */
 skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, double *volumes);
 
 /* --- What the detector gets. */

@@ -150,8 +150,8 @@ static int interact(skg_dose_batch *b, const skg_dose_matter *m, const skg_dose_
 static skg_status follow_one(skg_dose_batch *b, skg_dose_photon photon, int is_first) {
     const skg_dose_hall *hall = b->hall;
     for (int order = 0; order < ORDERS; order++) {
-        SKG_TRY(skg_way_find(hall->walk->tree, &hall->rules, photon.at, photon.direction,
-                             reach_of(b, &photon), &b->way));
+        SKG_TRY(skg_way_find_cells(hall->walk->tree, &hall->rules, photon.at, photon.direction,
+                                   reach_of(b, &photon), &b->way));
         const double depth = leave_along(b, &photon), met = -expm1(-depth);
         const double drawn = skg_draw(&b->seed);
         if (is_first && order == 0) photon.weight *= met;
@@ -161,7 +161,7 @@ static skg_status follow_one(skg_dose_batch *b, skg_dose_photon photon, int is_f
         if (!where) return SKG_OK;
         const skg_dose_matter *m = skg_dose_matter_of(hall, where);
         const skg_dose_meeting meeting = skg_dose_meet(m, photon.kev);
-        SKG_TRY(skg_dose_send(b, &photon, m, &meeting, is_first && order == 0));
+        SKG_TRY(skg_dose_send(b, &photon, where, &meeting, is_first && order == 0));
         if (!interact(b, m, &meeting, &photon)) return SKG_OK;
         if (photon.kev > SKG_DOSE_LOWEST_KEV) continue;
         leave(b, where, photon.weight * photon.kev);

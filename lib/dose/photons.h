@@ -19,7 +19,7 @@ typedef struct {
     skg_rules rules;
     int64_t matter_count;
     skg_dose_matter *matter; /* [matter_count] each material once */
-    int32_t *of_part;        /* [parts] number of its matter */
+    int32_t *of_part;        /* [parts] number of its matter; of a volume, of its first curve */
     int32_t of_world;        /* -1: none */
     int32_t reserved;
     int64_t aim_count;
@@ -56,15 +56,16 @@ int skg_dose_emit(const skg_dose_hall *hall, uint64_t *seed, skg_dose_photon *ph
 /* Follows one photon of the beam and all that it sets free. */
 skg_status skg_dose_follow(skg_dose_batch *batch);
 
-/* Adds what an interaction sends to the points, in expectation. in: the matter at the place of the photon; is_first: it came straight
+/* Adds what an interaction sends to the points, in expectation. in: what is at the place of the photon; is_first: it came straight
  * from the source */
-skg_status skg_dose_send(skg_dose_batch *batch, const skg_dose_photon *photon, const skg_dose_matter *in,
+skg_status skg_dose_send(skg_dose_batch *batch, const skg_dose_photon *photon, const skg_presence *in,
                          const skg_dose_meeting *meeting, int is_first);
 
 /* The matter of a presence; NULL: nothing is met there. */
 static inline const skg_dose_matter *skg_dose_matter_of(const skg_dose_hall *hall,
                                                         const skg_presence *presence) {
-    const int32_t number = presence->part < 0 ? hall->of_world : hall->of_part[presence->part];
+    const int32_t number =
+        presence->part < 0 ? hall->of_world : hall->of_part[presence->part] + presence->curve;
     return number < 0 || !hall->matter[number].material ? NULL : &hall->matter[number];
 }
 

@@ -32,9 +32,10 @@ typedef struct {
     int32_t sign; /* 1: it enters the part, -1: it leaves it */
 } skg_crossing;
 
-/* A part that has a share of a piece; -1: the world. Shares are 1 but where parts overlap. */
+/* A part that has a share of a piece; -1: the world. Shares are 1 but where parts overlap; of cells of a volume, times g/cm3. */
 typedef struct {
-    int32_t part, reserved;
+    int32_t part;
+    int32_t curve; /* of the cells of a volume (scene/volume.h); else 0 */
     double share;
 } skg_presence;
 
@@ -48,6 +49,7 @@ typedef struct {
 typedef struct {
     const skg_scene *scene;
     int32_t competing, clip, unite; /* competing: 1: priorities, clip or unite decide */
+    int32_t cells;                  /* 1: there are volumes of cells */
 } skg_rules;
 
 /* Those of a plan. */
@@ -74,5 +76,14 @@ skg_status skg_way_cross(const skg_forest *tree, const double from[3], const dou
 skg_status skg_way_find(const skg_forest *tree, const skg_rules *rules, const double from[3],
                         const double direction[3], double reach, skg_way *way);
 void skg_way_free(skg_way *way);
+
+/* The same, with pieces in volumes of cells that are as long as the cells are the same. Values that are linear between cells count as those of
+ * the cells, which have the same mass. */
+skg_status skg_way_find_cells(const skg_forest *tree, const skg_rules *rules, const double from[3],
+                              const double direction[3], double reach, skg_way *way);
+
+/* Adds a piece without presences, and one to the last piece. */
+skg_status skg_way_add_piece(skg_way *way, double from, double to);
+skg_status skg_way_add_presence(skg_way *way, const skg_presence *presence);
 
 #endif

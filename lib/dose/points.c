@@ -26,15 +26,17 @@ static double passes(const skg_dose_batch *b, double kev) {
 typedef struct {
     const skg_dose_matter *matter;
     const skg_dose_meeting *meeting;
-    double mm;   /* from one to the other */
-    double near; /* mm: nearer ones count by their mean */
+    double share; /* of the matter there */
+    double mm;    /* from one to the other */
+    double near;  /* mm: nearer ones count by their mean */
 } seen;
 
 /* Photons of an energy that arrive, per mm2, of one per sr: exp(-t) / mm^2. Of interactions in a ball, whose density changes little there, each
  * counts as all do on average in the matter where it is, because the variance would have no bound otherwise. */
 static double arrive(const skg_dose_batch *b, const seen *s, double kev) {
     if (!(s->mm < s->near)) return passes(b, kev) / (s->mm * s->mm);
-    const double mu = skg_dose_total(s->matter, skg_dose_place_of(s->matter, kev)), own = mu * s->near;
+    const double mu = s->share * skg_dose_total(s->matter, skg_dose_place_of(s->matter, kev)),
+                 own = mu * s->near;
     return 3 / (s->near * s->near) * (own > 1e-6 ? -expm1(-own) / own : 1);
 }
 
@@ -57,7 +59,8 @@ static skg_status send_to(skg_dose_batch *b, int64_t point, const skg_dose_photo
     if (!(s->mm > 0)) return SKG_OK;
     skg_scale_vector(1 / s->mm, direction, direction);
     if (!(s->mm < s->near))
-        SKG_TRY(skg_way_find(b->hall->walk->tree, &b->hall->rules, photon->at, direction, s->mm, &b->sight));
+        SKG_TRY(skg_way_find_cells(b->hall->walk->tree, &b->hall->rules, photon->at, direction, s->mm,
+                                   &b->sight));
     const double cosine = fmin(fmax(skg_dot(photon->direction, direction), -1), 1);
     skg_dose_scattered(s->matter, s->meeting, photon->kev, cosine, &compton, &rayleigh, &left);
     double kerma = rayleigh * skg_kerma_at(&b->hall->kerma, photon->kev) * arrive(b, s, photon->kev);
@@ -68,11 +71,11 @@ static skg_status send_to(skg_dose_batch *b, int64_t point, const skg_dose_photo
     return SKG_OK;
 }
 
-skg_status skg_dose_send(skg_dose_batch *b, const skg_dose_photon *photon, const skg_dose_matter *m,
+skg_status skg_dose_send(skg_dose_batch *b, const skg_dose_photon *photon, const skg_presence *in,
                          const skg_dose_meeting *meeting, int is_first) {
-    seen s = {.matter = m, .meeting = meeting};
-    s.near = is_first ? fmin(NEAR_FIRST, NEAR_SHARE_FIRST / meeting->total)
-                      : fmin(NEAR, NEAR_SHARE / meeting->total);
+    seen s = {.matter = skg_dose_matter_of(b->hall, in), .meeting = meeting, .share = in->share};
+    const double mu = in->share * meeting->total;
+    s.near = is_first ? fmin(NEAR_FIRST, NEAR_SHARE_FIRST / mu) : fmin(NEAR, NEAR_SHARE / mu);
     for (int64_t p = 0; p < b->hall->walk->points; p++)
         if (b->hall->walk->spots[p].wanted) SKG_TRY(send_to(b, p, photon, &s));
     return SKG_OK;

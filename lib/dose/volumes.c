@@ -1,9 +1,10 @@
-/* The volume of each part, without what lies inside it. */
+/* The volume of each part, without what lies inside it; of cells, what they weigh. */
 #include "dose/figures.h"
 
 #include "core/maths.h"
 #include "mesh/mesh.h"
 #include "scene/scene.h"
+#include "scene/volume.h"
 
 /* Lines along each side, where parts compete: a volume is right to some 1e-3. */
 enum { LINES = 384 };
@@ -28,7 +29,7 @@ static skg_status by_surfaces(const skg_scene *scene, double *volumes) {
 
 /* Of the pieces of parallel lines: what priorities, clip and unite leave of each part. */
 static skg_status by_lines(const skg_recipe *recipe, const skg_forest *tree, double *volumes) {
-    const skg_rules rules = {recipe->scene, 1, recipe->options.clip, recipe->options.unite};
+    const skg_rules rules = skg_rules_of(recipe);
     const skg_forest_node *box = &tree->nodes[0];
     const double along[3] = {0, 0, 1}, reach = 2 * (box->high[2] - box->low[2]) + 2;
     const double step[2] = {(box->high[0] - box->low[0]) / LINES, (box->high[1] - box->low[1]) / LINES};
@@ -39,7 +40,7 @@ static skg_status by_lines(const skg_recipe *recipe, const skg_forest *tree, dou
         const double from[3] = {box->low[0] + (i % LINES + 0.4142135623730951) * step[0],
                                 box->low[1] + ((double)(i / LINES) + 0.7320508075688772) * step[1],
                                 box->low[2] - 1};
-        status = skg_way_find(tree, &rules, from, along, reach, &way);
+        status = skg_way_find_cells(tree, &rules, from, along, reach, &way);
         for (int64_t p = 0; p < way.piece_count && status == SKG_OK; p++)
             for (int64_t k = way.pieces[p].first; k < way.pieces[p].first + way.pieces[p].count; k++)
                 if (way.presences[k].part >= 0)
@@ -50,7 +51,41 @@ static skg_status by_lines(const skg_recipe *recipe, const skg_forest *tree, dou
     return status;
 }
 
+static int is_parent(const skg_scene *scene, int64_t part) {
+    int64_t i = 0;
+    while (i < scene->count && scene->parts[i].inside != part) i++;
+    return i < scene->count;
+}
+
+/* Cells that nothing displaces weigh what they hold on average; which others are displaced, lines say. */
+static skg_status weigh_cells(const skg_recipe *recipe, const skg_forest *tree, double *volumes) {
+    const skg_scene *scene = recipe->scene;
+    double *left = NULL;
+    int64_t displaced = 0;
+    for (int64_t i = 0; i < scene->count; i++) {
+        if (!scene->parts[i].volume) continue;
+        volumes[i] *= scene->parts[i].volume->mean_amount;
+        displaced += is_parent(scene, i);
+    }
+    if (!displaced) return SKG_OK;
+    SKG_TRY(skg_alloc(scene->count, sizeof *left, "dose", &left));
+    const skg_status status = by_lines(recipe, tree, left);
+    for (int64_t i = 0; i < scene->count; i++)
+        if (scene->parts[i].volume && is_parent(scene, i)) volumes[i] = left[i];
+    skg_free(&left);
+    return status;
+}
+
+/* Whether parts take away from others than those that they lie inside. */
+static int has_competitors(const skg_recipe *recipe) {
+    const skg_scene *scene = recipe->scene;
+    int64_t p = 0;
+    while (p < scene->count && scene->parts[p].priority == scene->parts[0].priority) p++;
+    return recipe->priority_possible && (p < scene->count || recipe->options.clip || recipe->options.unite);
+}
+
 skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, double *volumes) {
-    return recipe->priority_possible && tree->count > 0 ? by_lines(recipe, tree, volumes)
-                                                        : by_surfaces(recipe->scene, volumes);
+    if (has_competitors(recipe) && tree->count > 0) return by_lines(recipe, tree, volumes);
+    SKG_TRY(by_surfaces(recipe->scene, volumes));
+    return weigh_cells(recipe, tree, volumes);
 }

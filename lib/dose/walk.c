@@ -8,20 +8,32 @@
 #include "material/scattering.h"
 #include "plan/decisions.h"
 #include "scene/scene.h"
+#include "scene/volume.h"
 
 #include <string.h>
 
 /* So many rounds, between which progress is told. */
 enum { ROUNDS = 16 };
 
+/* What is met in cells has elements. */
+static skg_status check_cells(const skg_scene_part_data *part) {
+    const skg_volume *volume = part->volume;
+    if (volume->values == SKG_VOLUME_MU)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s: the values of its cells are attenuation coefficients, which do not say what stays "
+            "in them; give densities or Hounsfield numbers",
+            part->label);
+    for (int64_t c = 0; c < volume->curve_count; c++) SKG_TRY(skg_scattering_check(volume->curves[c]));
+    return SKG_OK;
+}
+
 skg_status skg_dose_walk_check(const skg_recipe *recipe) {
     const skg_scene *scene = recipe->scene;
     skg_material *world = skg_scatter_world(recipe);
     for (int64_t i = 0; i < scene->count; i++) {
         const skg_scene_part_data *part = &scene->parts[i];
-        if (part->volume)
-            return skg_fail(SKG_ERR_UNSUPPORTED,
-                            "%s: is a volume of cells, through which photons are not followed", part->label);
+        if (part->volume) SKG_TRY(check_cells(part));
         if (!part->mesh->closed)
             return skg_fail(SKG_ERR_UNSUPPORTED,
                             "%s: its mesh is not closed, so what lies inside is not known", part->label);
@@ -54,17 +66,35 @@ static skg_status add_matter(skg_dose_hall *h, skg_material *material, skg_mater
                                 &h->matter[h->matter_count++]);
 }
 
+/* Of a volume: each of its curves, at 1 g/cm3, one after the other. */
+static skg_status add_curves(skg_dose_hall *h, const skg_volume *volume, skg_material **materials,
+                             int32_t *first) {
+    int32_t number;
+    SKG_TRY(add_matter(h, volume->curves[0], materials, first));
+    for (int64_t c = 1; c < volume->curve_count; c++)
+        SKG_TRY(add_matter(h, volume->curves[c], materials, &number));
+    return SKG_OK;
+}
+
+static int64_t count_matter(const skg_scene *scene) {
+    int64_t count = 1; /* the world's */
+    for (int64_t i = 0; i < scene->count; i++)
+        count += scene->parts[i].volume ? scene->parts[i].volume->curve_count : 1;
+    return count;
+}
+
 static skg_status find_matter(skg_dose_hall *h) {
     const skg_recipe *recipe = h->walk->beam->recipe;
     const skg_scene *scene = recipe->scene;
     skg_material **materials = NULL, *world = skg_scatter_world(recipe);
     SKG_TRY(skg_alloc(scene->count, sizeof *h->of_part, "dose", &h->of_part));
-    SKG_TRY(skg_alloc(scene->count + 1, sizeof *h->matter, "dose", &h->matter));
-    SKG_TRY(skg_alloc(scene->count + 1, sizeof *materials, "dose", &materials));
+    SKG_TRY(skg_alloc(count_matter(scene), sizeof *h->matter, "dose", &h->matter));
+    SKG_TRY(skg_alloc(count_matter(scene), sizeof *materials, "dose", &materials));
     h->of_world = -1;
     skg_status status = SKG_OK;
     for (int64_t i = 0; i < scene->count && status == SKG_OK; i++)
-        status = add_matter(h, scene->parts[i].material, materials, &h->of_part[i]);
+        status = scene->parts[i].volume ? add_curves(h, scene->parts[i].volume, materials, &h->of_part[i])
+                                        : add_matter(h, scene->parts[i].material, materials, &h->of_part[i]);
     if (status == SKG_OK && world) status = add_matter(h, world, materials, &h->of_world);
     skg_free(&materials);
     return status;

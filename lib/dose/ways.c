@@ -5,7 +5,11 @@
 #include "scene/scene.h"
 
 skg_rules skg_rules_of(const skg_recipe *recipe) {
-    return (skg_rules){recipe->scene, recipe->priority_possible, recipe->options.clip, recipe->options.unite};
+    return (skg_rules){.scene = recipe->scene,
+                       .competing = recipe->priority_possible,
+                       .clip = recipe->options.clip,
+                       .unite = recipe->options.unite,
+                       .cells = recipe->volume_count > 0};
 }
 
 static skg_status reserve(const skg_rules *rules, skg_way *way) {
@@ -64,16 +68,32 @@ static int32_t counted(const skg_rules *rules, const skg_way *way, int64_t part)
     return within(rules, way, part);
 }
 
-static skg_status add_presence(skg_way *way, int32_t part, double share) {
-    if (!(share > 0))
+skg_status skg_way_add_piece(skg_way *way, double from, double to) {
+    if (way->piece_count == way->piece_room) {
+        const int64_t room = 2 * way->piece_room + 64;
+        SKG_TRY(skg_realloc(room, sizeof *way->pieces, "dose", &way->pieces));
+        way->piece_room = room;
+    }
+    way->pieces[way->piece_count++] = (skg_piece){from, to, way->presence_count, 0};
+    return SKG_OK;
+}
+
+skg_status skg_way_add_presence(skg_way *way, const skg_presence *presence) {
+    if (!(presence->share > 0))
         return SKG_OK; /* a part that leaves its parent takes away what is not there: a plan warns of it */
     if (way->presence_count == way->presence_room) {
         const int64_t room = 2 * way->presence_room + 64;
         SKG_TRY(skg_realloc(room, sizeof *way->presences, "dose", &way->presences));
         way->presence_room = room;
     }
-    way->presences[way->presence_count++] = (skg_presence){.part = part, .share = share};
+    way->presences[way->presence_count++] = *presence;
+    way->pieces[way->piece_count - 1].count++;
     return SKG_OK;
+}
+
+static skg_status add_presence(skg_way *way, int32_t part, double share) {
+    const skg_presence presence = {.part = part, .share = share};
+    return skg_way_add_presence(way, &presence);
 }
 
 /* Of the parts that are there, what is not displaced by those inside them. */
@@ -81,13 +101,7 @@ static skg_status add_piece(const skg_rules *rules, double from, double to, skg_
     const skg_scene_part_data *parts = rules->scene->parts;
     int32_t world = 1;
     if (!(to > from)) return SKG_OK;
-    if (way->piece_count == way->piece_room) {
-        const int64_t room = 2 * way->piece_room + 64;
-        SKG_TRY(skg_realloc(room, sizeof *way->pieces, "dose", &way->pieces));
-        way->piece_room = room;
-    }
-    skg_piece *piece = &way->pieces[way->piece_count++];
-    *piece = (skg_piece){from, to, way->presence_count, 0};
+    SKG_TRY(skg_way_add_piece(way, from, to));
     for (int64_t i = 0; i < way->active_count; i++) {
         const int32_t part = way->active[i], own = counted(rules, way, part);
         int32_t rest = own;
@@ -96,9 +110,7 @@ static skg_status add_piece(const skg_rules *rules, double from, double to, skg_
             if (parts[way->active[k]].inside == part) rest -= counted(rules, way, way->active[k]);
         SKG_TRY(add_presence(way, part, rest));
     }
-    SKG_TRY(add_presence(way, -1, world));
-    piece->count = way->presence_count - piece->first;
-    return SKG_OK;
+    return add_presence(way, -1, world);
 }
 
 skg_status skg_way_find(const skg_forest *tree, const skg_rules *rules, const double from[3],

@@ -2,6 +2,18 @@
 #include "device/self_tests.h"
 #include "frame/plans.h"
 #include "plan/decisions.h"
+#include "scene/scene.h"
+#include "scene/volume.h"
+
+/* Cells and what is linear between them are programs of their own, of which a plan needs those of its volumes. */
+static uint64_t tests_of_volumes(const skg_scene *scene) {
+    uint64_t tests = 0;
+    for (int64_t p = 0; p < scene->count; p++)
+        if (scene->parts[p].volume)
+            tests |=
+                UINT64_C(1) << (scene->parts[p].volume->linear ? SKG_SELF_TEST_LINEAR : SKG_SELF_TEST_VOLUME);
+    return tests;
+}
 
 /* The self-tests of the kernels that a plan uses. */
 static uint64_t tests_of(const skg_plan *plan, const skg_view *view) {
@@ -18,7 +30,8 @@ static uint64_t tests_of(const skg_plan *plan, const skg_view *view) {
         tests |= UINT64_C(1) << (plan->outcome.side > 1 ? SKG_SELF_TEST_SIDE : SKG_SELF_TEST_PASSES);
     for (int e = 0; e < SKG_EFFECTS; e++)
         if (plan->outcome.effects[e].on) tests |= UINT64_C(1) << skg_effect_row_get(e)->self_test;
-    return tests;
+    const uint64_t of_cells = UINT64_C(1) << SKG_SELF_TEST_VOLUME;
+    return tests & of_cells ? (tests & ~of_cells) | tests_of_volumes(recipe->scene) : tests;
 }
 
 skg_status skg_plan_self_test(const skg_plan *plan, const skg_view *view) {

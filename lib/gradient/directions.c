@@ -138,7 +138,7 @@ static skg_status submit_derivatives(const char *call, skg_plan *plan, const skg
     SKG_TRY(skg_gradient_begin(call, plan, job, &work));
     SKG_TRY_CLEANUP(read_directions(work, count, directions));
     SKG_TRY_CLEANUP(check_directions(plan, frame, work));
-    SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
+    SKG_TRY_CLEANUP(skg_gradient_self_test(plan));
     SKG_TRY_CLEANUP(place_results(plan->recipe, work, derivatives, saturated));
     SKG_TRY_CLEANUP(skg_gradient_make_job(plan, &skg_job_directions, &work, &made));
     SKG_TRY_CLEANUP(copy_directions(made));

@@ -49,7 +49,7 @@ static skg_status submit_gradient(const char *call, skg_plan *plan, const skg_fr
     SKG_TRY_CLEANUP(skg_struct_read(gradient, "skg_gradient", &work->wanted, sizeof work->wanted));
     SKG_TRY_CLEANUP(skg_struct_read(adjoint, "skg_adjoint", &work->given, sizeof work->given));
     SKG_TRY_CLEANUP(skg_gradient_check(call, plan, frame, &work->wanted));
-    SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
+    SKG_TRY_CLEANUP(skg_gradient_self_test(plan));
     if (work->wanted.densities) SKG_TRY_CLEANUP(skg_self_test_need(plan->context, SKG_SELF_TEST_DENSITIES));
     SKG_TRY_CLEANUP(allocate_results(plan->recipe, work));
     SKG_TRY_CLEANUP(skg_gradient_make_job(plan, &skg_job_gradient, &work, &made));

@@ -18,6 +18,11 @@ static skg_status place_image(const skg_plan *plan, skg_gradient_work *work) {
     return skg_frame_output_read(work->call, recipe, &plan->machine, 1, &output, 0, &work->shown);
 }
 
+skg_status skg_gradient_self_test(const skg_plan *plan) {
+    SKG_TRY(skg_self_test_need(plan->context, SKG_SELF_TEST_GRADIENT));
+    return plan->recipe->volume_count > 0 ? skg_self_test_need(plan->context, SKG_SELF_TEST_CELLS) : SKG_OK;
+}
+
 skg_status skg_gradient_make_job(skg_plan *plan, const skg_job_kind *kind, skg_gradient_work **work,
                                  skg_job **job) {
     const skg_recipe *recipe = plan->recipe;

@@ -8,6 +8,9 @@
 /* What every submission begins with: the plan as the scene is now, and work that release ends. *job becomes NULL. */
 skg_status skg_gradient_begin(const char *call, skg_plan *plan, skg_job **job, skg_gradient_work **work);
 
+/* Makes sure that the device computes derivatives of the plan rightly, by self-tests. */
+skg_status skg_gradient_self_test(const skg_plan *plan);
+
 /* Makes a job of the passes of a frame, which takes over the work. */
 skg_status skg_gradient_make_job(skg_plan *plan, const skg_job_kind *kind, skg_gradient_work **work,
                                  skg_job **job);

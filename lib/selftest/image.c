@@ -48,6 +48,7 @@ static int shows_lengths(skg_self_test number) {
     case SKG_SELF_TEST_PASSES:
     case SKG_SELF_TEST_SIDE:
     case SKG_SELF_TEST_VARIANCE:
+    case SKG_SELF_TEST_LINEAR:
         return 0;
     default:
         return 1;

@@ -10,7 +10,8 @@ static skg_status run(skg_context *context, skg_self_test number, skg_verdict *v
     case SKG_SELF_TEST_SCATTER:
         return skg_self_test_scatter(context, verdict);
     case SKG_SELF_TEST_GRADIENT:
-        return skg_self_test_gradient(context, verdict);
+    case SKG_SELF_TEST_CELLS:
+        return skg_self_test_gradient(context, number, verdict);
     case SKG_SELF_TEST_DENSITIES:
         return skg_self_test_densities(context, verdict);
     case SKG_SELF_TEST_PULSES:

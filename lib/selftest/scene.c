@@ -36,7 +36,8 @@ static int has_priority(const skg_self_test_scene *scene) {
 
 /* Whether part 1 is a volume of cells, which part 0 displaces. */
 static int has_volume(const skg_self_test_scene *scene) {
-    return scene->number == SKG_SELF_TEST_VOLUME;
+    return scene->number == SKG_SELF_TEST_VOLUME || scene->number == SKG_SELF_TEST_LINEAR ||
+           scene->number == SKG_SELF_TEST_CELLS;
 }
 
 /* Whether part 1 is inside part 0. */
@@ -92,8 +93,7 @@ static void place_boxes(skg_self_test_scene *scene) {
     scene->boxes[SKG_SELF_TEST_BOXES] = skg_box_turned(beside, other, others);
     /* Cells that the large box displaces in part. */
     const double above[3] = {4, 3, 19}, cells[3] = {6, 5, 7};
-    if (scene->number == SKG_SELF_TEST_VOLUME)
-        scene->boxes[SKG_SELF_TEST_BOXES] = skg_box_turned(above, cells, others);
+    if (has_volume(scene)) scene->boxes[SKG_SELF_TEST_BOXES] = skg_box_turned(above, cells, others);
 }
 
 /* Boxes elsewhere, of which the mesh of SKG_SELF_TEST_PLACE is made. */
@@ -105,7 +105,7 @@ static void misplace(const skg_self_test_scene *scene, skg_box *boxes) {
 }
 
 static skg_status add_volume(skg_self_test_scene *scene, skg_part *given) {
-    skg_status status = skg_self_test_volume(&scene->boxes[SKG_SELF_TEST_BOXES], &given->volume);
+    skg_status status = skg_self_test_volume(scene, &given->volume);
     if (status == SKG_OK) status = skg_scene_part_add(scene->scene, given, NULL);
     skg_volume_release(&given->volume);
     return status;
@@ -162,6 +162,7 @@ static void choose_options(skg_self_test_scene *scene) {
         break;
     case SKG_SELF_TEST_GRADIENT:
     case SKG_SELF_TEST_DENSITIES:
+    case SKG_SELF_TEST_CELLS:
         options->quantity = SKG_QUANTITY_ATTENUATION;
         break;
     case SKG_SELF_TEST_NOISE:

@@ -86,8 +86,9 @@ skg_status skg_self_test_scene_create(skg_context *context, skg_self_test number
                                       skg_self_test_scene *scene);
 void skg_self_test_scene_release(skg_self_test_scene *scene);
 
-/* A volume of cells of different attenuation in a box (volume.c). The caller releases it. */
-skg_status skg_self_test_volume(const skg_box *box, skg_volume **volume);
+/* A volume of cells of different attenuation in the last box (volume.c), linear between their centres if the test is. The caller releases
+ * it. */
+skg_status skg_self_test_volume(const skg_self_test_scene *scene, skg_volume **volume);
 
 /* What its cells attenuate along a way of unit length, 1/cm, without what the boxes displace. */
 double skg_self_test_cells(const skg_self_test_scene *scene, const double *source, const double *pixel);
@@ -167,8 +168,9 @@ skg_status skg_self_test_picture(skg_context *context, skg_verdict *verdict);
 skg_status skg_self_test_scatter(skg_context *context, skg_verdict *verdict);
 
 /* Compares the gradient of a sum of attenuations by two parts, of which one displaces the other, and by the source with differences
- * of the formula, and the derivative along a direction with the gradient (gradient.c). */
-skg_status skg_self_test_gradient(skg_context *context, skg_verdict *verdict);
+ * of the formula, and the derivative along a direction with the gradient (gradient.c). SKG_SELF_TEST_CELLS: by the part that
+ * displaces cells of a volume. */
+skg_status skg_self_test_gradient(skg_context *context, skg_self_test number, skg_verdict *verdict);
 
 /* Compares the gradient of a sum of attenuations by the densities of two parts, of which one is inside the other, with the formula
  * (gradient.c). */

@@ -371,8 +371,9 @@ START_TEST(photons_are_not_followed_through_what_is_not_known) {
 }
 END_TEST
 
-/* Cells of a volume are not followed: no doses beside one, in front of it or behind, while what the detector receives is known. */
-START_TEST(photons_are_not_followed_through_cells) {
+/* Of cells that have coefficients alone there are no doses, nor of what is in front of them or behind, while what the detector receives is
+ * known. */
+START_TEST(photons_are_not_followed_through_coefficients) {
     static const int16_t cells[8] = {0};
     subject s = open_box(20, 20, 20, "Water, Liquid");
     skg_volume_source source;
@@ -380,7 +381,7 @@ START_TEST(photons_are_not_followed_through_cells) {
     skg_volume_source_init(&source);
     skg_part_init(&part);
     source.columns = source.rows = source.slices = 2;
-    source.cells = cells, source.type = SKG_VOLUME_INT16, source.values = SKG_VOLUME_HU;
+    source.cells = cells, source.type = SKG_VOLUME_INT16, source.values = SKG_VOLUME_MU;
     source.affine[11] = -100;
     ck_skg(skg_volume_create(&source, &part.volume));
     part.label = "ct";
@@ -456,11 +457,12 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_exposure_index_is_100_for_each_ugy_of_rqa5);
     add_stays(tests);
     add_sums(tests);
+    add_cells_tests(tests);
     tcase_add_test(tests, figures_do_not_depend_on_threads);
     tcase_add_test(tests, what_cannot_be_known_is_refused);
     tcase_add_test(tests, nothing_is_kept_without_memory);
     tcase_add_test(tests, photons_are_not_followed_through_what_is_not_known);
-    tcase_add_test(tests, photons_are_not_followed_through_cells);
+    tcase_add_test(tests, photons_are_not_followed_through_coefficients);
     tcase_add_test(tests, the_entrance_is_that_of_images);
 }
 

@@ -10,6 +10,7 @@
 #include "suite.h"
 
 #include <skiagraph/frame.h>
+#include <skiagraph/gradient.h>
 #include <skiagraph/material.h>
 #include <skiagraph/opencl.h>
 #include <skiagraph/plan.h>
@@ -164,6 +165,17 @@ static const struct {
     {"volume.cl", "in[1] ? two - one : none", "none", SKG_SELF_TEST_VOLUME},
     {"volume.cl", "cells - (place < side->step)", "cells", SKG_SELF_TEST_VOLUME},
     {"cell_rays.clh", "(active[w] & (uint)displacing[w]) != 0", "1", SKG_SELF_TEST_VOLUME},
+    {"cell_values.clh", "half_cell & 1 ? 0.0f : 0.5f", "0.5f", SKG_SELF_TEST_LINEAR},
+    {"cell_values.clh", "fma(b - a, (skg_cell_weight)(share), a)", "a", SKG_SELF_TEST_LINEAR},
+    {"cell_values.clh", "fma(at, ray->step[0], ray->place[0])", "ray->place[0]", SKG_SELF_TEST_LINEAR},
+    {"cell_values.clh", "clamp(lower + 1, 0, grid->size[k] - 1)", "clamp(lower, 0, grid->size[k] - 1)",
+     SKG_SELF_TEST_LINEAR},
+    {"cell_values.clh", "point ? 0.788675135f : 0.211324865f", "point ? 0.9f : 0.1f", SKG_SELF_TEST_LINEAR},
+    {"volume.cl", "if (share[piece][l] > 0)", "if (piece != 1 && share[piece][l] > 0)", SKG_SELF_TEST_LINEAR},
+    {"volume_slopes.cl", "(displaced - before)", "(before - displaced)", SKG_SELF_TEST_CELLS},
+    {"volume_slopes.cl", "at * args->cells[k] + cell", "at + cell", SKG_SELF_TEST_CELLS},
+    {"volume_slopes.cl", ">> args->bits", ">> (args->bits + 1)", SKG_SELF_TEST_CELLS},
+    {"volume_slopes.cl", "(long)row * of.stride + column", "column", SKG_SELF_TEST_CELLS},
     {"noise.clh", "(uint)pixel", "(uint)0", SKG_SELF_TEST_NOISE},
     {"blur.cl", "weights[j * args.across + i]", "weights[j * args.across]", SKG_SELF_TEST_BLUR},
     {"project.cl", "(p->anchor_x + across, p->anchor_y + down, r, t)",
@@ -412,16 +424,32 @@ START_TEST(a_refused_device_is_listed_with_the_reason) {
 END_TEST
 #endif
 
-static skg_status plan_with(skg_context *context, int noise) {
+/* A plan of the scene of a self-test, with a gradient of it, or without. */
+static skg_status plan_of(skg_context *context, skg_self_test number, int noise, int gradient) {
     skg_self_test_scene scene;
     skg_plan *plan = NULL;
-    ck_skg(skg_self_test_scene_create(context, SKG_SELF_TEST_CORE, 16, &scene));
+    skg_gradient wanted;
+    skg_adjoint adjoint;
+    double ones[16 * 16], poses[12];
+    ck_skg(skg_self_test_scene_create(context, number, 16, &scene));
     scene.options.noise = noise;
-    const skg_status status =
-        skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan);
+    skg_status status = skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &plan);
+    if (gradient) {
+        ck_skg(status);
+        skg_gradient_init(&wanted);
+        skg_adjoint_init(&adjoint);
+        for (int p = 0; p < 16 * 16; p++) ones[p] = 1;
+        adjoint.channels = 1, adjoint.rows = adjoint.columns = 16, adjoint.data = ones;
+        wanted.poses = poses;
+        status = skg_plan_gradient(plan, NULL, &adjoint, &wanted);
+    }
     skg_plan_release(&plan);
     skg_self_test_scene_release(&scene);
     return status;
+}
+
+static skg_status plan_with(skg_context *context, int noise) {
+    return plan_of(context, SKG_SELF_TEST_CORE, noise, 0);
 }
 
 /* Kernels that not every plan needs: only plans that need them are refused. */
@@ -434,6 +462,31 @@ START_TEST(wrong_kernels_are_refused_when_they_are_needed) {
     ck_skg_fails(plan_with(context, 1), SKG_ERR_DEVICE, "with the kernels of noise");
     keep_verdict(context, "noise", 1, 0);
     ck_skg(plan_with(context, 1));
+    skg_context_release(&context);
+}
+END_TEST
+
+/* What is linear between cells has a program of its own, and so have derivatives beside cells: plans without do not wait for their tests. */
+START_TEST(kernels_of_volumes_are_refused_when_they_are_needed) {
+    skg_context *context = NULL;
+    ck_skg(skg_context_create("device=0:0", &context));
+    keep_verdict(context, "priority", 1, 0);
+    keep_verdict(context, "gradients", 1, 0);
+    keep_verdict(context, "volumes", 0, 0);
+    keep_verdict(context, "linear volumes", 1, 0);
+    ck_skg(plan_of(context, SKG_SELF_TEST_LINEAR, 0, 0));
+    ck_skg_fails(plan_of(context, SKG_SELF_TEST_VOLUME, 0, 0), SKG_ERR_DEVICE, "with the kernels of volumes");
+    skg_context_release(&context);
+    ck_skg(skg_context_create("device=0:0", &context));
+    keep_verdict(context, "volumes", 1, 0);
+    keep_verdict(context, "linear volumes", 0, 0);
+    keep_verdict(context, "volume gradients", 0, 0);
+    ck_skg(plan_of(context, SKG_SELF_TEST_VOLUME, 0, 0));
+    ck_skg_fails(plan_of(context, SKG_SELF_TEST_LINEAR, 0, 0), SKG_ERR_DEVICE,
+                 "with the kernels of linear volumes");
+    ck_skg_fails(plan_of(context, SKG_SELF_TEST_CELLS, 0, 1), SKG_ERR_DEVICE,
+                 "with the kernels of volume gradients");
+    ck_skg(plan_of(context, SKG_SELF_TEST_GRADIENT, 0, 1));
     skg_context_release(&context);
 }
 END_TEST
@@ -515,6 +568,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_refused_device_is_listed_with_the_reason);
 #endif
     tcase_add_test(tests, wrong_kernels_are_refused_when_they_are_needed);
+    tcase_add_test(tests, kernels_of_volumes_are_refused_when_they_are_needed);
     tcase_add_test(tests, calls_are_refused_whose_kernels_are_wrong);
     tcase_add_test(tests, where_nothing_is_kept_every_context_tests);
     tcase_add_test(tests, bad_numbers_are_refused);

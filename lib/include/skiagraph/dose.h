@@ -79,8 +79,8 @@ SKG_API void skg_dose_release(skg_dose **dose);
 typedef struct {
     /** Set by skg_dose_report_init. */
     int32_t size;
-    /** 1: photons were followed. 0: none were asked for, or the scene does not let them: a volume, a mesh that is not closed, a material of unknown
-     * composition or density; a warning said which. */
+    /** 1: photons were followed. 0: none were asked for, or the scene does not let them: a volume of attenuation coefficients, a mesh that
+     * is not closed, a material of unknown composition or density; a warning said which. */
     int32_t followed;
     /** Kerma-area product of the field, uGy cm2: air kerma over an area across the middle ray of the field. It is the same at each
      * distance. Without what the world attenuates. */
