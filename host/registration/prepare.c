@@ -130,8 +130,8 @@ static skg_status find_rest(skg_registration *r, const reg_scene *all, reg_image
     double *body = NULL;
     if (!r->additive) return SKG_OK;
     SKG_TRY(skg_alloc(count, sizeof *body, "image of a registration", &body));
-    skg_status status = reg_render_once(r, all, NULL, &image->view, 2, NULL, image->rest);
-    if (status == SKG_OK) status = reg_render_once(r, &r->body, NULL, &image->view, 2, NULL, body);
+    skg_status status = reg_render_once(r, all, NULL, &image->view, reg_rays(r), NULL, image->rest);
+    if (status == SKG_OK) status = reg_render_once(r, &r->body, NULL, &image->view, reg_rays(r), NULL, body);
     for (int64_t p = 0; p < count; p++) image->rest[p] -= body[p];
     skg_free(&body);
     return status;

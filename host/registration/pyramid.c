@@ -85,7 +85,7 @@ static skg_status plan_image(skg_registration *r, reg_level *level, int64_t inde
             shrunk->plan = level->images[i].plan;
             return skg_plan_retain(shrunk->plan);
         }
-    const int64_t samples = level->factor < 2              ? 2
+    const int64_t samples = level->factor < 2              ? reg_rays(r)
                             : level->factor > MOST_SAMPLES ? MOST_SAMPLES
                                                            : level->factor;
     return reg_plan_create(r, r->body.scene, r->model, &view, samples, &shrunk->plan);

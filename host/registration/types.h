@@ -161,6 +161,12 @@ void reg_levels_free(skg_registration *r);
 
 /* --- Rendering: render.c */
 
+/* Rays along a side of a pixel of a radiograph: those of the scene, and two at least, because slopes of single rays have no bound at
+ * silhouettes. */
+static inline int64_t reg_rays(const skg_registration *r) {
+    return r->plan.supersampling > 2 ? r->plan.supersampling : 2;
+}
+
 /* A plan of attenuations. */
 skg_status reg_plan_create(const skg_registration *r, skg_scene *scene, skg_spectrum *spectrum,
                            const skg_view *view, int64_t supersampling, skg_plan **plan);

@@ -3,6 +3,7 @@
 
 #include "core/text.h"
 
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -177,6 +178,7 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
     contents->columns = (int64_t)image.size[0], contents->rows = (int64_t)image.size[1];
     contents->pages = (int64_t)image.size[2];
     contents->quantity = image.quantity;
+    for (int k = 0; k < 2 && image.has_spacing; k++) contents->spacing_mm[k] = fabs(image.spacing[k]);
     SKG_TRY_CLEANUP(skg_picture_page_check(path, page, contents->pages));
     if (!values) goto cleanup;
     SKG_TRY_CLEANUP(open_data(path, &image, &stream));

@@ -191,6 +191,14 @@ static int read_pixels(const reading *r, int64_t page, double *values) {
     return whole ? CLI_DONE : cli_error(CLI_INPUT, "%s: has fewer pixels than its header says", r->path);
 }
 
+/* Of the pixels of the detector (ImagerPixelSpacing), whose first number is from row to row. */
+static void read_spacing(const reading *r, double spacing_mm[2]) {
+    char value[64] = "";
+    double down = 0, across = 0;
+    if (!value_of(r, "(0018,1164)", value) || sscanf(value, "%lf\\%lf", &down, &across) != 2) return;
+    spacing_mm[0] = across, spacing_mm[1] = down;
+}
+
 /* values: NULL: only what the file holds. */
 static int read_open(reading *r, int64_t page, skg_picture_contents *contents, double *values) {
     snprintf(r->plain, sizeof r->plain, "%.480s/plain.dcm", r->folder);
@@ -204,6 +212,7 @@ static int read_open(reading *r, int64_t page, skg_picture_contents *contents, d
     contents->columns = (int64_t)r->of[COLUMNS];
     contents->rows = (int64_t)r->of[ROWS];
     contents->pages = (int64_t)r->of[FRAMES];
+    read_spacing(r, contents->spacing_mm);
     if (!values) return CLI_DONE;
     if (page < 0 || page >= contents->pages)
         return cli_error(CLI_INPUT, "%s: has %" PRId64 " frames, counted from 0, and no %" PRId64, r->path,

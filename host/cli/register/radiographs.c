@@ -5,8 +5,12 @@
 #include "dicom/dicom.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdlib.h>
 #include <string.h>
+
+/* Share by which the pitch of a file may differ from the scene's without a word. */
+static const double PITCH_DIFFERS = 0.01;
 
 /* In the order of --quantity. */
 static const int32_t register_quantities[] = {SKG_QUANTITY_ENERGY, SKG_QUANTITY_TRANSMISSION,
@@ -57,6 +61,22 @@ static int read_file(const char *path, int64_t page, skg_picture_contents *conte
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
+static double step_of(const double step[3]) {
+    return sqrt(step[0] * step[0] + step[1] * step[1] + step[2] * step[2]);
+}
+
+/* Radiographs of another pitch than the scene says are found at another magnification: the commonest mistake with files of scanners. */
+static void check_pitch(const char *path, const skg_picture_contents *contents, const skg_view *view) {
+    const double across = step_of(view->column_step), down = step_of(view->row_step);
+    const double *its = contents->spacing_mm;
+    if (!(its[0] > 0) || !(its[1] > 0)) return;
+    if (fabs(its[0] / across - 1) < PITCH_DIFFERS && fabs(its[1] / down - 1) < PITCH_DIFFERS) return;
+    cli_warn(
+        "%s: says that its pixels are %.4g x %.4g mm, and those of the scene's detector are %.4g x %.4g mm, which are "
+        "used; set Detector.Size, if the file is right",
+        path, its[0], its[1], across, down);
+}
+
 /* Reads an image that has to have the size of the view. page: of a file that has several; otherwise its only one. */
 static int read_values(const char *path, const skg_view *view, int64_t page, double **values,
                        int32_t *quantity) {
@@ -69,6 +89,7 @@ static int read_values(const char *path, const skg_view *view, int64_t page, dou
                          "%s: has %" PRId64 " x %" PRId64 " pixels, and its view has %" PRId64 " x %" PRId64
                          "; set Detector.NumberOfPixels and Size of the scene, or give another file",
                          path, contents.columns, contents.rows, view->columns, view->rows);
+    check_pitch(path, &contents, view);
     if (contents.pages > 1 && page < 0)
         return cli_error(CLI_INPUT,
                          "%s: has %" PRId64 " pages; say by @K which one, and thus which projection", path,

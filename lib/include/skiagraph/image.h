@@ -98,6 +98,8 @@ typedef struct {
     int64_t rows;
     /** Number of pages of a TIFF, or slices of a MetaImage. */
     int64_t pages;
+    /** mm from a column to the next, and from a row to the next, as a MetaImage says them; 0: the file does not say. */
+    double spacing_mm[2];
 } skg_picture_contents;
 
 SKG_INIT(skg_picture_contents)
