@@ -118,6 +118,10 @@ START_TEST(another_state_of_the_scene_is_another_scan) {
     ck_run(0, "scan scene.json --set Scan='{\"Table\":\"poses.csv\"}' -o table.raw --quiet");
     write_text("poses.csv", "0 -401 0 0 100 0 -1 0 0 0 0 -2\n");
     ck_run_fails(5, "another scan", "scan scene.json --set Scan='{\"Table\":\"poses.csv\"}' -o table.raw");
+    ck_run_fails(
+        5, "./poses.csv: is read by the scene, as poses.csv; name another file",
+        "scan scene.json --set Scan='{\"Table\":\"poses.csv\"}' -o other.raw --geometry ./poses.csv");
+    ck_assert(!has_file("other.raw"));
 }
 END_TEST
 
@@ -424,8 +428,7 @@ START_TEST(a_volume_has_the_coefficients) {
     ck_run_fails(3, "few.csv: has 4 poses, but stack.mha has 360 projections",
                  "reconstruct stack.mha --geometry few.csv -o other.mha");
     write_text("none.mha", "projections");
-    ck_run_fails(3, "none.mha: ",
-                 "reconstruct none.mha --geometry few.csv -o other.mha");
+    ck_run_fails(3, "none.mha: ", "reconstruct none.mha --geometry few.csv -o other.mha");
     ck_run(0, "scan body.json -o scan.nxs --quiet --set Scan.NumberOfProjections=90");
     ck_run(0, "reconstruct scan.nxs -o nexus.mha --size 48 --voxel 1.2 --quiet");
     ck_run_fails(3, "is no HDF5 file", "reconstruct body.json -o volume.mha");

@@ -103,6 +103,31 @@ int cli_check_overwrite(const cli_arguments *arguments, const char *path) {
     return exit_status;
 }
 
+/* Whether both are the same file. */
+static int is_same(const char *path, const char *other) {
+    struct stat its, others;
+    return stat(path, &its) == 0 && stat(other, &others) == 0 && S_ISREG(its.st_mode) &&
+           its.st_dev == others.st_dev && its.st_ino == others.st_ino;
+}
+
+int cli_check_file_kept(const skg_setup *setup, const char *output) {
+    int64_t count = 0;
+    const char *name = NULL, *path = NULL;
+    if (skg_setup_file_count(setup, &count) != SKG_OK) return CLI_DONE;
+    for (int64_t f = 0; f < count && skg_setup_file_get(setup, f, &name, &path) == SKG_OK; f++)
+        if (is_same(output, path))
+            return cli_error(CLI_OUTPUT, "%s: is read by the scene, as %s; name another file", output, name);
+    return CLI_DONE;
+}
+
+int cli_check_files_kept(const cli_arguments *arguments, const skg_setup *setup) {
+    int exit_status = CLI_DONE;
+    for (int i = 0; i < arguments->given_count && exit_status == CLI_DONE; i++)
+        if (cli_flag_is_output(arguments->given[i].flag))
+            exit_status = cli_check_file_kept(setup, arguments->given[i].value);
+    return exit_status;
+}
+
 int cli_check_overwrites(const cli_arguments *arguments) {
     if (arguments->manual->checks_outputs) return CLI_DONE;
     int exit_status = CLI_DONE;

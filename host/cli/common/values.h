@@ -15,6 +15,12 @@ int cli_check_overwrite(const cli_arguments *arguments, const char *path);
 /* Checks every file that flags name as an output. */
 int cli_check_overwrites(const cli_arguments *arguments);
 
+/* Refuses an output that is a file which the scene reads: a mesh, a volume, a table. */
+int cli_check_file_kept(const skg_setup *setup, const char *output);
+
+/* The same of every file that flags name as an output. */
+int cli_check_files_kept(const cli_arguments *arguments, const skg_setup *setup);
+
 /* Opens the device of --device. The caller releases the context, which is nevertheless held until the process ends. */
 int cli_open_context(const cli_arguments *arguments, skg_context **context, skg_device_info *device);
 

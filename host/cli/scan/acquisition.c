@@ -5,6 +5,7 @@
 #include "common/interrupt.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "common/values.h"
 #include "session/explain.h"
 
 #include <inttypes.h>
@@ -129,7 +130,10 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
 static int write_geometry(const cli_arguments *arguments, const cli_acquisition *a) {
     const char *path;
     char note[NOTE_LENGTH];
-    const int exit_status = fields_describe(a, note, sizeof note);
+    int exit_status = fields_describe(a, note, sizeof note);
+    for (int i = 0; exit_status == CLI_DONE && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
+         i++)
+        exit_status = cli_check_file_kept(a->session.setup, path);
     if (exit_status != CLI_DONE) return exit_status;
     for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
          i++) {

@@ -49,6 +49,8 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, int
     free(text);
     if (exit_status != CLI_DONE) return exit_status;
     if (status != SKG_OK) return cli_fail(status);
+    exit_status = cli_check_files_kept(arguments, session->setup);
+    if (exit_status != CLI_DONE) return exit_status;
     skg_view_init(&session->view);
     skg_plan_options_init(&session->options);
     status = skg_setup_scene_get(session->setup, &session->scene);
