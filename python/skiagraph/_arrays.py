@@ -1,6 +1,7 @@
 """Arrays that come from the caller: shapes and types are checked, and named where they are wrong. Private."""
 from __future__ import annotations
 
+import operator
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,18 @@ def numbers(value: Any, what: str) -> NDArray[Any]:
     if array.dtype.kind not in "fiub":
         raise ArgumentError(f"{what} has {describe(array)}; give real numbers")
     return array
+
+
+def whole(value: Any, what: str, least: int) -> int:
+    """A whole number, at least so much; 96.0 is one, and 96.5 is not cut off."""
+    number = int(value) if isinstance(value, (float, np.floating)) and float(value).is_integer() else value
+    try:
+        number = operator.index(number)
+    except TypeError:
+        raise ArgumentError(f"{what} is {value!r}; give a whole number") from None
+    if number < least:
+        raise ArgumentError(f"{what} is {value!r}; give a whole number, {least} or more")
+    return number
 
 
 def vector(value: Any, what: str) -> NDArray[np.float64]:

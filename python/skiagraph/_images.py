@@ -21,9 +21,12 @@ _KEV = {"eV": 1e-3, "keV": 1.0, "MeV": 1e3}
 
 def number_frames(state: State, count: int, index: int | None, options: Mapping[str, Any]) -> int:
     """The number of the first of these frames: that of the caller, or the next one of a scene with noise."""
+    seed = options.get("noise_seed")
+    if seed is not None:
+        _arrays.whole(seed, "noise_seed", 0)
     if index is not None:
-        return int(index)
-    if options.get("noise_seed") is not None:
+        return _arrays.whole(index, "index", 0)
+    if seed is not None:
         return 0
     with state.calls():
         file = state.plans.of_file(state.options_setup)

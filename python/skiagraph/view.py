@@ -40,7 +40,7 @@ class View:
         self.detector: NDArray[np.float64] = _arrays.vector(detector, "detector")
         self.column_step: NDArray[np.float64] = _arrays.vector(column_step, "column_step")
         self.row_step: NDArray[np.float64] = _arrays.vector(row_step, "row_step")
-        self.pixels: tuple[int, int] = (int(pixels[0]), int(pixels[1]))
+        self.pixels: tuple[int, int] = (_arrays.whole(pixels[0], "pixels[0]", 0), _arrays.whole(pixels[1], "pixels[1]", 0))
         self.projection: str = projection
         self.radius: float = float(radius)
 

@@ -52,6 +52,29 @@ START_TEST(projections_are_images) {
 }
 END_TEST
 
+/* Of 60000 in the free beam, twice as much is cut off at 65535; intensities are over that of the first projection. */
+START_TEST(intensities_that_do_not_fit) {
+    static const char set[] =
+        "--set Scan='{\"NumberOfProjections\":3,\"FinalAngle\":360,\"Intensity\":[%s]}'";
+    char settings[200];
+    snprintf(settings, sizeof settings, set, "1,2,0.5");
+    ck_run(0, "scan scene.json %s -o bright.mha --grey16", settings);
+    static uint16_t values[3 * COLUMNS * ROWS];
+    const size_t size = read_file("bright.mha", bytes);
+    memcpy(values, bytes + size - sizeof values, sizeof values);
+    int clipped = 0;
+    for (int i = 0; i < 3 * COLUMNS * ROWS; i++) clipped += values[i] == 65535;
+    ck_assert_int_gt(clipped, 0);
+    char warning[100];
+    snprintf(warning, sizeof warning,
+             "%d pixels of the projections are at 65535, the greatest grey value of 16 bits", clipped);
+    ck_assert_msg(strstr(complained, warning) != NULL, "%s: not \"%s\"", complained, warning);
+    snprintf(settings, sizeof settings, set, "2,1,4");
+    ck_run_fails(3, "begins with 2, but is over that of the first projection",
+                 "scan scene.json %s -o two.mha --grey16", settings);
+}
+END_TEST
+
 /* The beam is on for three projections; a pixel beside the parts shows what comes later. */
 START_TEST(projections_leave_a_lag) {
     enum { IMAGE = COLUMNS * ROWS * sizeof(float) };
@@ -516,6 +539,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
     tcase_add_test(tests, projections_are_images);
     tcase_add_test(tests, projections_leave_a_lag);
+    tcase_add_test(tests, intensities_that_do_not_fit);
     tcase_add_test(tests, parts_of_a_scan_make_the_whole);
     tcase_add_test(tests, another_state_of_the_scene_is_another_scan);
     tcase_add_test(tests, a_folder_and_a_geometry);

@@ -145,6 +145,29 @@ def test_a_reconstruction_is_about_the_axis_of_its_scan(scanned):
         sk.reconstruct(scanned.trajectory, projections, size=16, axis="z")
 
 
+def test_what_is_wrong_for_a_reconstruction(scanned, view):
+    scan = sk.Scan(view, 60, axis="y")
+    projections = np.zeros((60, *view.shape), np.float32)
+    projections[4, 3, 2] = np.nan
+    with pytest.raises(sk.ArgumentError, match="projection 4: the value of row 3, column 2 is"):
+        sk.reconstruct(scan, projections, size=8, axis="y")
+    for size in (16.5, (8, 8, 0), "8"):
+        with pytest.raises(sk.ArgumentError, match="size is .*; give a whole number"):
+            sk.reconstruct(scan, np.zeros_like(projections), size=size, axis="y")
+
+
+def test_numbers_that_are_not_whole_are_refused(scanned, view):
+    def seen(pixels):
+        return sk.View(source=view.source, detector=view.detector, column_step=view.column_step, row_step=view.row_step, pixels=pixels)
+    with pytest.raises(sk.ArgumentError, match=r"pixels\[0\] is 96.5; give a whole number"):
+        seen((96.5, 64))
+    assert seen((96.0, np.int64(64))).pixels == (96, 64)
+    with pytest.raises(sk.ArgumentError, match="index is -1; give a whole number, 0 or more"):
+        scanned.image(index=-1, noise=True)
+    with pytest.raises(sk.ArgumentError, match="noise_seed is -1; give a whole number, 0 or more"):
+        scanned.image(noise_seed=-1, noise=True)
+
+
 def test_what_is_wrong_is_named(scanned, view, path):
     with pytest.raises(sk.ArgumentError, match="out has the shape"):
         scanned.scan(np.zeros((N, 3, 4)))

@@ -4,6 +4,8 @@
 #include "common/file.h"
 #include "common/say.h"
 
+#include <inttypes.h>
+#include <stdint.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -101,6 +103,29 @@ int grey_prepare(cli_acquisition *a) {
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
+static uint16_t greatest(const cli_acquisition *a) {
+    return (uint16_t)((1 << a->readout.bits) - 1);
+}
+
+/* Pixels at the greatest value of their bits, but for bad ones, whose values are given. */
+static int64_t count_clipped(const cli_acquisition *a, const void *grey) {
+    const uint16_t most = greatest(a), *values = grey;
+    const float *bad = a->readout.bad_pixels;
+    int64_t count = 0;
+    for (int64_t i = 0; a->readout.bits && i < pixels_of(a); i++)
+        count += values[i] == most && !(bad && bad[i] >= 0);
+    return count;
+}
+
+void grey_warn(const cli_acquisition *a) {
+    if (a->clipped > 0)
+        cli_warn(
+            "%" PRId64
+            " pixels of the projections are at %d, the greatest grey value of %d bits, and may be cut off there: less "
+            "Detector.GreyValues.Full, or \"Bits\": 0, leaves them as they are",
+            a->clipped, greatest(a), (int)a->readout.bits);
+}
+
 skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const void **images) {
     *images = batch->images;
     if (!a->is_grey) return SKG_OK;
@@ -119,10 +144,11 @@ skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const voi
             status = skg_lag_apply(a->lag, batch->type, energies, share, a->lagged);
             energies = a->lagged, share = 1;
         }
+        void *grey = (char *)a->grey + i * grey_bytes(a);
         if (status == SKG_OK)
-            status = skg_readout_image(&a->readout, pixels_of(a), batch->type, energies, share, index,
-                                       (char *)a->grey + i * grey_bytes(a));
+            status = skg_readout_image(&a->readout, pixels_of(a), batch->type, energies, share, index, grey);
         if (status != SKG_OK) return status;
+        a->clipped += count_clipped(a, grey);
     }
     *images = a->grey;
     return SKG_OK;

@@ -36,8 +36,9 @@ typedef struct {
     char *stem;  /* of the files of a folder; NULL: ours */
     void *grey;  /* [grey_capacity] images that were read out */
     int64_t grey_capacity;
-    skg_lag *lag; /* NULL: none */
-    void *lagged; /* a projection with it */
+    int64_t clipped; /* pixels at the greatest grey value of their bits */
+    skg_lag *lag;    /* NULL: none */
+    void *lagged;    /* a projection with it */
 } cli_acquisition;
 
 #endif

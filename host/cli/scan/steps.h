@@ -54,6 +54,9 @@ int64_t grey_bytes(const cli_acquisition *a);
 /* Reads a batch out. *images: what is written, in memory of the acquisition. */
 skg_status grey_batch(cli_acquisition *a, const skg_scan_batch *batch, const void **images);
 
+/* Warns of pixels that were cut off at the greatest value of their bits. */
+void grey_warn(const cli_acquisition *a);
+
 /* Reads all flat fields or all dark fields out, one after another in `to`. */
 skg_status grey_fields(const cli_acquisition *a, int is_dark, const void *energies, void *to);
 

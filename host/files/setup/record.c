@@ -241,7 +241,15 @@ skg_status skg_setup_read_record(skg_setup_reader *reader, const skg_json_object
     if (!intensity.value) return SKG_OK;
     SKG_TRY(skg_scan_projection_count(section->scan, &projections));
     SKG_TRY(skg_alloc(projections, sizeof(double), "intensities", &section->intensities));
-    return skg_json_numbers(&intensity, "a number for each projection", projections, section->intensities);
+    SKG_TRY(skg_json_numbers(&intensity, "a number for each projection", projections, section->intensities));
+    static const double ROUNDING = 1e-6; /* of numbers that were divided and printed */
+    if (fabs(section->intensities[0] - 1) > ROUNDING)
+        return skg_json_fail(
+            &intensity, SKG_ERR_FORMAT,
+            "begins with %g, but is over that of the first projection: the first number is 1; divide all "
+            "of them by it",
+            section->intensities[0]);
+    return SKG_OK;
 }
 
 /* Puts the poses of one more part beside those of the others. */

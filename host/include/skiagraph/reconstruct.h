@@ -81,13 +81,15 @@ SKG_INIT(skg_fdk_report)
  *
  *     scan      retained. The angles are those of its views about the axis. A full turn needs no weights, unless the
  *               detector is displaced by more than a column (half-fan): then Wang's (Med. Phys. 29 (2002) 1634-1636); from 180
- *               degrees plus the fan on, Parker's weights are used (Med. Phys. 9 (1982) 254-257). Of a curved detector whose
- *               axis goes through the source, columns are at equal angles (Kak and Slaney 1988, sections 3.4.2 and 3.6)
+ *               degrees plus the fan on, Parker's weights are used (Med. Phys. 9 (1982) 254-257). A parallel beam needs 180
+ *               degrees. What a scan sees once more beyond whole turns, or half turns of a parallel beam, its first and last
+ *               projections share. Of a curved detector whose axis goes through the source, columns are at equal
+ *               angles (Kak and Slaney 1988, sections 3.4.2 and 3.6)
  *     options   NULL: the defaults
  *     fdk       result; the caller releases it
- *     errors    SKG_ERR_ARGUMENT (an option); SKG_ERR_UNSUPPORTED if the scan is not circular, if its range is
- *               too short, if the axis leans against the detector's columns or the beam by more than 5.7 degrees, or of
- *               other curved detectors */
+ *     errors    SKG_ERR_ARGUMENT (an option); SKG_ERR_UNSUPPORTED if the scan is not circular (it may move along the
+ *               axis by a row, or 2 % of all rows, as seen at the axis), if its range is too short,
+ *               if the axis leans against the detector's columns or the beam by more than 5.7 degrees, or of other curved detectors */
 SKG_API skg_status skg_fdk_create(skg_scan *scan, const skg_fdk_options *options, skg_fdk **fdk);
 
 /** Frees a reconstruction. */
@@ -97,8 +99,9 @@ SKG_API void skg_fdk_release(skg_fdk **fdk);
  * not depend on their number.
  *
  *     index   of the projection; each one once, in any order
- *     image   [row][column] of -ln(I / I0)
- *     errors  SKG_ERR_CANCELLED: the projection was not added; SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
+ *     image   [row][column] of -ln(I / I0), finite
+ *     errors  SKG_ERR_CANCELLED: the projection was not added; SKG_ERR_ARGUMENT (the index, or a pixel that is not finite),
+ *             SKG_ERR_MEMORY */
 SKG_API skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image);
 
 /** Gets what the detector saw, of the projections that were added so far. */

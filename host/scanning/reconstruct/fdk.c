@@ -116,6 +116,17 @@ void skg_fdk_release(skg_fdk **fdk) {
     skg_free(fdk);
 }
 
+/* One pixel that is no number would be spread over its row and the volume. */
+static skg_status check_pixels(const skg_fdk *fdk, int64_t index, const float *image) {
+    for (int64_t i = 0; i < fdk->rows * fdk->columns; i++)
+        if (!isfinite(image[i]))
+            return skg_fail(SKG_ERR_ARGUMENT,
+                            "projection %" PRId64 ": the value of row %" PRId64 ", column %" PRId64
+                            " is %g; give finite values of -ln(I/I0)",
+                            index, i / fdk->columns, i % fdk->columns, (double)image[i]);
+    return SKG_OK;
+}
+
 /* Threads that would wait for the next projection in a loop of their own take the time of others on a busy machine: those of
  * skg_parallel end with each loop. */
 skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image) {
@@ -123,6 +134,7 @@ skg_status skg_fdk_add(skg_fdk *fdk, int64_t index, const float *image) {
     skg_orbit_pose pose = {0};
     SKG_NEEDS(fdk);
     SKG_NEEDS(image);
+    SKG_TRY(check_pixels(fdk, index, image));
     SKG_TRY(skg_progress_step(fdk->options.progress, fdk->added, fdk->projections));
     SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, &fdk->orbit, index, &pose));
     SKG_TRY(skg_fdk_filter(fdk, &pose, image));

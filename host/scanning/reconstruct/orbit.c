@@ -122,6 +122,7 @@ skg_status skg_orbit_pose_get(skg_scan *scan, const skg_fdk_options *o, const sk
                               skg_orbit_pose *pose) {
     skg_orbit_pose first = {0};
     double turned[3];
+    pose->index = index;
     skg_view_init(&pose->view);
     skg_view_init(&first.view);
     SKG_TRY(skg_scan_view_get(scan, index, &pose->view));
@@ -200,13 +201,45 @@ static skg_status orient(skg_scan *scan, const skg_fdk_options *o, skg_orbit *or
     return SKG_OK;
 }
 
+/* How far up the axis the ray to the middle of the detector crosses it. row: result: the height of a row there; both mm */
+static double find_height(const skg_orbit_pose *pose, const double *axis, double *row) {
+    const skg_view *view = &pose->view;
+    double to_detector[3];
+    *row = fabs(skg_dot(view->row_step, axis));
+    if (pose->is_parallel) return skg_dot(view->centre, axis);
+    skg_add_scaled(view->centre, -1, view->source, to_detector);
+    const double share = pose->radius / skg_dot(to_detector, pose->forward);
+    *row *= share;
+    return skg_dot(view->source, axis) + share * skg_dot(to_detector, axis);
+}
+
+/* Refuses helices. Each mm along the axis takes as much from the slices that all projections see: of 48 rows, 0.8 mm high at the
+ * axis, the slice 15 mm from the middle of a cylinder of 0.2 per cm has 0.200 in a circle, and 0.126, 0.084 and 0.051 with a pitch of 6, 9
+ * and 15 mm. range: of the heights so far */
+static skg_status check_height(const skg_orbit *orbit, const skg_orbit_pose *pose, int64_t index,
+                               double range[2]) {
+    static const double SHARE = 0.02; /* of all rows: what tables of a circle that wobbles may have */
+    double row = 0;
+    const double height = find_height(pose, orbit->axis, &row);
+    const double most = row * fmax(1, SHARE * (double)pose->view.rows);
+    range[0] = fmin(range[0], height), range[1] = fmax(range[1], height);
+    if (range[1] - range[0] <= most) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "projection %lld: the source leaves its circle: the scan has moved by %.3g mm along the axis of rotation, and up to "
+        "%.3g mm are taken (a row, or 2 %% of all rows, as seen at the axis), for slices that some projections do not see "
+        "are wrong" SKG_OTHER_TOOLS,
+        (long long)index, range[1] - range[0], most);
+}
+
 /* Equal steps, and a source that stays in its plane. */
 static skg_status check_circle(skg_scan *scan, const skg_fdk_options *o, const skg_orbit *orbit,
                                int64_t count) {
-    double from[3];
-    for (int64_t k = 2; k < count; k++) {
+    double from[3], heights[2] = {HUGE_VAL, -HUGE_VAL};
+    for (int64_t k = 0; k < count; k++) {
         skg_orbit_pose pose = {0};
         SKG_TRY(skg_orbit_pose_get(scan, o, orbit, k, &pose));
+        SKG_TRY(check_height(orbit, &pose, k, heights));
         const double expected = fmod((double)k * orbit->step, 2 * SKG_PI);
         double off = fabs(pose.angle - expected);
         off = fmin(off, 2 * SKG_PI - off);
@@ -241,6 +274,21 @@ static skg_status find_displacement(skg_scan *scan, const skg_fdk_options *o, sk
         "it less");
 }
 
+/* How often the scan sees its lines. A projection stands for half a step before and after it. */
+static skg_status find_times(skg_scan *scan, const skg_fdk_options *o, skg_orbit *orbit) {
+    static const double ROUNDING = 1e-6; /* of a step: angles of a table have some ten digits */
+    skg_orbit_pose pose = {0};
+    SKG_TRY(skg_orbit_pose_get(scan, o, orbit, 0, &pose));
+    const double seen = orbit->range + orbit->step, close = 0.5 * orbit->step;
+    orbit->is_parker = !orbit->is_full && !pose.is_parallel;
+    orbit->period = pose.is_parallel && !orbit->displaced ? SKG_PI : 2 * SKG_PI;
+    orbit->times = fmax(1, floor((seen + close) / orbit->period));
+    orbit->excess = seen - orbit->times * orbit->period;
+    if (orbit->excess < ROUNDING * orbit->step)
+        orbit->excess = 0; /* up to half a step less: steps are stretched */
+    return SKG_OK;
+}
+
 skg_status skg_orbit_find(skg_scan *scan, const skg_fdk_options *o, skg_orbit *orbit) {
     int64_t count = 0;
     SKG_TRY(skg_scan_projection_count(scan, &count));
@@ -253,7 +301,8 @@ skg_status skg_orbit_find(skg_scan *scan, const skg_fdk_options *o, skg_orbit *o
             SKG_ERR_UNSUPPORTED,
             "the scan has a range of %.4g degrees; a reconstruction needs 180 degrees plus the fan, %.4g" SKG_OTHER_TOOLS,
             orbit->range * 180 / SKG_PI, least * 180 / SKG_PI);
-    return find_displacement(scan, o, orbit);
+    SKG_TRY(find_displacement(scan, o, orbit));
+    return find_times(scan, o, orbit);
 }
 
 /* The weight of a displaced detector: it rises from 0 at the near edge to 1 at the same distance on the wide side. */
@@ -265,14 +314,34 @@ static double displaced_share(const skg_orbit *orbit, double place) {
     return root * root;
 }
 
-double skg_orbit_weight(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray, double place) {
-    const double half = SKG_PI / (orbit->range + orbit->step); /* 1/2 for each turn */
-    if (orbit->displaced) return 2 * half * displaced_share(orbit, place);
-    if (orbit->is_full) return half;
+/* The integral up to an angle of a share that rises from 0 to 1 over the excess as the square of a sine. */
+static double risen(double excess, double angle) {
+    if (angle <= 0) return 0;
+    if (angle >= excess) return angle - 0.5 * excess;
+    return 0.5 * angle - 0.5 * excess / SKG_PI * sin(SKG_PI * angle / excess);
+}
+
+/* The share of a projection among those of its direction: where a scan goes on beyond a whole number of periods, the first and the last
+ * ones share what both see. It is the mean over the projection's step, so that the shares of all add up exactly. */
+static double share_of(const skg_orbit *orbit, int64_t index) {
+    const double from_first = orbit->step * (double)index, from_last = orbit->range - from_first;
+    const double near = fmin(from_first, from_last), one = SKG_PI / (orbit->period * orbit->times);
+    if (!(orbit->excess > 0)) return SKG_PI / (orbit->range + orbit->step);
+    return one * (risen(orbit->excess, near + orbit->step) - risen(orbit->excess, near)) / orbit->step;
+}
+
+/* Parker's weight. */
+static double parker(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray) {
     const double gamma = fan_angle(pose, ray), beta = pose->angle;
     const double delta = fmax(0.5 * (orbit->range - SKG_PI), fabs(gamma) + 1e-6);
     double share = 1;
     if (beta < 2 * (delta - gamma)) share = sin(SKG_PI / 4 * beta / (delta - gamma));
     if (beta > SKG_PI - 2 * gamma) share = sin(SKG_PI / 4 * (SKG_PI + 2 * delta - beta) / (delta + gamma));
     return share > 0 ? share * share : 0;
+}
+
+double skg_orbit_weight(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray, double place) {
+    if (orbit->is_parker) return parker(orbit, pose, ray);
+    const double share = share_of(orbit, pose->index);
+    return orbit->displaced ? 2 * share * displaced_share(orbit, place) : share;
 }

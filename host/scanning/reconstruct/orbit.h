@@ -9,6 +9,7 @@
 /* A projection as the reconstruction sees it. */
 typedef struct {
     skg_view view;
+    int64_t index;
     int is_parallel;
     double forward[3]; /* length 1, across the axis: from the source to the axis, or along the beam */
     double across[3];  /* length 1, across axis and forward: where the source goes */
@@ -25,6 +26,11 @@ typedef struct {
     double fan;         /* rad: widest angle of a ray with forward */
     double low, high;   /* places of the outermost columns across the beam (skg_orbit_place) */
     int is_full;
+    int is_parker; /* a short scan of a point source: Parker's weights */
+    double
+        period; /* rad: after so much the same lines are seen again; half a turn of a parallel beam that is not displaced */
+    double times;  /* whole periods */
+    double excess; /* rad: what the scan goes on beyond them */
     int displaced; /* in a full turn: 1 or -1, the side on which the detector is wider by more than a column; else 0 */
 } skg_orbit;
 
@@ -42,8 +48,9 @@ double skg_orbit_place(const skg_orbit_pose *pose, int64_t row, int64_t column);
 /* The radius about the axis, mm, that rays up to such a place touch. */
 double skg_orbit_radius(const skg_orbit_pose *pose, double place);
 
-/* The share of a ray in the sum over all that run along its line: 1/2 in a full turn; of a displaced detector from 0 to 1, which
- * add up to 1 for the two rays of a line (G. Wang, Med. Phys. 29 (2002) 1634-1636); Parker's weight otherwise. */
+/* The share of a ray in the sum over all that run along its line: 1/2 in a full turn, 1 in half a turn of a parallel beam; less at the
+ * ends of a scan that sees some directions once more; of a displaced detector from 0 to 1, which add up to 1 for the two rays of a
+ * line (G. Wang, Med. Phys. 29 (2002) 1634-1636); Parker's weight in a short scan of a point source. */
 double skg_orbit_weight(const skg_orbit *orbit, const skg_orbit_pose *pose, const double *ray, double place);
 
 #endif
