@@ -87,6 +87,9 @@ skg_status skg_unit_of_length(const char *name, double *mm);
 /* Writes the name of a unit of length, or "2.5 mm" where there is none. */
 void skg_unit_describe(double mm, char *text, size_t size);
 
+/* Writes what is said where a caller names another unit than a file: the caller's wins. of_file: the file's, by name. */
+void skg_unit_contradict(double mm, const char *of_file, char *text, size_t size);
+
 /* The keV in one unit of energy ("eV", "keV", "MeV" and their full names). */
 skg_status skg_unit_of_energy(const char *name, double *kev);
 

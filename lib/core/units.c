@@ -87,6 +87,12 @@ void skg_unit_describe(double mm, char *text, size_t size) {
     snprintf(text, size, "%.6g mm", mm);
 }
 
+void skg_unit_contradict(double mm, const char *of_file, char *text, size_t size) {
+    char used[32];
+    skg_unit_describe(mm, used, sizeof used);
+    snprintf(text, size, "read in %s, as was asked; the file itself is in %s", used, of_file);
+}
+
 skg_status skg_unit_of_energy(const char *name, double *kev) {
     return find(name, "energy", "eV, keV, MeV", energies, ENERGIES, kev);
 }

@@ -62,7 +62,11 @@ typedef struct {
     int64_t size[3];
     double
         affine[16]; /* from the indices of a cell to its centre, in the file's unit; see skg_volume_source */
-    int32_t type;   /* enum skg_volume_type */
+    double unit_mm[3];  /* mm per unit of x, y, z that the file names; 0: none */
+    int32_t type;       /* enum skg_volume_type */
+    int32_t no_spacing; /* 1: the file does not say how large cells are; 1 of its unit is taken */
+    int32_t
+        no_order; /* 1: it does not say the order of bytes, as it has to; the least significant first is taken */
     int32_t reserved;
     void *cells; /* the caller frees them */
 } skg_grid;

@@ -19,6 +19,7 @@ typedef struct {
     int has_spacing, is_text;
     char kind;
     char data[LINE]; /* ElementDataFile */
+    char unit[32];   /* DistanceUnits; "": not given */
     long header;     /* HeaderSize; 0: the data follow the header, or begin the file */
     int32_t quantity;
 } metaimage;
@@ -62,6 +63,7 @@ static void read_place(const char *key, const char *value, metaimage *image) {
     if (!strcmp(key, "ElementSize")) read_numbers(value, 3, image->element);
     if (!strcmp(key, "Offset") || !strcmp(key, "Position") || !strcmp(key, "Origin"))
         read_numbers(value, 3, image->offset);
+    if (!strcmp(key, "DistanceUnits")) snprintf(image->unit, sizeof image->unit, "%s", value);
     if (!strcmp(key, "TransformMatrix") || !strcmp(key, "Rotation") || !strcmp(key, "Orientation"))
         read_numbers(value, 9, image->axes);
 }
@@ -188,6 +190,16 @@ cleanup:
     return status;
 }
 
+/* MetaIO writes "?" where nobody named a unit. */
+static skg_status read_unit(const char *path, const metaimage *image, skg_grid *grid) {
+    double mm = 0;
+    if (image->unit[0] && strcmp(image->unit, "?") && skg_unit_of_length(image->unit, &mm) != SKG_OK)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its DistanceUnits are \"%s\", which is no length; write mm",
+                        path, image->unit);
+    for (int k = 0; k < 3; k++) grid->unit_mm[k] = mm;
+    return SKG_OK;
+}
+
 skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
     metaimage image = {
         .quantity = -1, .channels = 1, .slope = 1, .spacing = {1, 1, 1}, .axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
@@ -200,6 +212,8 @@ skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
         status = skg_fail(SKG_ERR_FORMAT, "%s: has %d dimensions; a volume has 3", path, image.dimensions);
         goto cleanup;
     }
+    SKG_TRY_CLEANUP(read_unit(path, &image, grid));
+    grid->no_spacing = !image.has_spacing && !(image.element[0] > 0);
     for (int k = 0; k < 3; k++) {
         grid->size[k] = (int64_t)image.size[k];
         for (int r = 0; r < 3; r++) grid->affine[4 * r + k] = image.axes[3 * k + r] * image.spacing[k];

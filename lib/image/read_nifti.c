@@ -153,7 +153,7 @@ static void rotate(const header *h, double axes[3][3]) {
 /* Of the two ways in which a file says where its cells are, the matrix is taken if there is one. x and y of NIfTI point to the right
  * and to the front; ours to the left and back, as MetaImage's. */
 static skg_status read_place(const header *h, skg_grid *grid) {
-    static const double units[8] = {1, 1e3, 1, 1e-3, 0, 0, 0, 0}; /* not said, m, mm, um */
+    static const double units[8] = {0, 1e3, 1, 1e-3, -1, -1, -1, -1}; /* not said, m, mm, um, others */
     const int code = h->at->code_bytes, has_matrix = number(h, h->at->sform, code, 'i') > 0;
     const int unit =
         h->at->size == LONG_HEADER ? (int)number(h, h->at->units, 4, 'i') : h->bytes[h->at->units];
@@ -164,12 +164,13 @@ static skg_status read_place(const header *h, skg_grid *grid) {
             SKG_ERR_UNSUPPORTED,
             "%s: does not say where its axes point (qform_code and sform_code are 0); write it with one of them",
             h->path);
-    if (!(mm > 0))
+    if (mm < 0)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its axes have a unit that is no length; write them in mm",
                         h->path);
     if (!has_matrix) rotate(h, axes);
     for (int row = 0; row < 3; row++) {
-        const double sign = row < 2 ? -mm : mm;
+        const double sign = row < 2 ? -1 : 1;
+        grid->unit_mm[row] = mm;
         for (int k = 0; k < 3; k++)
             grid->affine[4 * row + k] =
                 sign * (has_matrix ? real(h, h->at->rows, 4 * row + k) : axes[row][k]);

@@ -228,13 +228,12 @@ skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *read
 
 /* A unit that the caller names wins. */
 static void note_unit(const skg_context *context, const skg_mesh *mesh) {
-    char used[32], named[32];
+    char named[32], text[128];
     if (mesh->unit_from != SKG_UNIT_NAMED || mesh->file_unit_mm <= 0 || mesh->file_unit_mm == mesh->unit_mm)
         return;
-    skg_unit_describe(mesh->unit_mm, used, sizeof used);
     skg_unit_describe(mesh->file_unit_mm, named, sizeof named);
-    skg_log(context, SKG_LOG_NOTE, "%s: read in %s, as was asked; the file itself is in %s", mesh->name, used,
-            named);
+    skg_unit_contradict(mesh->unit_mm, named, text, sizeof text);
+    skg_log(context, SKG_LOG_NOTE, "%s: %s", mesh->name, text);
 }
 
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded) {

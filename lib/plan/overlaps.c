@@ -20,6 +20,12 @@ static void add_next(char text[LONGEST_WORST], const skg_scene *scene, const skg
              pair->volume / 1000);
 }
 
+/* Whether a pair is of parts of a volume, which loses the cells that are there and no others. */
+static int is_in_cells(const skg_scene *scene, const skg_overlap_pair *pair) {
+    const int64_t parent = pair->kind == SKG_OVERLAP_SIBLINGS ? scene->parts[pair->part].inside : pair->other;
+    return parent >= 0 && scene->parts[parent].volume != NULL;
+}
+
 /* Warns of the pairs that nothing settles: of all of them at once, with the worst three. */
 static void warn(const skg_recipe *recipe, const skg_context *context, const skg_outcome *outcome) {
     const skg_overlap_pair *worst = NULL;
@@ -27,6 +33,7 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
     char others[LONGEST_WORST] = "";
     double volume = 0;
     int64_t count = 0;
+    int in_cells = 0;
     for (int64_t i = 0; i < outcome->overlap_count; i++) {
         const skg_overlap_pair *pair = &outcome->overlaps[i];
         if (skg_priority_settles(scene, skg_priority_rules(recipe->options.clip, 0), pair)) continue;
@@ -35,19 +42,21 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
         else if (count < WORST)
             add_next(others, scene, pair);
         volume += pair->volume;
+        in_cells |= is_in_cells(scene, pair);
         count++;
     }
     if (!worst) return;
     skg_log(
         context, SKG_LOG_WARNING,
         "%" PRId64 " %s, %.3g ml in all; worst: %s %s %s, %.3g ml, up to "
-        "%.3g mm along z at (%.1f, %.1f, %.1f) mm%s; their lengths add (or subtract the parent), nothing is clamped",
+        "%.3g mm along z at (%.1f, %.1f, %.1f) mm%s; their lengths add (or subtract the parent), nothing is clamped%s",
         count,
         skg_plural(count, "pair of parts overlaps, or a part leaves its parent",
                    "pairs of parts overlap or leave their parent"),
         volume / 1000, scene->parts[worst->part].label,
         worst->kind == SKG_OVERLAP_SIBLINGS ? "with" : "leaves", scene->parts[worst->other].label,
-        worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2], others);
+        worst->volume / 1000, worst->longest, worst->place[0], worst->place[1], worst->place[2], others,
+        in_cells ? " but the cells of a volume, which are cut out once, where there are any" : "");
 }
 
 /* What threads share. */

@@ -351,7 +351,8 @@ skg_status skg_volume_contents_get(const skg_volume *volume, skg_volume_contents
                                 .bytes = skg_volume_bytes(v),
                                 .low = v->low,
                                 .high = v->high,
-                                .beyond = v->beyond};
+                                .beyond = v->beyond,
+                                .remarks = v->remark_count};
     for (int k = 0; k < 3; k++)
         ours.spacing[k] = skg_length((const double[3]){v->affine[k], v->affine[4 + k], v->affine[8 + k]});
     memcpy(ours.affine, v->affine, sizeof ours.affine);

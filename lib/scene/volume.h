@@ -7,6 +7,14 @@
 #include <skiagraph/mesh.h>
 #include <skiagraph/volume.h>
 
+/* Sentences about the file of a volume, at most: of its unit, of the size of its cells, of the order of its bytes. */
+enum { SKG_VOLUME_REMARKS = 3 };
+
+typedef struct {
+    int32_t level; /* enum skg_log_level */
+    char text[256];
+} skg_volume_remark;
+
 /* A cell holds an amount of a curve: of the attenuation of one composition at 1 g/cm3 (SKG_VOLUME_MU: of 1/cm at every energy). Cells
  * of 16 bits are codes, of which a table says curve and amount. Cells of 32 bits are amounts of the only curve, in `unit`. */
 struct skg_volume {
@@ -30,6 +38,8 @@ struct skg_volume {
     int64_t beyond;        /* cells above HU 3000 */
     skg_mesh *hull;        /* the box of all cells */
     skg_material *nothing; /* of the hull: cells add what is inside */
+    int32_t remark_count;
+    skg_volume_remark remarks[SKG_VOLUME_REMARKS];
 };
 
 int64_t skg_volume_bytes(const skg_volume *volume);

@@ -65,7 +65,7 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
         if pathlib.Path(array).is_dir():
             array, affine = _dicom_series.read(pathlib.Path(array))
     if isinstance(array, (str, os.PathLike)):
-        return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 1.0, source),
+        return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 0.0, source),
                 [values, interpolation, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])
     if hasattr(array, "GetDirection") and affine is None:
         array, affine = _of_image(array)
@@ -79,9 +79,20 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
             [values, interpolation, of_all or "", rows, str(cells.dtype), hashlib.sha256(cells.tobytes()).hexdigest(), np.asarray(affine, np.float64)])
 
 
+def _remarks(volume: Any, count: int) -> list[str]:
+    """What the file of a volume leaves open."""
+    level, sentence, remarks = ffi.new("int32_t *"), ffi.new("char **"), []
+    for index in range(count):
+        call("skg_volume_remark_get", volume, index, level, sentence)
+        remarks.append(text(sentence[0]))
+    return remarks
+
+
 def warn_of(label: str, volume: Any, named: bool) -> None:
-    """Warns of cells that no tissue is. named: their compositions were given."""
+    """Warns of what its file leaves open, and of cells that no tissue is. named: their compositions were given."""
     found = filled("skg_volume_contents", "skg_volume_contents_get", volume)
+    for sentence in _remarks(volume, found["remarks"]):
+        warn(f"{label}: {sentence}")
     if found["values"] == _VALUES["density"] and found["high"] > 23:  # osmium has 22.6
         warn(f"{label}: its densities go up to {found['high']:g} g/cm3, which nothing has; are they mg/cm3 or Hounsfield numbers?")
     if found["beyond"] and not named:
@@ -93,6 +104,7 @@ def describe(volume: Any) -> dict[str, Any]:
     """What a volume is, and the shares of its cells by composition."""
     found = filled("skg_volume_contents", "skg_volume_contents_get", volume)
     found["values"] = next(name for name, value in _VALUES.items() if value == found["values"])
+    found["remarks"] = _remarks(volume, found["remarks"])
     name, share, classes = ffi.new("char **"), ffi.new("double *"), {}
     for index in range(found["classes"]):
         call("skg_volume_class_get", volume, index, name, share)

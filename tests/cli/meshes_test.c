@@ -230,7 +230,7 @@ END_TEST
 static void write_volume(void) {
     static const char header[] =
         "ObjectType = Image\nNDims = 3\nBinaryDataByteOrderMSB = False\nOffset = -5 -5 -5\n"
-        "ElementSpacing = 10 10 10\nDimSize = 2 2 2\nElementType = MET_SHORT\n"
+        "ElementSpacing = 10 10 10\nDistanceUnits = mm\nDimSize = 2 2 2\nElementType = MET_SHORT\n"
         "ElementDataFile = LOCAL\n";
     char bytes[sizeof header - 1 + 16];
     memcpy(bytes, header, sizeof header - 1);
@@ -274,10 +274,25 @@ START_TEST(volumes_are_parts) {
     ck_run(0, "image s.json --without pin --quantity attenuation -o a.mha");
     ck_run(0, "parts s.json");
     ck_assert_ptr_nonnull(strstr(said, "cells of a volume"));
+    ck_run(0, "mesh ct.mha --unit cm");
+    ck_assert_ptr_nonnull(strstr(said, "x -100 to 100"));
+    ck_assert_ptr_nonnull(
+        strstr(complained, "note: ct.mha: read in cm, as was asked; the file itself is in mm"));
+    write_volume_scene("s.json", ", \"Unit\": \"mm\"");
+    ck_run(0, "parts s.json");
+    ck_assert_ptr_null(strstr(complained, "as was asked"));
+    write_volume_scene("s.json", ", \"Unit\": \"cm\"");
+    ck_run(0, "parts s.json");
+    ck_assert_ptr_nonnull(strstr(complained, "): read in cm, as was asked; the file itself is in mm"));
     write_volume_scene(
         "s.json",
         ", \"Classes\": [[-1000, \"Air\"], [0, \"Water\"]], \"Transform\": [[\"Rotation\", 30, 0, 0, 1]]");
     ck_run(0, "image s.json -o a.mha");
+    write_volume_scene("s.json", ", \"Transform\": [[\"Translation\", 9, 0, 0, \"mm\"]]");
+    ck_run(0, "image s.json -o a.mha");
+    ck_assert_ptr_nonnull(strstr(complained, "pin leaves patient"));
+    ck_assert_ptr_nonnull(
+        strstr(complained, "nothing is clamped but the cells of a volume, which are cut out once"));
 }
 END_TEST
 

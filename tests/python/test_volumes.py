@@ -134,6 +134,19 @@ def test_files_and_what_is_in_them(tmp_path):
         scene.add_volume("other", path, AFFINE)
 
 
+def test_what_a_file_leaves_open_is_warned_of(tmp_path):
+    path = tmp_path / "ct.nrrd"
+    path.write_bytes(b"NRRD0004\ntype: short\ndimension: 3\nsizes: 2 2 1\nencoding: raw\n\n" + np.array([-1000, 40, 40, 40], "<i2").tobytes())
+    with pytest.warns(sk.SkiagraphWarning) as warned:
+        part = make_scene().add_volume("ct", path)
+    said = [str(one.message) for one in warned]
+    assert "ct: its header does not say how large" in said[0] and "no endian" in said[1] and len(said) == 2
+    assert len(part.volume["remarks"]) == 2
+    path.write_bytes(path.read_bytes().replace(b"\n\n", b"\nendian: little\nspace directions: (1,0,0) (0,1,0) (0,0,1)\nspace units: \"cm\" \"cm\" \"cm\"\n\n", 1))
+    part = make_scene().add_volume("ct", path)
+    assert part.volume["spacing"][0] == 10 and part.volume["remarks"] == []
+
+
 def test_a_scene_file_with_a_volume_is_saved_as_it_was(tmp_path):
     cells = np.full((4, 4, 4), 40, "<i2")
     (tmp_path / "ct.mha").write_bytes(b"NDims = 3\nElementSpacing = 9 9 9\nDimSize = 4 4 4\nElementType = MET_SHORT\n"

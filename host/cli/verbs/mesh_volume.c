@@ -23,9 +23,8 @@ static skg_status load(const char *path, double unit_mm, skg_volume **volume) {
     skg_volume_source source;
     skg_volume_source_init(&source);
     source.values = SKG_VOLUME_MU;
-    const double mm = unit_mm > 0 ? unit_mm : 1;
-    if (skg_volume_load(path, mm, &source, volume) == SKG_OK) return SKG_OK;
-    return skg_volume_load(path, mm, NULL, volume);
+    if (skg_volume_load(path, unit_mm, &source, volume) == SKG_OK) return SKG_OK;
+    return skg_volume_load(path, unit_mm, NULL, volume);
 }
 
 /* The axis of the world that cells of one axis follow most: "+x", or with the angle to it, "+x, 12.3 degrees off". */
@@ -110,12 +109,28 @@ static void print_volume(const char *path, const skg_volume *volume, const skg_v
     if (c->values == SKG_VOLUME_HU) printf("  mass %.6g g\n", c->mass);
 }
 
+/* On standard error, as what a scene says of it. */
+static skg_status pass_remarks(const char *path, const skg_volume *volume, int64_t count) {
+    for (int64_t k = 0; k < count; k++) {
+        const char *sentence = NULL;
+        int32_t level = 0;
+        const skg_status status = skg_volume_remark_get(volume, k, &level, &sentence);
+        if (status != SKG_OK) return status;
+        if (level == SKG_LOG_WARNING)
+            cli_warn("%s: %s", path, sentence);
+        else
+            cli_note("%s: %s", path, sentence);
+    }
+    return SKG_OK;
+}
+
 skg_status cli_mesh_volume(const char *path, double unit_mm, json_t *list) {
     skg_volume *volume = NULL;
     skg_volume_contents contents;
     skg_volume_contents_init(&contents);
     skg_status status = load(path, unit_mm, &volume);
     if (status == SKG_OK) status = skg_volume_contents_get(volume, &contents);
+    if (status == SKG_OK) status = pass_remarks(path, volume, contents.remarks);
     if (status == SKG_OK && list) json_array_append_new(list, volume_json(path, volume, &contents));
     if (status == SKG_OK && !list && !cli_is_quiet()) print_volume(path, volume, &contents);
     skg_volume_release(&volume);

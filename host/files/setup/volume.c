@@ -101,6 +101,18 @@ static void doubt(const skg_setup_reader *reader, const char *place, const skg_v
             place, contents->low, contents->high);
 }
 
+/* What its file leaves open. */
+static skg_status pass_remarks(const skg_setup_reader *reader, const char *place, const skg_volume *volume,
+                               int64_t count) {
+    for (int64_t k = 0; k < count; k++) {
+        const char *sentence = NULL;
+        int32_t level = 0;
+        SKG_TRY(skg_volume_remark_get(volume, k, &level, &sentence));
+        skg_logger_say(&reader->log, level, "%s: %s", place, sentence);
+    }
+    return SKG_OK;
+}
+
 /* Says what was done with cells beyond the scanners' range. */
 static skg_status note(const skg_setup_reader *reader, const skg_json_node *node, const skg_volume *volume,
                        int is_named, int has_compositions) {
@@ -109,6 +121,7 @@ static skg_status note(const skg_setup_reader *reader, const skg_json_node *node
     skg_volume_contents_init(&contents);
     SKG_TRY(skg_volume_contents_get(volume, &contents));
     skg_json_place(node, place, sizeof place);
+    SKG_TRY(pass_remarks(reader, place, volume, contents.remarks));
     doubt(reader, place, &contents, is_named);
     if (contents.beyond == 0 || has_compositions) return SKG_OK;
     skg_logger_say(&reader->log, SKG_LOG_WARNING,
@@ -139,7 +152,7 @@ skg_status skg_setup_read_volume(skg_setup_reader *reader, const skg_json_object
                         material = skg_json_member(sample, "Material");
     compositions *c = NULL;
     const char *name = NULL, *path = NULL;
-    double unit_mm = 1;
+    double unit_mm = 0; /* the file's */
     skg_volume_source source;
     skg_status status = SKG_OK;
     skg_volume_source_init(&source);

@@ -98,8 +98,8 @@ SKG_API skg_status skg_volume_create(const skg_volume_source *source, skg_volume
 /** Reads a volume from a file.
  *
  *     path      .mha, .mhd: MetaImage; .nrrd, .nhdr: NRRD, raw or gzip; .nii, .nii.gz: NIfTI-1 and -2. Three dimensions, one number a cell, compressed or not; positions
- *               are those of the file, mm
- *     unit_mm   mm per unit of the file: 1 for mm
+ *               are those of the file. What it leaves open, and what is taken for it, skg_volume_remark_get says
+ *     unit_mm   mm per unit of the file's lengths, above 0: it wins over the unit that the file names; 0: that one, mm where there is none
  *     source    values, material, classes and name; sizes, type, cells and affine are those of the file. NULL: Hounsfield numbers
  *     errors    SKG_ERR_FILE; SKG_ERR_FORMAT; SKG_ERR_UNSUPPORTED; as above */
 SKG_API skg_status skg_volume_load(const char *path, double unit_mm, const skg_volume_source *source,
@@ -141,6 +141,8 @@ typedef struct {
     double mass;
     /** Cells whose Hounsfield number is above 3000. */
     int64_t beyond;
+    /** Sentences about its file (skg_volume_remark_get). */
+    int64_t remarks;
 } skg_volume_contents;
 
 SKG_INIT(skg_volume_contents)
@@ -154,6 +156,16 @@ SKG_API skg_status skg_volume_contents_get(const skg_volume *volume, skg_volume_
  *     share    result: the share of the cells that are of it */
 SKG_API skg_status skg_volume_class_get(const skg_volume *volume, int64_t index, const char **name,
                                         double *share);
+
+/** Gets sentence 0 <= index < remarks about the file of a volume: that it names another unit than the caller, or does not say
+ * the size of cells or the order of bytes, and what was taken.
+ *
+ *     level      result: SKG_LOG_WARNING or SKG_LOG_NOTE (context.h)
+ *     sentence   result: what follows the name of the volume and a colon, valid as long as the volume
+ *
+ * @since 0.1.0 */
+SKG_API skg_status skg_volume_remark_get(const skg_volume *volume, int64_t index, int32_t *level,
+                                         const char **sentence);
 
 #ifdef __cplusplus
 }
