@@ -70,7 +70,7 @@ static const group groups[] = {
     {.name = "half", .precision = SKG_PRECISION_HALF},
     {.name = "hits", .priority = 2},
     {.name = "double_hits", .precision = SKG_PRECISION_DOUBLE, .priority = 2},
-    {.name = "volume", .volume = 1},
+    {.name = "volume", .volume = 1, .gradient = 1},
     {.name = "double_volume", .precision = SKG_PRECISION_DOUBLE, .volume = 1, .parallel = 1, .colours = 1},
     {.name = "hits_source_plane", .priority = 2, .inside = 1},
     {.name = "leaky", .leaky = 1, .repair = SKG_REPAIR_NEIGHBOURS},
@@ -366,6 +366,27 @@ static int makes_gradient(skg_plan *plan) {
     return densities[0] < 0 && densities[1] < 0;
 }
 
+/* The gradient by the places of parts beside or in a volume, which has none of its own: that of the mesh is finite. */
+static int makes_poses(skg_plan *plan) {
+    static double adjoint[PIXELS];
+    double poses[12];
+    skg_adjoint given;
+    skg_gradient gradient;
+    skg_adjoint_init(&given);
+    skg_gradient_init(&gradient);
+    for (int p = 0; p < PIXELS; p++) adjoint[p] = 1;
+    given.channels = 1, given.rows = ROWS, given.columns = COLUMNS, given.data = adjoint;
+    gradient.poses = poses;
+    TRY(skg_plan_gradient(plan, NULL, &given, &gradient));
+    int finite = 0;
+    for (int part = 0; part < 2; part++) {
+        int all = 1;
+        for (int k = 0; k < 6; k++) all &= isfinite(poses[6 * part + k]) != 0;
+        finite += all;
+    }
+    return finite == 1;
+}
+
 int main(int count, char **words) {
     static float image[2 * PIXELS];
     const group *g = find(count == 2 ? words[1] : "");
@@ -392,7 +413,7 @@ int main(int count, char **words) {
     const double most = g->quantity == SKG_QUANTITY_ATTENUATION ? 104 : 2 * 10500 * (g->variance ? 40 : 1);
     const int good =
         lies_between(image, g->bands ? g->bands * PIXELS : PIXELS, g->noise ? -100 : -1e-3, most);
-    const int also_good = !g->gradient || makes_gradient(plan);
+    const int also_good = !g->gradient || (g->volume ? makes_poses(plan) : makes_gradient(plan));
     skg_plan_release(&plan);
     skg_scene_release(&scene);
     skg_context_release(&context);
