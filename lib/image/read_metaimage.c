@@ -166,9 +166,16 @@ static skg_status read_values(const char *path, FILE *stream, const metaimage *i
     return skg_fail(SKG_ERR_FORMAT, "%s: ends before its last value", path);
 }
 
+/* mm: of its DistanceUnits; 0: not given, for which MetaIO writes "?". Returns 0 if they are no length. */
+static int find_unit(const metaimage *image, double *mm) {
+    *mm = 0;
+    return !image->unit[0] || !strcmp(image->unit, "?") || skg_unit_of_length(image->unit, mm) == SKG_OK;
+}
+
 skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents,
                               double *values) {
     metaimage image = {.quantity = -1, .channels = 1, .slope = 1};
+    double mm = 0;
     FILE *stream = NULL;
     skg_status status = SKG_OK;
     SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
@@ -180,7 +187,8 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
     contents->columns = (int64_t)image.size[0], contents->rows = (int64_t)image.size[1];
     contents->pages = (int64_t)image.size[2];
     contents->quantity = image.quantity;
-    for (int k = 0; k < 2 && image.has_spacing; k++) contents->spacing_mm[k] = fabs(image.spacing[k]);
+    for (int k = 0; k < 2 && image.has_spacing && find_unit(&image, &mm); k++)
+        contents->spacing_mm[k] = fabs(image.spacing[k]) * (mm > 0 ? mm : 1);
     SKG_TRY_CLEANUP(skg_picture_page_check(path, page, contents->pages));
     if (!values) goto cleanup;
     SKG_TRY_CLEANUP(open_data(path, &image, &stream));
@@ -190,19 +198,10 @@ cleanup:
     return status;
 }
 
-/* MetaIO writes "?" where nobody named a unit. */
-static skg_status read_unit(const char *path, const metaimage *image, skg_grid *grid) {
-    double mm = 0;
-    if (image->unit[0] && strcmp(image->unit, "?") && skg_unit_of_length(image->unit, &mm) != SKG_OK)
-        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its DistanceUnits are \"%s\", which is no length; write mm",
-                        path, image->unit);
-    for (int k = 0; k < 3; k++) grid->unit_mm[k] = mm;
-    return SKG_OK;
-}
-
 skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
     metaimage image = {
         .quantity = -1, .channels = 1, .slope = 1, .spacing = {1, 1, 1}, .axes = {1, 0, 0, 0, 1, 0, 0, 0, 1}};
+    double mm = 0;
     FILE *stream = NULL;
     skg_status status = SKG_OK;
     *grid = (skg_grid){0};
@@ -212,9 +211,14 @@ skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
         status = skg_fail(SKG_ERR_FORMAT, "%s: has %d dimensions; a volume has 3", path, image.dimensions);
         goto cleanup;
     }
-    SKG_TRY_CLEANUP(read_unit(path, &image, grid));
+    if (!find_unit(&image, &mm)) {
+        status = skg_fail(SKG_ERR_UNSUPPORTED,
+                          "%s: its DistanceUnits are \"%s\", which is no length; write mm", path, image.unit);
+        goto cleanup;
+    }
     grid->no_spacing = !image.has_spacing && !(image.element[0] > 0);
     for (int k = 0; k < 3; k++) {
+        grid->unit_mm[k] = mm;
         grid->size[k] = (int64_t)image.size[k];
         for (int r = 0; r < 3; r++) grid->affine[4 * r + k] = image.axes[3 * k + r] * image.spacing[k];
         grid->affine[4 * k + 3] = image.offset[k];

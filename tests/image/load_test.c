@@ -80,6 +80,29 @@ START_TEST(other_types_are_read) {
 }
 END_TEST
 
+/* In the file's unit, mm where it names none; 0 where it says nothing that is a length. */
+START_TEST(spacing_is_read_in_mm) {
+    static const struct {
+        const char *says;
+        double across, down;
+    } cases[] = {{"", 0, 0},
+                 {"ElementSpacing = 0.5 -2 1\n", 0.5, 2},
+                 {"ElementSpacing = 0.5 2 1\nDistanceUnits = ?\n", 0.5, 2},
+                 {"DistanceUnits = cm\nElementSpacing = 0.5 2 1\n", 5, 20},
+                 {"ElementSpacing = 0.5 2 1\nDistanceUnits = kg\n", 0, 0}};
+    for (size_t c = 0; c < sizeof cases / sizeof *cases; c++) {
+        char header[512];
+        snprintf(header, sizeof header, HEAD "%sElementType = MET_CHAR\nElementDataFile = LOCAL\n",
+                 cases[c].says);
+        write_file("a.mha", header, "abcdef", 6);
+        const skg_picture_contents contents = contents_of(path);
+        /* of one product, and of a number that is read from text */
+        ck_assert_double_eq_tol(contents.spacing_mm[0], cases[c].across, 1e-12);
+        ck_assert_double_eq_tol(contents.spacing_mm[1], cases[c].down, 1e-12);
+    }
+}
+END_TEST
+
 START_TEST(wrong_files_are_named) {
     static const struct {
         const char *name, *text, *reason;
@@ -112,6 +135,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, what_was_written_is_read);
     tcase_add_test(tests, png_levels_are_read);
     tcase_add_test(tests, other_types_are_read);
+    tcase_add_test(tests, spacing_is_read_in_mm);
     tcase_add_test(tests, wrong_files_are_named);
 }
 

@@ -336,16 +336,22 @@ static int draw_picture(skg_context *context, const skg_scene *scene, const skg_
     return 1;
 }
 
-/* The gradient of the sum of an image: whatever moves with everything else changes nothing. */
-static int makes_gradient(skg_plan *plan) {
+/* That of the sum of an image. */
+static skg_adjoint sum_of_pixels(void) {
     static double adjoint[PIXELS];
-    double poses[12], source[3], detector[6], densities[2];
     skg_adjoint given;
-    skg_gradient gradient;
     skg_adjoint_init(&given);
-    skg_gradient_init(&gradient);
     for (int p = 0; p < PIXELS; p++) adjoint[p] = 1;
     given.channels = 1, given.rows = ROWS, given.columns = COLUMNS, given.data = adjoint;
+    return given;
+}
+
+/* The gradient of the sum of an image: whatever moves with everything else changes nothing. */
+static int makes_gradient(skg_plan *plan) {
+    double poses[12], source[3], detector[6], densities[2];
+    const skg_adjoint given = sum_of_pixels();
+    skg_gradient gradient;
+    skg_gradient_init(&gradient);
     gradient.poses = poses, gradient.source = source, gradient.detector = detector;
     gradient.densities = densities;
     TRY(skg_plan_gradient(plan, NULL, &given, &gradient));
@@ -368,14 +374,10 @@ static int makes_gradient(skg_plan *plan) {
 
 /* The gradient by the places of parts beside or in a volume, which has none of its own: that of the mesh is finite. */
 static int makes_poses(skg_plan *plan) {
-    static double adjoint[PIXELS];
     double poses[12];
-    skg_adjoint given;
+    const skg_adjoint given = sum_of_pixels();
     skg_gradient gradient;
-    skg_adjoint_init(&given);
     skg_gradient_init(&gradient);
-    for (int p = 0; p < PIXELS; p++) adjoint[p] = 1;
-    given.channels = 1, given.rows = ROWS, given.columns = COLUMNS, given.data = adjoint;
     gradient.poses = poses;
     TRY(skg_plan_gradient(plan, NULL, &given, &gradient));
     int finite = 0;
