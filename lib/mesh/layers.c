@@ -52,25 +52,35 @@ static int64_t largest(cell_grid *grid) {
     return most;
 }
 
-/* The same count for few boxes: it is reached in a cell that begins some box along each axis. */
-enum { FEW_BOXES = 6 };
+static int64_t bits_of(uint64_t set) {
+    return __builtin_popcountll(set);
+}
+
+/* The same count for few boxes: it is reached in a cell that begins some box along each axis. met: of each box, those that lie over
+ * the cell in which it begins, a bit each. */
+enum { FEW_BOXES = 64 };
 static int64_t largest_of_few(const cell_grid *grid, int64_t count, const float *boxes) {
-    int64_t from[FEW_BOXES][3], to[FEW_BOXES][3], most = 1;
-    for (int64_t i = 0; i < count; i++)
-        for (int k = 0; k < 3; k++) {
-            from[i][k] = cell_of(grid, k, (double)boxes[6 * i + k]);
-            to[i][k] = cell_of(grid, k, (double)boxes[6 * i + 3 + k]);
-        }
-    for (int64_t n = 0; n < count * count * count; n++) {
-        const int64_t cell[3] = {from[n % count][0], from[n / count % count][1], from[n / count / count][2]};
-        int64_t met = 0;
+    uint64_t met[3][FEW_BOXES] = {{0}};
+    int64_t most = 1;
+    for (int k = 0; k < 3; k++) {
+        int8_t from[FEW_BOXES], to[FEW_BOXES];
         for (int64_t i = 0; i < count; i++) {
-            int in = 1;
-            for (int k = 0; k < 3; k++) in &= from[i][k] <= cell[k] && cell[k] <= to[i][k];
-            met += in;
+            from[i] = (int8_t)cell_of(grid, k, (double)boxes[6 * i + k]);
+            to[i] = (int8_t)cell_of(grid, k, (double)boxes[6 * i + 3 + k]);
         }
-        most = met > most ? met : most;
+        for (int64_t i = 0; i < count; i++)
+            for (int64_t j = 0; j < count; j++)
+                met[k][i] |= (uint64_t)(from[j] <= from[i] && from[i] <= to[j]) << j;
     }
+    for (int64_t x = 0; x < count; x++)
+        for (int64_t y = 0; y < count; y++) {
+            const uint64_t row = met[0][x] & met[1][y];
+            if (!(met[0][x] >> y & 1) || bits_of(row) <= most) continue;
+            for (int64_t z = 0; z < count; z++) {
+                const int64_t here = bits_of(row & met[2][z]);
+                most = here > most ? here : most;
+            }
+        }
     return most;
 }
 

@@ -1,8 +1,10 @@
 /* How often a mesh lies over itself. */
 #include "mesh/mesh.h"
 #include "suite.h"
+#include "support/random.h"
 #include "support/shapes.h"
 
+#include <math.h>
 #include <string.h>
 
 /* One mesh of `count` unit cubes, each `apart` mm further along z. */
@@ -73,6 +75,50 @@ START_TEST(layers_are_counted_again_when_vertices_move) {
 }
 END_TEST
 
+/* The most boxes over one of 32^3 cells of the mesh's bounds, each cell asked in turn. */
+static int most_in_a_cell(const skg_mesh *mesh, int count) {
+    int from[100][3], to[100][3], most = 0;
+    for (int i = 0; i < count; i++)
+        for (int k = 0; k < 3; k++) {
+            const double low = (double)mesh->lowest[k], step = ((double)mesh->highest[k] - low) / 32;
+            const double begin = (double)mesh->boxes[6 * i + k], end = (double)mesh->boxes[6 * i + 3 + k];
+            from[i][k] = (int)fmin(floor((begin - low) / step), 31);
+            to[i][k] = (int)fmin(floor((end - low) / step), 31);
+        }
+    for (int cell = 0; cell < 32 * 32 * 32; cell++) {
+        const int at[3] = {cell % 32, cell / 32 % 32, cell / 1024};
+        int here = 0;
+        for (int i = 0; i < count; i++) {
+            int in = 1;
+            for (int k = 0; k < 3; k++) in &= from[i][k] <= at[k] && at[k] <= to[i][k];
+            here += in;
+        }
+        most = here > most ? here : most;
+    }
+    return most;
+}
+
+/* Cubes at random, some of them few, so that both ways of counting are asked. */
+START_TEST(layers_of_cubes_at_random) {
+    static const int counts[] = {2, 6, 7, 40, 64, 65, 100};
+    uint64_t state = 5;
+    for (int round = 0; round < 42; round++) {
+        const int count = counts[round % 7];
+        double one[24], at[24 * 100];
+        skg_mesh *mesh = stacked_cubes(count, 16);
+        ck_skg(skg_mesh_positions_get(mesh, at, 0));
+        memcpy(one, at, sizeof one);
+        for (int i = 0; i < count; i++) {
+            const double shift[3] = {draw(&state, 0, 4), draw(&state, 0, 4), draw(&state, 0, 4)};
+            for (int v = 0; v < 24; v++) at[24 * i + v] = one[v] + shift[v % 3];
+        }
+        ck_skg(skg_mesh_positions_set(mesh, at, 0));
+        ck_assert_int_eq(mesh->layers, most_in_a_cell(mesh, count));
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
 /* One closed component winds up to three times about its middle. */
 START_TEST(layers_of_one_component) {
     for (int step = 1; step <= 3; step++) {
@@ -108,6 +154,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, layers_are_counted_again_when_vertices_move);
     tcase_add_test(tests, layers_of_one_component);
     tcase_add_test(tests, many_layers_times_many_copies);
+    tcase_add_test(tests, layers_of_cubes_at_random);
     tcase_add_test(tests, layers_count_what_lies_over_each_other);
 }
 
