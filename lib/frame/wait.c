@@ -46,6 +46,7 @@ skg_status skg_job_complete(skg_job **job) {
     if (done->finished) {
         skg_work_end();
         skg_programs_launched(context);
+        skg_machine_slots_settle(done->machine);
         status = outcome_of(done);
     } else if (status == SKG_OK) {
         status = skg_cl_fail(code, "clWaitForEvents", __FILE__, __LINE__);

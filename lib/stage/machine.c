@@ -19,6 +19,17 @@ skg_status skg_machine_slot_take(skg_machine *machine, int64_t frames, skg_toget
     return empty(*slot);
 }
 
+void skg_machine_slots_settle(skg_machine *machine) {
+    for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
+        skg_together_slot *slot = &machine->together[i];
+        cl_int stage = CL_COMPLETE;
+        if (slot->read && clGetEventInfo(slot->read, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage,
+                                         NULL) != CL_SUCCESS)
+            continue;
+        if (slot->staging.first && stage <= CL_COMPLETE) (void)empty(slot);
+    }
+}
+
 void skg_machine_release(skg_machine *machine) {
     for (int i = 0; i < SKG_TABLE_SLOTS; i++) (void)empty(&machine->together[i]);
     skg_raster_cache_release(&machine->rasters);

@@ -56,6 +56,9 @@ void skg_machine_release(skg_machine *machine);
 /* The next slot, empty, for so many frames. Waits until the device has read what it held. */
 skg_status skg_machine_slot_take(skg_machine *machine, int64_t frames, skg_together_slot **slot);
 
+/* Empties the slots that the device has read: what a plan keeps between jobs does not depend on how many frames they had. */
+void skg_machine_slots_settle(skg_machine *machine);
+
 /* Bytes on the device, but for small tables. */
 int64_t skg_machine_bytes(const skg_machine *machine);
 

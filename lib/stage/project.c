@@ -166,6 +166,9 @@ skg_status skg_geometry_create(skg_context *context, int32_t precision, int64_t 
         skg_table_slot *slot = &geometry->slots[i];
         SKG_TRY_CLEANUP(skg_alloc(parts, skg_geometry_entry_size(geometry), "part table", &slot->entries));
         place_parts(geometry, first_triangle, slot->entries);
+        SKG_TRY_CLEANUP(
+            skg_alloc(parts, sizeof(skg_contribution_double), "contribution table", &slot->contributions));
+        slot->capacity = parts;
     }
     SKG_TRY_CLEANUP(skg_buffer_reserve(context, &geometry->part_table,
                                        parts * (int64_t)skg_geometry_entry_size(geometry), CL_MEM_READ_ONLY,

@@ -167,11 +167,37 @@ START_TEST(negative_exponents) {
 }
 END_TEST
 
+/* What a plan keeps between jobs is as many pieces of memory whatever jobs there were, waited for or cancelled. */
+START_TEST(memory_between_jobs) {
+    int64_t one = 0, many = 0;
+    skg_plan_options options;
+    skg_plan_options_init(&options);
+    plan_with(&options);
+    ck_skg(take(FRAMES, frames, together));
+    ck_skg(take(1, frames, alone));
+    ck_skg(skg_allocation_count(&one));
+    for (int turn = 0; turn < 5; turn++) {
+        skg_job *job = NULL;
+        skg_output output;
+        skg_output_init(&output);
+        output.data = together;
+        ck_skg(skg_plan_submit(plan, FRAMES, frames, &output, &job));
+        if (turn % 2) ck_skg(skg_job_cancel(job));
+        const skg_status status = skg_job_wait(&job);
+        ck_assert(status == SKG_OK || status == SKG_ERR_CANCELLED);
+        ck_skg(take(1 + turn, frames, together));
+        ck_skg(skg_allocation_count(&many));
+        ck_assert_int_eq(one, many);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_scene, close_scene);
     tcase_add_loop_test(tests, same_bits, 0, 3);
     tcase_add_test(tests, bad_frame);
     tcase_add_test(tests, negative_exponents);
+    tcase_add_test(tests, memory_between_jobs);
 }
 
 SKG_SUITE_MAIN("together", add_tests)
