@@ -5,6 +5,8 @@
 #include "common/say.h"
 
 #include <civetweb.h>
+#include <pthread.h>
+#include <stdatomic.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -25,6 +27,7 @@ struct live_server {
     char token[LIVE_TOKEN], nonce[LIVE_TOKEN];
     char names[5][256]; /* under which it may be asked, without ports; the rest is empty */
     int is_any;         /* it listens on every address of the machine */
+    char address[256];  /* at which it listens */
 };
 
 static live_server *server_of(const struct mg_connection *connection) {
@@ -196,6 +199,7 @@ int live_server_start(const live_server_options *options, live_hub *hub, live_se
     live_server *made = *server = calloc(1, sizeof *made);
     if (!made) return cli_error(CLI_DEVICE, "out of host memory");
     made->hub = hub;
+    snprintf(made->address, sizeof made->address, "%s", options->address);
     take_names(made, options->address);
     snprintf(made->token, sizeof made->token, "%s", options->token);
     snprintf(made->nonce, sizeof made->nonce, "%s", options->nonce);
@@ -220,9 +224,40 @@ int live_server_port(const live_server *server) {
     return mg_get_server_ports(server->context, 1, &port) == 1 ? port.port : 0;
 }
 
+typedef struct {
+    struct mg_context *context;
+    atomic_int stopped;
+} stopping;
+
+static void *stop_context(void *user) {
+    stopping *s = user;
+    mg_stop(s->context);
+    atomic_store(&s->stopped, 1);
+    return NULL;
+}
+
+/* CivetWeb looks every two seconds whether it is to stop, or when somebody calls: so it is called until it has stopped. */
+static void stop_at_once(live_server *server) {
+    stopping s = {.context = server->context};
+    char reason[128];
+    const int port = live_server_port(server);
+    pthread_t thread;
+    atomic_init(&s.stopped, 0);
+    if (pthread_create(&thread, NULL, stop_context, &s) != 0) {
+        mg_stop(server->context);
+        return;
+    }
+    while (!atomic_load(&s.stopped)) {
+        struct mg_connection *call = mg_connect_client(server->address, port, 0, reason, sizeof reason);
+        if (call) mg_close_connection(call);
+        usleep(10000);
+    }
+    pthread_join(thread, NULL);
+}
+
 void live_server_stop(live_server **server) {
     if (!*server) return;
-    mg_stop((*server)->context);
+    stop_at_once(*server);
     mg_exit_library();
     free(*server);
     *server = NULL;
