@@ -167,20 +167,3 @@ skg_status skg_plan_derivatives(skg_plan *plan, const skg_frame *frame, int64_t 
                                                  derivatives, saturated, &job);
     return skg_call_end(begun, skg_gradient_wait(status, &job));
 }
-
-skg_status skg_plan_derivative_submit(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
-                                      double *derivative, int64_t *saturated, skg_job **job) {
-    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(begun, skg_feeder_start(submit_derivatives("skg_plan_derivative_submit", plan, frame,
-                                                                   1, direction, derivative, saturated, job),
-                                                job));
-}
-
-skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
-                               double *derivative, int64_t *saturated) {
-    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
-    skg_job *job = NULL;
-    const skg_status status =
-        submit_derivatives("skg_plan_derivative", plan, frame, 1, direction, derivative, saturated, &job);
-    return skg_call_end(begun, skg_gradient_wait(status, &job));
-}

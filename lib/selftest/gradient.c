@@ -68,7 +68,7 @@ static skg_status compare_forward(gradient_run *run, int way, double size, skg_v
     twists[way / 3][way % 3] = 1;
     skg_direction_init(&direction);
     direction.poses = twists[0];
-    SKG_TRY(skg_plan_derivative(run->plan, NULL, &direction, run->derivative, NULL));
+    SKG_TRY(skg_plan_derivatives(run->plan, NULL, 1, &direction, run->derivative, NULL));
     for (int p = 0; p < PIXELS; p++) sum += run->adjoint[p] * run->derivative[p];
     if (!(fabs(sum - run->poses[way / 3][way % 3]) <= TOLERANCE * size))
         note(verdict, "the sum of the derivatives", way, sum, run->poses[way / 3][way % 3]);

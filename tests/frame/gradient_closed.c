@@ -34,7 +34,7 @@ static double find_both(skg_plan *plan, int64_t part, const double twist[6], con
     memcpy(twists[part], twist, sizeof twists[part]);
     skg_direction_init(&moving);
     moving.poses = twists[0];
-    ck_skg(skg_plan_derivative(plan, NULL, &moving, found, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, found, NULL));
     skg_gradient_init(&gradient);
     gradient.poses = poses[0];
     ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));

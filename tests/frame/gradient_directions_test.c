@@ -69,7 +69,7 @@ START_TEST(together_they_have_the_bits_of_each) {
     for (int d = 0; d < DIRECTIONS; d++) {
         int64_t cut = -1;
         double largest = 0;
-        ck_skg(skg_plan_derivative(plan, NULL, &directions[d], alone, &cut));
+        ck_skg(skg_plan_derivatives(plan, NULL, 1, &directions[d], alone, &cut));
         ck_assert_int_eq(saturated[d], cut);
         for (int64_t i = 0; i < size; i++) {
             largest = fmax(largest, fabs(alone[i]));
@@ -106,8 +106,8 @@ START_TEST(what_is_wrong_is_said) {
     ck_assert_ptr_null(job);
     ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, NULL, found, NULL), SKG_ERR_ARGUMENT,
                  "skg_plan_derivatives: the argument directions is NULL");
-    ck_skg_fails(skg_plan_derivative(plan, NULL, &directions[2], found, NULL), SKG_ERR_ARGUMENT,
-                 "skg_plan_derivative: number 4 of the direction's detector is nan; it has to be finite");
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &directions[2], found, NULL), SKG_ERR_ARGUMENT,
+                 "skg_plan_derivatives: number 4 of the direction's detector is nan; it has to be finite");
     skg_plan_release(&plan);
     release(&r);
 }

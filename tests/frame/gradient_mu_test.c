@@ -95,7 +95,7 @@ static void check_direction(skg_plan *plan, const double *adjoint, int64_t count
     changes[number] = 1;
     along_one.attenuations = changes;
     ck_skg(skg_plan_node_count(plan, &along_one.nodes));
-    ck_skg(skg_plan_derivative(plan, NULL, &along_one, derivative, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &along_one, derivative, NULL));
     for (int64_t p = 0; p < count; p++) sum += adjoint[p] * derivative[p];
     /* Sums in double, in another order. */
     ck_assert_msg(fabs(sum - gradient) <= 1e-9 * size, "coefficient %d: %.12g, gradient %.12g", (int)number,

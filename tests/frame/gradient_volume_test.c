@@ -152,7 +152,7 @@ START_TEST(derivatives_are_those_of_differences) {
             twists[part][way] = 1;
             skg_direction_init(&direction);
             direction.poses = twists[0];
-            ck_skg(skg_plan_derivative(plan, NULL, &direction, derivative, NULL));
+            ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL));
             differentiate(plan, part, way, slope);
             for (int p = 0; p < PIXELS; p++) {
                 largest = isnan(slope[p]) ? largest : fmax(largest, fabs(slope[p]));
@@ -265,7 +265,7 @@ START_TEST(what_has_no_derivative_is_refused) {
                  "no vertices of its own");
     skg_direction_init(&direction);
     poses[VOLUME][1] = 1, direction.poses = poses[0];
-    ck_skg_fails(skg_plan_derivative(plan, NULL, &direction, derivative, NULL), SKG_ERR_UNSUPPORTED,
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL), SKG_ERR_UNSUPPORTED,
                  "no derivative by its place");
     skg_plan_release(&plan);
     skg_scene_release(&scene);

@@ -253,7 +253,7 @@ void make_derivative(skg_plan *plan, const direction *d, double *derivative) {
     if (moves_view > 0) given.source = d->source, given.detector = d->detector;
     for (int64_t p = 0; p < parts; p++)
         if (d->densities[p] != 0) given.densities = d->densities;
-    ck_skg(skg_plan_derivative(plan, NULL, &given, derivative, &saturated));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &given, derivative, &saturated));
     ck_assert_int_eq(saturated, 0);
     for (int64_t p = 0; p < parts; p++) free(moves[p]);
 }

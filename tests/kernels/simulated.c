@@ -359,7 +359,7 @@ static int makes_gradient(skg_plan *plan) {
     skg_direction direction;
     skg_direction_init(&direction);
     direction.poses = twists;
-    TRY(skg_plan_derivative(plan, NULL, &direction, along, NULL));
+    TRY(skg_plan_derivatives(plan, NULL, 1, &direction, along, NULL));
     for (int p = 0; p < PIXELS; p++) sum += along[p];
     /* The same hits, added up in another order in single precision. */
     const double error = 1e-4 * (fabs(sum) + fabs(source[0]));

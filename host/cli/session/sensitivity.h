@@ -18,7 +18,7 @@ typedef struct {
 typedef struct {
     cli_part_sensitivity *parts; /* [count] the largest first, those that are not known last */
     int64_t count;
-    int64_t saturated; /* slopes of faces that were cut off (skg_plan_derivative) */
+    int64_t saturated; /* slopes of faces that were cut off (skg_plan_derivatives) */
     double seconds;
     char refusal[512]; /* why it is not known; empty: it is */
 } cli_sensitivity;

@@ -17,6 +17,7 @@
 
 #include <skiagraph/beam.h>
 #include <skiagraph/bodies.h>
+#include <skiagraph/blur.h>
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
 #include <skiagraph/collimation.h>
@@ -42,9 +43,11 @@
 #include <skiagraph/scan_file.h>
 #include <skiagraph/scan_reader.h>
 #include <skiagraph/scan_run.h>
+#include <skiagraph/scatter.h>
 #include <skiagraph/scene.h>
 #include <skiagraph/scene_picture.h>
 #include <skiagraph/setup.h>
+#include <skiagraph/source.h>
 #include <skiagraph/thorax.h>
 #include <skiagraph/types.h>
 #include <skiagraph/version.h>

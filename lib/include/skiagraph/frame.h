@@ -13,9 +13,9 @@
  *
  * The device is given frames for about half a second at once, and of a frame that takes longer, because it has many samples of the
  * source, some of these samples at once. If a job has more, the others follow during
- * skg_job_test, skg_job_progress and skg_job_wait, and when another job is submitted to the context. Until then
- * a job can be cancelled (skg_job_cancel), and no part may be added to its scene or put elsewhere. Frames of leaky
- * meshes, those with scatter and those of opencl.h are all given at once.
+ * skg_job_test, skg_job_progress and skg_job_wait, when another job is submitted to the context, and while nobody calls: a thread
+ * of the library gives them then. Until the device has all of them a job can be cancelled (skg_job_cancel). Parts that are added
+ * meanwhile are not in its frames. Frames of leaky meshes, those with scatter and those of opencl.h are all given at once.
  *
  * @since 0.1.0 */
 #ifndef SKIAGRAPH_FRAME_H
@@ -210,9 +210,7 @@ SKG_API void skg_job_release(skg_job **job);
  *     errors   SKG_ERR_MESH with frame, part and vertex if a vertex is not finite in its pose: the images of the
  *              other frames are in place, and later jobs are not touched; SKG_ERR_CANCELLED with the number of
  *              frames, the first ones of the job, that are in place; SKG_ERR_DEVICE and others. The job is
- *              released all the same, except with SKG_ERR_FORK
- *     stale    SKG_STALE: parts were added to the scene or put elsewhere while frames were not given to the
- *              device yet; these are not made */
+ *              released all the same, except with SKG_ERR_FORK */
 SKG_API skg_status skg_job_wait(skg_job **job);
 
 /** Makes one output, such as an image, of the scene as it stands: submits one frame and waits for it. */

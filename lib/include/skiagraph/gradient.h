@@ -167,15 +167,6 @@ SKG_API skg_status skg_plan_derivatives(skg_plan *plan, const skg_frame *frame, 
                                         const skg_direction *directions, double *derivatives,
                                         int64_t *saturated);
 
-/** Starts the derivative along one direction: skg_plan_derivatives_submit with a count of 1. */
-SKG_API skg_status skg_plan_derivative_submit(skg_plan *plan, const skg_frame *frame,
-                                              const skg_direction *direction, double *derivative,
-                                              int64_t *saturated, skg_job **job);
-
-/** Makes the derivative along one direction: skg_plan_derivatives with a count of 1. */
-SKG_API skg_status skg_plan_derivative(skg_plan *plan, const skg_frame *frame, const skg_direction *direction,
-                                       double *derivative, int64_t *saturated);
-
 #ifdef __cplusplus
 }
 #endif

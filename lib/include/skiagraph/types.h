@@ -113,6 +113,16 @@ typedef struct {
 
 SKG_INIT(skg_view)
 
+/** Limits of the interface. */
+enum skg_limit {
+    /** Most channels of an image. */
+    SKG_CHANNELS_MAX = 16,
+    /** Most depths of a scintillator that have a blur of their own. */
+    SKG_DEPTHS_MAX = 8,
+    /** Most samples of a line spread function that is made from a table of frequencies. */
+    SKG_LINE_SAMPLES_MAX = 255
+};
+
 #ifdef __cplusplus
 }
 #endif
