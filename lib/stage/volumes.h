@@ -9,6 +9,7 @@ typedef struct {
     int64_t part;
     const skg_volume *volume; /* of the scene */
     skg_buffer cells, weights, displacing;
+    skg_buffer lines; /* of a curved detector (skg_cell_line) */
     int64_t plane_count;
     int32_t *planes;  /* [plane_count] that its cells add to */
     int32_t lanes;    /* planes of a launch: 1, 4 or 8 */
