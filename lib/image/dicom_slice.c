@@ -197,7 +197,8 @@ static skg_status take_attributes(const source *s, skg_dicom_slice *slice) {
         if (h.group == 0x7fe0 && h.element == 0x0010) {
             slice->pixels = (int64_t)ftello(s->stream);
             slice->pixel_bytes = h.length == UNKNOWN_LENGTH ? -1 : (int64_t)h.length;
-            return SKG_OK;
+            if (slice->pixels + slice->pixel_bytes <= s->size) return SKG_OK;
+            return skg_fail(SKG_ERR_FORMAT, "%s: ends within its pixels; is it the whole file?", s->path);
         }
         SKG_TRY(take_value(s, implicit, &h, slice));
     }
@@ -226,6 +227,11 @@ typedef struct {
     int allocated, stored, low;
 } word_layout;
 
+static int64_t pixels_of(const skg_dicom_slice *slice) {
+    return (int64_t)skg_dicom_number(slice, SKG_DICOM_ROWS, 0) *
+           (int64_t)skg_dicom_number(slice, SKG_DICOM_COLUMNS, 0);
+}
+
 static skg_status find_layout(const skg_dicom_slice *slice, word_layout *word) {
     const double allocated = skg_dicom_number(slice, SKG_DICOM_ALLOCATED, 0),
                  stored = skg_dicom_number(slice, SKG_DICOM_STORED, allocated),
@@ -243,12 +249,19 @@ static skg_status find_layout(const skg_dicom_slice *slice, word_layout *word) {
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: bits %g of %g, the highest %g, are no pixel that is read",
                         slice->path, stored, allocated, high);
     *word = (word_layout){(int)allocated, (int)stored, (int)(high - stored) + 1};
-    return SKG_OK;
+    const int64_t bytes = pixels_of(slice) * word->allocated / 8;
+    if (slice->pixel_bytes >= bytes) return SKG_OK;
+    return skg_fail(SKG_ERR_FORMAT, "%s: has %" PRId64 " bytes of pixels, and its size asks for %" PRId64,
+                    slice->path, slice->pixel_bytes, bytes);
+}
+
+skg_status skg_dicom_slice_check(const skg_dicom_slice *slice) {
+    word_layout word;
+    return find_layout(slice, &word);
 }
 
 skg_status skg_dicom_slice_values(const skg_dicom_slice *slice, double *values) {
-    const int64_t pixels =
-        (int64_t)slice->numbers[SKG_DICOM_ROWS][0] * (int64_t)slice->numbers[SKG_DICOM_COLUMNS][0];
+    const int64_t pixels = pixels_of(slice);
     const double slope = skg_dicom_number(slice, SKG_DICOM_SLOPE, 1),
                  intercept = skg_dicom_number(slice, SKG_DICOM_INTERCEPT, 0);
     word_layout word = {8, 8, 0};
@@ -259,9 +272,6 @@ skg_status skg_dicom_slice_values(const skg_dicom_slice *slice, double *values) 
     const int each = word.allocated / 8;
     const uint32_t mask = (UINT32_C(1) << word.stored) - 1,
                    sign = skg_dicom_number(slice, SKG_DICOM_SIGNED, 0) != 0 ? (mask >> 1) + 1 : 0;
-    if (slice->pixel_bytes < pixels * each)
-        return skg_fail(SKG_ERR_FORMAT, "%s: has %" PRId64 " bytes of pixels, and its size asks for %" PRId64,
-                        slice->path, slice->pixel_bytes, pixels * each);
     SKG_TRY(skg_input_open(slice->path, SKG_INPUT_LARGE, &stream, NULL));
     SKG_TRY_CLEANUP(skg_alloc(pixels, (size_t)each, "pixels of a slice", &bytes));
     if (fseeko(stream, (off_t)slice->pixels, SEEK_SET) != 0 ||

@@ -45,9 +45,11 @@ double skg_dicom_number(const skg_dicom_slice *slice, enum skg_dicom_numbers whi
  * errors     SKG_ERR_FORMAT: it ends within what it says; SKG_ERR_UNSUPPORTED: its numbers are not the least significant byte first */
 skg_status skg_dicom_slice_read(const char *path, int *is_dicom, skg_dicom_slice *slice);
 
-/* Reads the values of its pixels, rescaled: [rows][columns].
- *
- * errors   SKG_ERR_UNSUPPORTED: they are compressed, or of a kind that no slice has; SKG_ERR_FORMAT: there are too few */
+/* Fails unless its pixels can be read: SKG_ERR_UNSUPPORTED: they are compressed, or of a kind that no slice has; SKG_ERR_FORMAT: there are
+ * too few. */
+skg_status skg_dicom_slice_check(const skg_dicom_slice *slice);
+
+/* Reads the values of its pixels, rescaled: [rows][columns]. Errors as above. */
 skg_status skg_dicom_slice_values(const skg_dicom_slice *slice, double *values);
 
 #endif

@@ -123,9 +123,9 @@ static skg_status check_common(const series *s, enum skg_dicom_numbers which, co
 }
 
 static skg_status check_slices(const series *s) {
+    SKG_TRY(check_series(s));
     const skg_dicom_slice *first = &s->slices[0];
     const double *spacing = first->numbers[SKG_DICOM_SPACING];
-    SKG_TRY(check_series(s));
     SKG_TRY(check_common(s, SKG_DICOM_ORIENTATION, "ImageOrientationPatient"));
     SKG_TRY(check_common(s, SKG_DICOM_SPACING, "PixelSpacing"));
     SKG_TRY(check_common(s, SKG_DICOM_ROWS, "Rows"));
@@ -138,6 +138,7 @@ static skg_status check_slices(const series *s) {
         if (s->slices[k].count[SKG_DICOM_PLACE] != 3)
             return skg_fail(SKG_ERR_FORMAT, "%s: its ImagePositionPatient is not three numbers",
                             s->slices[k].path);
+    for (int64_t k = 0; k < s->count; k++) SKG_TRY(skg_dicom_slice_check(&s->slices[k]));
     return skg_picture_size_check(s->folder, skg_dicom_number(first, SKG_DICOM_COLUMNS, 0),
                                   skg_dicom_number(first, SKG_DICOM_ROWS, 0), (double)s->count);
 }
