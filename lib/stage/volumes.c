@@ -12,11 +12,8 @@
 #include <math.h>
 #include <string.h>
 
-/* Bits behind the point of places in cells, the bits of all of a place, and the bits behind the point of path parameters. */
-enum { POINT_MIN = 30, POINT_MAX = 40, PLACE_BITS = 60, PATH_BITS = 40 };
-
-/* Paths of a parallel beam whose start is before this come from infinity. */
-static const double NO_START = -1e29;
+/* Bits behind the point of places in cells, and the bits of all of a place. */
+enum { POINT_MIN = 30, POINT_MAX = 40, PLACE_BITS = 60 };
 
 static skg_status check_size(const skg_context *context, const skg_scene *scene, int64_t part) {
     const skg_device_info *info = &context->device->info;
@@ -52,7 +49,7 @@ void skg_volumes_release(skg_volumes *volumes) {
         skg_buffer_release(&placed->cells);
         skg_buffer_release(&placed->weights);
         skg_buffer_release(&placed->displacing);
-        skg_buffer_release(&placed->lines);
+        skg_cell_lines_release(&placed->lines);
         skg_free(&placed->planes);
     }
     skg_free(&volumes->volumes);
@@ -190,42 +187,7 @@ static int32_t bits_for(const skg_camera *camera, const skg_cell_rays *rays) {
                                                : POINT_MAX;
 }
 
-static SKG_LONG fixed(double x, int32_t bits) {
-    return llrint(ldexp(x, bits));
-}
-
-/* A row of the raster of a curved detector: pixel i stands on the touching plane at x = column + i step, y. */
-static void fill_line(const skg_camera *camera, const skg_cell_rays *rays, int32_t bits, int64_t row,
-                      skg_cell_line *line) {
-    skg_bent_line bent;
-    skg_bends_row(camera, (double)row, &bent);
-    const double step = 1 + bent.more, column = bent.moved - bent.more * skg_bends_middle(camera);
-    const double *start = camera->start;
-    for (int k = 0; k < 3; k++) {
-        line->base[k] = fixed(rays->base[0][k] + column * rays->base[1][k] + bent.y * rays->base[2][k], bits);
-        line->way[k] = fixed(rays->way[0][k] + column * rays->way[1][k] + bent.y * rays->way[2][k], bits);
-        line->base_column[k] = fixed(step * rays->base[1][k], bits);
-        line->way_column[k] = fixed(step * rays->way[1][k], bits);
-    }
-    line->end = fixed(bent.t, PATH_BITS);
-    line->start = line->start_column = 0;
-    if (!camera->parallel || start[0] < NO_START) return;
-    line->start = fixed(start[0] + column * start[1] + bent.y * start[2], PATH_BITS);
-    line->start_column = fixed(step * start[1], PATH_BITS);
-}
-
-/* Uploads the lines of a curved detector. */
-static skg_status write_lines(skg_placed_volume *placed, const skg_camera *camera, const skg_cell_rays *rays,
-                              int32_t bits, skg_staging *staging) {
-    skg_cell_line *lines = NULL;
-    if (!skg_camera_is_curved(camera)) return SKG_OK;
-    SKG_TRY(skg_staging_take(staging, camera->rows, sizeof *lines, "lines of a curved detector", &lines));
-    for (int64_t r = 0; r < camera->rows; r++) fill_line(camera, rays, bits, r, &lines[r]);
-    return skg_staging_write(staging, &placed->lines, camera->rows * (int64_t)sizeof *lines, lines,
-                             "lines of a curved detector");
-}
-
-static skg_status fill_rays(skg_placed_volume *placed, const skg_pass *pass, skg_staging *staging,
+static skg_status fill_rays(skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
                             skg_volume_args *args) {
     const skg_camera *camera = &pass->camera;
     double to_cells[16];
@@ -242,17 +204,17 @@ static skg_status fill_rays(skg_placed_volume *placed, const skg_pass *pass, skg
             "parallel beam",
             pass->scene->parts[placed->part].label, PLACE_BITS - POINT_MIN);
     for (int k = 0; k < 3; k++) {
-        args->base[k] = fixed(rays.base[0][k], args->bits);
-        args->base_column[k] = fixed(rays.base[1][k], args->bits);
-        args->base_row[k] = fixed(rays.base[2][k], args->bits);
-        args->way[k] = fixed(rays.way[0][k], args->bits);
-        args->way_column[k] = fixed(rays.way[1][k], args->bits);
-        args->way_row[k] = fixed(rays.way[2][k], args->bits);
+        args->base[k] = skg_cell_fixed(rays.base[0][k], args->bits);
+        args->base_column[k] = skg_cell_fixed(rays.base[1][k], args->bits);
+        args->base_row[k] = skg_cell_fixed(rays.base[2][k], args->bits);
+        args->way[k] = skg_cell_fixed(rays.way[0][k], args->bits);
+        args->way_column[k] = skg_cell_fixed(rays.way[1][k], args->bits);
+        args->way_row[k] = skg_cell_fixed(rays.way[2][k], args->bits);
         args->cells[k] = (SKG_INT)(placed->volume->size[k] * (placed->volume->linear ? 2 : 1));
         args->start[k] = (float)camera->start[k];
     }
-    args->whole = camera->parallel && camera->start[0] < NO_START;
-    return write_lines(placed, camera, &rays, args->bits, staging);
+    args->whole = skg_starts_nowhere(camera);
+    return skg_cell_lines_write(&placed->lines, context, camera, &rays, args->bits);
 }
 
 /* What displaces the volume in this pass. */
@@ -306,7 +268,7 @@ static skg_status launch(const skg_placed_volume *placed, const skg_pass *pass, 
         SKG_ARGUMENT(VOLUME_ADD, hits, (listed ? &hits->hits : none)->memory),
         SKG_ARGUMENT(VOLUME_ADD, table, (listed ? &hits->table : none)->memory),
         SKG_ARGUMENT(VOLUME_ADD, displacing, (listed ? &placed->displacing : none)->memory),
-        SKG_ARGUMENT(VOLUME_ADD, lines, (pass->kernels.curved ? &placed->lines : none)->memory),
+        SKG_ARGUMENT(VOLUME_ADD, lines, (pass->kernels.curved ? &placed->lines.memory : none)->memory),
         SKG_ARGUMENT(VOLUME_ADD, sums, pass->main.raster->sums.memory),
     };
     cl_program program = NULL;
@@ -329,9 +291,9 @@ static void fill_window(const skg_pass *pass, int64_t part, SKG_INT window[4]) {
 skg_status skg_volume_args_fill(skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
                                 skg_staging *staging, skg_volume_args *args) {
     *args = (skg_volume_args){.layout = pass->main.raster->layout};
-    SKG_TRY(fill_rays(placed, pass, staging, args));
+    SKG_TRY(fill_rays(placed, pass, staging->context, args));
     SKG_TRY(fill_lists(placed, pass, hits, staging, args));
-    if (args->slot >= 0) args->common = fixed(skg_hits_common(pass), PATH_BITS);
+    if (args->slot >= 0) args->common = skg_cell_fixed(skg_hits_common(pass), SKG_PATH_BITS);
     return SKG_OK;
 }
 
