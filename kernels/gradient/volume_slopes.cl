@@ -43,7 +43,7 @@ __kernel void skg_volume_slopes(skg_volume_args args, skg_gradient_args of, __gl
     const uint start = starts[row * of.layout.columns + column];
     hits += start, slopes += start, weights += args.first_weight;
     losses += (long)row * of.stride + column;
-    skg_cell_ray(&args, column, row, base, way);
+    skg_cell_ray(&args, 0, column, row, base, way);
     for (int k = 0; k < count; k++) winding[hits[k].code / 2] = 0;
     for (int w = 0; w < SKG_WORDS; w++) active[w] = 0;
     for (int k = 0; k < count; k++) {

@@ -39,11 +39,20 @@ static long skg_quotient(long part, long whole) {
 }
 
 /* From where to where along its axis a ray is followed. */
-static void skg_cell_ends(const skg_volume_args *args, int column, int row, int lane, skg_cell_rays *rays) {
+static void skg_cell_ends(const skg_volume_args *args, __global const skg_cell_line *lines, int column, int row, int lane,
+                          skg_cell_rays *rays) {
     const long size = (long)args->cells[rays->axis[lane]] << args->bits, base = rays->base[lane], way = rays->way[lane];
+#if SKG_CURVED
+    long start = base, end = base + skg_times(way, lines[row].end, 40);
+#else
     long start = base, end = base + way;
+#endif
 #if SKG_PARALLEL
+#if SKG_CURVED
+    const float t = (float)(lines[row].start + column * lines[row].start_column) * 0x1p-40f;
+#else
     const float t = fma(args->start[1], (float)column, fma(args->start[2], (float)row, args->start[0]));
+#endif
     start = args->whole ? (way > 0 ? 0 : size) : base + convert_long_sat(t * (float)way);
 #endif
     rays->from[lane] = clamp(min(start, end), 0l, size);
@@ -51,9 +60,10 @@ static void skg_cell_ends(const skg_volume_args *args, int column, int row, int 
 }
 
 /* Sets up the ray of a lane. */
-static void skg_set_cell_ray(const skg_volume_args *args, int column, int row, int lane, skg_cell_rays *rays) {
+static void skg_set_cell_ray(const skg_volume_args *args, __global const skg_cell_line *lines, int column, int row, int lane,
+                             skg_cell_rays *rays) {
     long base[3], way[3];
-    skg_cell_ray(args, column, row, base, way);
+    skg_cell_ray(args, lines, column, row, base, way);
     const ulong x = abs(way[0]), y = abs(way[1]), z = abs(way[2]);
     const int axis = x >= y && x >= z ? 0 : y >= z ? 1 : 2;
     rays->axis[lane] = axis;
@@ -64,7 +74,7 @@ static void skg_set_cell_ray(const skg_volume_args *args, int column, int row, i
         rays->side[k][lane] = base[other];
         rays->slope[k][lane] = skg_quotient(way[other], way[axis]);
     }
-    skg_cell_ends(args, column, row, lane, rays);
+    skg_cell_ends(args, lines, column, row, lane, rays);
 }
 
 /* The place along side k at the beginning of a slice, 2^32 a cell. What is far outside stays so. */
@@ -331,10 +341,12 @@ static void skg_put_cells(const skg_volume_args *args, long way, const skg_cell_
 }
 
 /* A work-item takes SKG_WIDE pixels of a row of the window. weights: of 16-bit cells [codes][SKG_VOLUME_PLANES], of wide ones
- * [planes]: what a slice within one cell adds. displacing: the set of slots of the parts inside the volume. */
+ * [planes]: what a slice within one cell adds. displacing: the set of slots of the parts inside the volume. lines: of a curved detector, a line
+ * for each row of the raster; otherwise it is not read. */
 __kernel void skg_volume_add(skg_volume_args args, __global const skg_cell *cells, __global const float *weights,
                              __global const int *counts, __global const uint *starts, __global const skg_listed *hits,
-                             __global const int *table, __global const int *displacing, __global skg_sum *sums) {
+                             __global const int *table, __global const int *displacing,
+                             __global const skg_cell_line *lines, __global skg_sum *sums) {
     const int column = args.window[0] + SKG_WIDE * (int)get_global_id(0);
     const int row = args.window[1] + (int)get_global_id(1), lanes = min(args.window[2] - column, SKG_WIDE);
     skg_cell_rays rays;
@@ -343,7 +355,7 @@ __kernel void skg_volume_add(skg_volume_args args, __global const skg_cell *cell
     weights += args.first_weight;
     for (int l = 0; l < SKG_WIDE; l++) {
         own[l] = off[l] = (skg_cell_sum)(0);
-        skg_set_cell_ray(&args, column + min(l, lanes - 1), row, l, &rays);
+        skg_set_cell_ray(&args, lines, column + min(l, lanes - 1), row, l, &rays);
     }
     for (int axis = 0; axis < 3; axis++)
         skg_walk_cells(&args, &rays, axis, 0, lanes, rays.from, rays.to, cells, weights, own);

@@ -94,7 +94,8 @@
 
 #define SKG_ARGUMENTS_VOLUME_ADD(X) \
     X(VOLUME_ADD, args) X(VOLUME_ADD, cells) X(VOLUME_ADD, weights) X(VOLUME_ADD, counts) X(VOLUME_ADD, starts) \
-    X(VOLUME_ADD, hits) X(VOLUME_ADD, table) X(VOLUME_ADD, displacing) X(VOLUME_ADD, sums)
+    X(VOLUME_ADD, hits) X(VOLUME_ADD, table) X(VOLUME_ADD, displacing) X(VOLUME_ADD, lines) \
+    X(VOLUME_ADD, sums)
 
 #define SKG_ARGUMENTS_VOLUME_SLOPES(X) \
     X(VOLUME_SLOPES, args) X(VOLUME_SLOPES, of) X(VOLUME_SLOPES, cells) X(VOLUME_SLOPES, weights) X(VOLUME_SLOPES, counts) \

@@ -167,6 +167,14 @@ typedef struct {
     SKG_INT first_weight; /* of the launch's planes */
 } skg_volume_args;
 
+/* A row of the raster of a curved detector, whose pixel i sees base + i base_column + t (way + i way_column), in places as above, as far as
+ * t is `end`, in 2^-40. Paths of a parallel beam start where t is start + i start_column, in 2^-40. */
+typedef struct {
+    SKG_LONG base[3], base_column[3];
+    SKG_LONG way[3], way_column[3];
+    SKG_LONG end, start, start_column;
+} skg_cell_line;
+
 /* Of the kernels of leaky.cl. parts: of the batch; part and count: of skg_leaky_put, one of these and how many of its pixels
  * get new sums. */
 typedef struct {

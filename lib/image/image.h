@@ -92,6 +92,10 @@ skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid);
 skg_status skg_nrrd_read_grid(const char *path, skg_grid *grid);
 skg_status skg_nifti_read_grid(const char *path, skg_grid *grid);
 
+/* The same of a folder of DICOM slices, and whether a path is a folder. */
+skg_status skg_dicom_read_grid(const char *path, skg_grid *grid);
+int skg_dicom_is_folder(const char *path);
+
 /* The value of a number of `bytes` bytes of a file. kind: 'u' unsigned, 'i' signed, 'f' float; swapped: 1: of the other byte order. */
 double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped);
 

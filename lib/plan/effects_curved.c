@@ -27,10 +27,6 @@ static int has_scatter(const skg_recipe *recipe) {
     return recipe->options.scatter != NULL;
 }
 
-static int has_volume(const skg_recipe *recipe) {
-    return recipe->volume_count > 0;
-}
-
 static int traces_again(const skg_recipe *recipe) {
     return recipe->leaky_count > 0 && recipe->options.repair == SKG_REPAIR_EXACT;
 }
@@ -44,7 +40,6 @@ static const struct {
     {has_grid, "an anti-scatter grid", "leave the grid out"},
     {has_oblique, "a scintillator that rays cross obliquely", "leave oblique out"},
     {has_scatter, "scattered photons", "leave the scatter out"},
-    {has_volume, "volumes of cells", "give the part as a mesh"},
     {traces_again, "rays through leaky meshes that are traced again",
      "close the meshes, or take another repair"},
 };

@@ -1,4 +1,4 @@
-/* Volumes from files: the extension chooses the reader. */
+/* Volumes from files: the extension chooses the reader; a folder is one of DICOM slices. */
 #include "core/text.h"
 #include "image/image.h"
 #include "scene/volume.h"
@@ -22,6 +22,10 @@ static const struct {
 static skg_status find_reader(const char *path, reader *found) {
     const char *slash = strrchr(path, '/'), *dot = strrchr(slash ? slash : path, '.');
     const size_t length = strlen(path);
+    if (skg_dicom_is_folder(path)) {
+        *found = skg_dicom_read_grid;
+        return SKG_OK;
+    }
     for (size_t i = 0; i < sizeof readers / sizeof *readers; i++) {
         const size_t of = strlen(readers[i].extension);
         if (length > of && skg_same_name(path + length - of, readers[i].extension)) {

@@ -49,6 +49,7 @@ void skg_volumes_release(skg_volumes *volumes) {
         skg_buffer_release(&placed->cells);
         skg_buffer_release(&placed->weights);
         skg_buffer_release(&placed->displacing);
+        skg_cell_lines_release(&placed->lines);
         skg_free(&placed->planes);
     }
     skg_free(&volumes->volumes);
@@ -186,11 +187,8 @@ static int32_t bits_for(const skg_camera *camera, const skg_cell_rays *rays) {
                                                : POINT_MAX;
 }
 
-static SKG_LONG fixed(double x, int32_t bits) {
-    return llrint(ldexp(x, bits));
-}
-
-static skg_status fill_rays(const skg_placed_volume *placed, const skg_pass *pass, skg_volume_args *args) {
+static skg_status fill_rays(skg_placed_volume *placed, const skg_pass *pass, skg_context *context,
+                            skg_volume_args *args) {
     const skg_camera *camera = &pass->camera;
     double to_cells[16];
     skg_cell_rays rays;
@@ -206,17 +204,17 @@ static skg_status fill_rays(const skg_placed_volume *placed, const skg_pass *pas
             "parallel beam",
             pass->scene->parts[placed->part].label, PLACE_BITS - POINT_MIN);
     for (int k = 0; k < 3; k++) {
-        args->base[k] = fixed(rays.base[0][k], args->bits);
-        args->base_column[k] = fixed(rays.base[1][k], args->bits);
-        args->base_row[k] = fixed(rays.base[2][k], args->bits);
-        args->way[k] = fixed(rays.way[0][k], args->bits);
-        args->way_column[k] = fixed(rays.way[1][k], args->bits);
-        args->way_row[k] = fixed(rays.way[2][k], args->bits);
+        args->base[k] = skg_cell_fixed(rays.base[0][k], args->bits);
+        args->base_column[k] = skg_cell_fixed(rays.base[1][k], args->bits);
+        args->base_row[k] = skg_cell_fixed(rays.base[2][k], args->bits);
+        args->way[k] = skg_cell_fixed(rays.way[0][k], args->bits);
+        args->way_column[k] = skg_cell_fixed(rays.way[1][k], args->bits);
+        args->way_row[k] = skg_cell_fixed(rays.way[2][k], args->bits);
         args->cells[k] = (SKG_INT)(placed->volume->size[k] * (placed->volume->linear ? 2 : 1));
         args->start[k] = (float)camera->start[k];
     }
-    args->whole = camera->parallel && camera->start[0] < -1e29;
-    return SKG_OK;
+    args->whole = skg_starts_nowhere(camera);
+    return skg_cell_lines_write(&placed->lines, context, camera, &rays, args->bits);
 }
 
 /* What displaces the volume in this pass. */
@@ -259,7 +257,7 @@ static skg_status launch(const skg_placed_volume *placed, const skg_pass *pass, 
     const int64_t columns = args.window[2] - args.window[0], rows = args.window[3] - args.window[1];
     const int64_t lanes = skg_kernel_lanes(staging->context, pass->kernels.precision);
     const skg_work_size work = {2, {skg_divide_up(columns, lanes), rows}, {on_gpu ? 8 : 1, on_gpu ? 8 : 1}};
-    const skg_buffer *none = &placed->weights; /* not read if nothing displaces the volume */
+    const skg_buffer *none = &placed->weights; /* of what is not read: hits, lines */
     const int listed = args.slot >= 0;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(VOLUME_ADD, args, args),
@@ -270,6 +268,7 @@ static skg_status launch(const skg_placed_volume *placed, const skg_pass *pass, 
         SKG_ARGUMENT(VOLUME_ADD, hits, (listed ? &hits->hits : none)->memory),
         SKG_ARGUMENT(VOLUME_ADD, table, (listed ? &hits->table : none)->memory),
         SKG_ARGUMENT(VOLUME_ADD, displacing, (listed ? &placed->displacing : none)->memory),
+        SKG_ARGUMENT(VOLUME_ADD, lines, (pass->kernels.curved ? &placed->lines.memory : none)->memory),
         SKG_ARGUMENT(VOLUME_ADD, sums, pass->main.raster->sums.memory),
     };
     cl_program program = NULL;
@@ -292,9 +291,9 @@ static void fill_window(const skg_pass *pass, int64_t part, SKG_INT window[4]) {
 skg_status skg_volume_args_fill(skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
                                 skg_staging *staging, skg_volume_args *args) {
     *args = (skg_volume_args){.layout = pass->main.raster->layout};
-    SKG_TRY(fill_rays(placed, pass, args));
+    SKG_TRY(fill_rays(placed, pass, staging->context, args));
     SKG_TRY(fill_lists(placed, pass, hits, staging, args));
-    if (args->slot >= 0) args->common = fixed(skg_hits_common(pass), 40);
+    if (args->slot >= 0) args->common = skg_cell_fixed(skg_hits_common(pass), SKG_PATH_BITS);
     return SKG_OK;
 }
 

@@ -3,12 +3,14 @@
 #define SKG_VOLUMES_H
 
 #include "stage/hits.h"
+#include "stage/volume_lines.h"
 
 /* A volume on the device. */
 typedef struct {
     int64_t part;
     const skg_volume *volume; /* of the scene */
     skg_buffer cells, weights, displacing;
+    skg_cell_lines lines;
     int64_t plane_count;
     int32_t *planes;  /* [plane_count] that its cells add to */
     int32_t lanes;    /* planes of a launch: 1, 4 or 8 */
@@ -36,11 +38,7 @@ int64_t skg_volumes_bytes(const skg_volumes *volumes);
 /* The largest weight of a cell of a part; 0: it is no volume. */
 double skg_volumes_most(const skg_volumes *volumes, int64_t part);
 
-/* The rays of a camera in the axes of a volume, in double. A ray is at base + t way; both change from pixel to pixel. */
-typedef struct {
-    double base[3][3], way[3][3]; /* of pixel (0, 0), what a column adds, and a row */
-} skg_cell_rays;
-
+/* Finds the rays of a camera in the axes of a volume. to_cells: from mm of the world */
 void skg_cell_rays_find(const skg_camera *camera, const double *to_cells, skg_cell_rays *rays);
 
 /* Fills what kernels know of a volume's rays in a pass, and uploads which parts displace it: all but window, unit and planes. */

@@ -28,10 +28,10 @@ def _slices(folder: pathlib.Path) -> list[Any]:
             data = pydicom.dcmread(path)
         except InvalidDicomError:  # other files may lie beside them
             continue
+        if "PixelData" in data and int(data.get("NumberOfFrames", 1)) > 1:
+            raise FileError(f"{path}: holds {data.NumberOfFrames} frames; convert it to .mha or .nii, or to a file a slice")
         if "PixelData" in data and "ImagePositionPatient" in data and "ImageOrientationPatient" in data:
             series.setdefault(str(data.get("SeriesInstanceUID", "")), []).append(data)
-        elif "PixelData" in data and int(data.get("NumberOfFrames", 1)) > 1:
-            raise FileError(f"{path}: holds {data.NumberOfFrames} frames; convert it to .mha or .nii, or to a file a slice")
     if not series:
         raise FileError(f"{folder}: holds no DICOM slice with a place (ImagePositionPatient)")
     if len(series) > 1:

@@ -61,6 +61,8 @@ class Source:
         for name, (path, stamp) in self.files.items():
             if _stamp(path) != stamp:
                 raise FileError(f"{path}: changed since the scene was read, so the scene cannot be pickled")
+            if pathlib.Path(path).is_dir():
+                raise FileError(f"{path}: is a folder, which is not kept, so the scene cannot be pickled; convert it to .mha")
             files[name] = pathlib.Path(path).read_bytes()
         return {"files": files, **{name: getattr(self, name) for name in _KEPT}}
 

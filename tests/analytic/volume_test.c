@@ -84,12 +84,21 @@ typedef struct {
     long double from[3], to[3];
 } line;
 
+/* Where a column lies from the middle, along the column step and towards z = 0, where the source is or the axis of the cylinder. */
+static void place_of(int column, long double *across, long double *ahead) {
+    const long double from_middle = (column - 0.5L * (SIDE - 1)) * (long double)view.column_step[0];
+    *across = from_middle, *ahead = 0;
+    if (!(view.radius > 0)) return;
+    *across = (long double)view.radius * sinl(from_middle / (long double)view.radius);
+    *ahead = (long double)view.radius * (1 - cosl(from_middle / (long double)view.radius));
+}
+
 static line ray_of(int row, int column) {
     line ray;
-    long double along[3], square = 0, ahead = 0;
+    long double along[3], square = 0, ahead = 0, bent[3] = {0};
+    place_of(column, &bent[0], &bent[2]);
     for (int k = 0; k < 3; k++) {
-        ray.to[k] = (long double)view.centre[k] +
-                    (column - 0.5L * (SIDE - 1)) * (long double)view.column_step[k] +
+        ray.to[k] = (long double)view.centre[k] + (k == 2 ? -bent[k] : bent[k]) +
                     (row - 0.5L * (SIDE - 1)) * (long double)view.row_step[k];
         ray.from[k] = (long double)view.source[k];
         along[k] = (long double)view.centre[k] - (long double)view.source[k];
@@ -219,12 +228,28 @@ static void compare(const truth *t, const char *what, double bar) {
     }
 }
 
-/* The last two: the source in the volume, and the detector through it. */
+/* The fourth and fifth: the source in the volume, and the detector through it. From the sixth on the detector is curved; in the last three it
+ * goes through the volume, where the rays of the last one start, too, aslant to the columns. */
+enum { FLAT_VIEWS = 5, VIEWS = 11 };
 static void set_projection(int which) {
-    static const int32_t projections[5] = {SKG_PROJECTION_POINT, SKG_PROJECTION_PARALLEL,
-                                           SKG_PROJECTION_PARALLEL_FROM_INFINITY, SKG_PROJECTION_POINT,
-                                           SKG_PROJECTION_PARALLEL};
+    static const int32_t projections[VIEWS] = {SKG_PROJECTION_POINT,
+                                               SKG_PROJECTION_PARALLEL,
+                                               SKG_PROJECTION_PARALLEL_FROM_INFINITY,
+                                               SKG_PROJECTION_POINT,
+                                               SKG_PROJECTION_PARALLEL,
+                                               SKG_PROJECTION_POINT,
+                                               SKG_PROJECTION_PARALLEL,
+                                               SKG_PROJECTION_PARALLEL_FROM_INFINITY,
+                                               SKG_PROJECTION_POINT,
+                                               SKG_PROJECTION_PARALLEL,
+                                               SKG_PROJECTION_PARALLEL};
+    static const double radii[VIEWS] = {0, 0, 0, 0, 0, 950, 120, 90, 70, 80, 100};
     view.projection = projections[which];
+    view.radius = radii[which];
+    if (which >= FLAT_VIEWS) view.row_step[0] = 0;
+    if (which == 7) view.source[0] = 0.2, view.source[1] = -0.1, view.source[2] = 3;
+    if (which == 8 || which == 9) view.centre[2] = 12;
+    if (which == 10) view.source[0] = 10, view.source[1] = -8, view.source[2] = -20, view.centre[2] = 40;
     if (which == 3) view.source[0] = 1, view.source[1] = 2, view.source[2] = 3;
     if (which == 4) view.centre[2] = 12;
     if (which == 2) view.source[0] = 0.2, view.source[1] = -0.1, view.source[2] = 3;
@@ -236,6 +261,44 @@ START_TEST(cells_are_boxes) {
     add_volume(-1, 0);
     /* Crossings are floats, 2^-24 of a cell, of 20 that a ray meets. */
     compare(&alone, "cells", 1e-6);
+}
+END_TEST
+
+/* Every cell as a mesh of its own, in double precision. */
+START_TEST(a_curved_detector_sees_cells_as_meshes) {
+    static double images[2][SIDE * SIDE];
+    double most = 0, whole[16];
+    skg_plan_options options;
+    skg_output output;
+    skg_output_init(&output);
+    skg_plan_options_init(&options);
+    options.quantity = SKG_QUANTITY_ATTENUATION, options.precision = SKG_PRECISION_DOUBLE;
+    output.type = SKG_TYPE_FLOAT64;
+    set_projection(FLAT_VIEWS);
+    multiply(pose, affine, whole);
+    for (int meshes = 0; meshes < 2; meshes++) {
+        skg_plan *plan = NULL;
+        if (!meshes) add_volume(-1, 0);
+        for (int k = 0; meshes && k < CELLS; k++) {
+            double place[16] = {1, 0, 0, k % COLUMNS,        0, 1, 0, k / COLUMNS % ROWS,
+                                0, 0, 1, k / COLUMNS / ROWS, 0, 0, 0, 1},
+                   at[16];
+            char label[16];
+            snprintf(label, sizeof label, "cell %d", k);
+            multiply(whole, place, at);
+            add_block(label, at, values[k], -1, 0);
+        }
+        output.data = images[meshes];
+        ck_skg(skg_plan_create(context, scene, &view, beam, &options, &plan));
+        ck_skg(skg_plan_image(plan, &output));
+        skg_plan_release(&plan);
+        skg_scene_release(&scene);
+        ck_skg(skg_scene_create(context, &scene));
+    }
+    for (int k = 0; k < SIDE * SIDE; k++) most = fmax(most, images[1][k]);
+    ck_assert_double_gt(most, 1);
+    for (int k = 0; k < SIDE * SIDE; k++) /* as above: crossings of cells are floats */
+        ck_assert_double_eq_tol(images[0][k], images[1][k], 1e-6 * most);
 }
 END_TEST
 
@@ -275,8 +338,9 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_context, close_context);
-    tcase_add_loop_test(tests, cells_are_boxes, 0, 5);
-    tcase_add_loop_test(tests, a_part_inside_displaces_cells, 0, 5);
+    tcase_add_loop_test(tests, cells_are_boxes, 0, VIEWS);
+    tcase_add_loop_test(tests, a_part_inside_displaces_cells, 0, FLAT_VIEWS + 2);
+    tcase_add_test(tests, a_curved_detector_sees_cells_as_meshes);
     tcase_add_loop_test(tests, the_higher_priority_displaces_cells_or_is_displaced, 0, 2);
     tcase_add_loop_test(tests, a_volume_displaces_what_it_lies_inside, 1, 2);
 }

@@ -258,7 +258,7 @@ START_TEST(bad_meshes_are_status_3) {
     ck_run_fails(3, "nan.obj", "mesh nan.obj");
     ck_run_fails(3, "infinite.ply", "mesh infinite.ply");
     ck_run_fails(3, "index.obj", "mesh index.obj");
-    ck_run_fails(3, "cannot be read", "mesh .");
+    ck_run_fails(3, ".: holds no DICOM slice", "mesh .");
     /* What can be read is still reported. */
     write_text("good.obj", tetrahedron);
     ck_run(3, "mesh missing.stl good.obj --json");

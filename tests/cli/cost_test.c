@@ -232,6 +232,51 @@ START_TEST(a_union_has_its_price) {
 }
 END_TEST
 
+/* A volume of 4 x 4 x 4 cells between air and bone: what linear values between them change and take is said beside the dials, and the image
+ * of either setting is that of the command. */
+START_TEST(linear_values_between_cells_have_their_price) {
+    static const char beam[] = "--set 'Source.Beam=[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":100}]'";
+    static double images[2][PIXELS];
+    static const char volume[] =
+        "--set 'Samples.bone={\"Label\":\"bone\",\"Volume\":\"ct.mha\",\"Values\":\"HU\",\"Parent\":\"skin\"}'";
+    char head[512], path[512];
+    int16_t cells[64];
+    double worst = 0;
+    for (int k = 0; k < 64; k++) cells[k] = (int16_t)(k * 37 % 64 * 40 - 1000);
+    const int length = snprintf(head, sizeof head,
+                                "NDims = 3\nElementSpacing = 5 5 5\nOffset = -7.5 -7.5 -7.5\n"
+                                "DimSize = 4 4 4\nElementType = MET_SHORT\nElementDataFile = LOCAL\n");
+    snprintf(path, sizeof path, "%s/ct.mha", folder);
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    ck_assert_uint_eq(fwrite(head, 1, (size_t)length, file), (size_t)length);
+    ck_assert_uint_eq(fwrite(cells, sizeof *cells, 64, file), 64);
+    fclose(file);
+    ck_run(0, "cost 'small scene.json' --quick --within 20 --json %s %s", beam, volume);
+    json_t *study = said_json(), *between = member(study, "interpolation");
+    ck_assert_double_gt(number(between, "cells_ms"), 0);
+    ck_assert_double_gt(number(between, "linear_ms"), 0);
+    ck_assert_ptr_nonnull(strstr(json_string_value(member(study, "summary")),
+                                 "Linear values between the cells of volumes take "));
+    for (int k = 0; k < 2; k++) {
+        ck_run(
+            0,
+            "image 'small scene.json' -o image.mha --quiet --quantity energy %s %s --set 'Samples.bone.Interpolation=\"%s\"'",
+            beam, volume, k ? "linear" : "cells");
+        read_pixels("image.mha", images[k]);
+    }
+    for (int i = 0; i < PIXELS; i++)
+        worst = fmax(worst, fabs(images[1][i] - images[0][i]) / number(study, "open_keV"));
+    ck_assert_double_gt(worst, 0.01);
+    ck_assert_double_eq_tol(number(between, "max_open"), worst, 1e-6); /* floats of the same images */
+    json_decref(study);
+    ck_run(0, "cost 'small scene.json' --quick --within 5 --json %s", beam);
+    study = said_json();
+    ck_assert(json_is_null(member(study, "interpolation")));
+    json_decref(study);
+}
+END_TEST
+
 /* 1e4 photons of 60 keV a pixel of the open beam: the noise of N photons is sqrt(N), so that its root mean
  * square over the image is sqrt(mean I/I0) of 1 %; of 825 pixels within 15 %, six standard errors. */
 START_TEST(advice_stops_at_a_tenth_of_the_noise) {
@@ -272,6 +317,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, round_parts_are_swept);
     tcase_add_test(tests, repair_of_an_open_mesh_is_swept);
     tcase_add_test(tests, a_union_has_its_price);
+    tcase_add_test(tests, linear_values_between_cells_have_their_price);
     tcase_add_test(tests, batches_are_timed);
     tcase_add_test(tests, advice_stops_at_a_tenth_of_the_noise);
 }

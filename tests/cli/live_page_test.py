@@ -326,6 +326,30 @@ def breathes(folder):
         check("no exception", not browser.events, json.dumps(browser.events)[:800])
 
 
+def bends(folder):
+    """A curved detector is drawn on its cylinder, measured along it, and keeps its steps when it is moved and turned."""
+    path = os.path.join(folder, "curved.json")
+    scene = scene_of_matter()
+    scene["Detector"] = {"Position": [0, 200, 0, "mm"], "ColumnStep": [8, 0, 0, "mm"], "RowStep": [0, 0, -8, "mm"],
+                         "NumberOfPixels": [60, 40], "Curved": {"Radius": [250, "mm"]}}
+    with open(path, "w", encoding="ascii") as file:
+        json.dump(scene, file)
+    with Server(command, path) as server, Browser(server.url) as browser:
+        run = browser.run
+        tried = Tried(browser)
+        tried.still()
+        # 480 mm on a radius of 250 mm: its ends are 500 sin(0.96) mm apart.
+        ends = "size(add(scene.view.strips[0][0], -1, scene.view.strips[23][0]))"
+        check("curved", abs(run(ends) - 500 * math.sin(0.96)) < 1e-6, str(run(ends)))
+        check("along the cylinder", abs(run("lengthOnDetector([0.25, 0.5], [0.75, 0.5])") - 240) < 1e-6)
+        run("byId('choose-detector').click()")
+        tried.differs("moved", "typed(byId('about').querySelector('.grid input'), 30)")
+        tried.still()
+        check("steps stay", run("valueOf('Detector.ColumnStep').slice(0, 3).join()") == "8,0,0", str(run("valueOf('Detector.ColumnStep')")))
+        check("still as wide", abs(run(ends) - 500 * math.sin(0.96)) < 1e-6, str(run(ends)))
+        check("no exception", not browser.events, json.dumps(browser.events)[:800])
+
+
 def main():
     if not chromium.program():
         print("no chromium; CHROMIUM names another browser of that kind")
@@ -339,6 +363,7 @@ def main():
             return 77
         work(folder, path)
         breathes(folder)
+        bends(folder)
     for failure in failures:
         print("failed:", failure)
     print(f"{len(failures)} failures")

@@ -26,6 +26,15 @@ static const char begin_script[] =
     "const key = (k, more = {}) => canvas.dispatchEvent(new KeyboardEvent('keydown', {key: k, bubbles: true, ...more}));\n"
     "canvas.setPointerCapture = () => {};\n"
     "const seen = p => place(shot.m, p, canvas.clientWidth, canvas.clientHeight);\n"
+    /* from the source, without parts and beam, the pixels of the detector are those of the image, and left is left; at: a place by shares of
+     * width and height */
+    "const sameImage = at => { const kept = [lines, points]; lines = points = []; lookAs('source');\n"
+    "  const image = scene.image, p = pixels(), bad = [];\n"
+    "  for (let r = 2; r < image.rows - 2; r++) for (let c = 2; c < image.columns - 2; c++) {\n"
+    "    const [x, y] = seen(at((c + 0.5) / image.columns, (r + 0.5) / image.rows)).map(q => q * width() / canvas.clientWidth);\n"
+    "    const grey = p[4 * (Math.floor(height() - y) * width() + Math.floor(x))];\n"
+    "    if (grey !== bytes[image.at + r * image.columns + c]) bad.push([r, c]); }\n"
+    "  check('image ' + bad.slice(0, 5), bad.length === 0); [lines, points] = kept; };\n"
     "function work() {\n"
     "if (!gl) return verdict.push('no WebGL');\n"
     "check('error', byId('failure').hidden);\n"
@@ -73,7 +82,7 @@ static const char still_script[] =
     "byId('none').click(); check('only the found', meshes[0].visible && !meshes[1].visible); byId('all').click();\n"
     "byId('filter').value = ''; byId('filter').oninput(); byId('none').click();\n"
     "check('distances', byId('measures').textContent.includes('500 mm') && byId('measures').textContent.includes('1.25'));\n"
-    "check('field', v0.field.every((p, i) => p.every((x, k) => Math.abs(x - v0.corners[i][k]) < 1e-9)) && v0.jaws.length === 0);\n"
+    "check('field', v0.field.every((p, i) => p.every((x, k) => Math.abs(x - v0.strips[i % 3 ? 1 : 0][i < 2 ? 0 : 1][k]) < 1e-9)) && v0.jaws.length === 0);\n"
     "check('loaded', byId('loading').hidden);\n"
     "key('?'); check('keys', byId('keys').open && byId('keys').textContent.includes('hide the chosen part')); key('?');\n"
     "check('no keys', !byId('keys').open);\n"
@@ -83,19 +92,23 @@ static const char still_script[] =
     "const alone = sum(); wheel(); check('the wheel is the outer page\\'s', sum() === alone);\n"
     "canvas.focus(); differs('wheel', wheel); setBare(false); key('0'); check('as before', sum() === before);\n"
     "check('labels', [...document.querySelectorAll('.label')].some(l => l.textContent === 'detector at 500 mm'));\n"
-    /* from the source, without parts and beam: the pixels of the detector are those of the image, and left is left */
-    "const kept = [lines, points]; lines = points = []; lookAs('source');\n"
-    "const image = scene.image, p = pixels(), v = scene.view, bad = [];\n"
-    "for (let r = 2; r < image.rows - 2; r++) for (let c = 2; c < image.columns - 2; c++) {\n"
-    "  const at = v.corners[0].map((x, k) => x + (c + 0.5) / image.columns * (v.corners[1][k] - x) + (r + 0.5) / image.rows * (v.corners[3][k] - x));\n"
-    "  const [x, y] = seen(at).map(q => q * width() / canvas.clientWidth);\n"
-    "  const grey = p[4 * (Math.floor(height() - y) * width() + Math.floor(x))];\n"
-    "  if (grey !== bytes[image.at + r * image.columns + c]) bad.push([r, c]); }\n"
-    "check('image ' + bad.slice(0, 5), bad.length === 0); [lines, points] = kept;\n"
+    "const v = v0, low = v.strips[0], high = v.strips[1];\n"
+    "sameImage((across, down) => low[0].map((x, k) => x + across * (high[0][k] - x) + down * (low[1][k] - x)));\n"
     "differs('no beam', () => key('m')); key('m'); byId('all').click();\n"
-    "key('0'); const ground = p[0]; setDark(!document.documentElement.classList.contains('dark'));\n"
+    "key('0'); const ground = pixels()[0]; setDark(!document.documentElement.classList.contains('dark'));\n"
     "check('dark', Math.abs(pixels()[0] - ground) > 100);\n"
     "check('panel', (key('l'), getComputedStyle(document.querySelector('aside')).display === 'none'));\n";
+
+/* A detector on a cylinder of 500 mm about the source, with 33 columns of 10 mm: 33 / 50 along its arc. */
+static const char curved_script[] =
+    "const v = scene.view, far = p => Math.hypot(p[0], p[1] + 400), near = (a, b) => Math.abs(a - b) < 1e-6;\n"
+    "check('strips', v.strips.length === 24 && v.strips.every(s => s.every(p => near(far(p), 500) && near(Math.abs(p[2]), 125))));\n"
+    "const angle = p => Math.atan2(p[0], p[1] + 400), edge = angle(v.strips[0][0]), all = angle(v.strips[23][0]) - edge;\n"
+    "check('arc', near(Math.abs(all), 0.66) && v.strips.every((s, i) => near(angle(s[0]), edge + all * i / 23)));\n"
+    "check('steps', near(size(v.steps[0]), 10) && near(size(v.steps[1]), 10));\n"
+    "byId('none').click();\n"
+    "sameImage((across, down) => [500 * Math.sin(edge + across * all), 500 * Math.cos(edge + across * all) - 400,\n"
+    "  v.strips[0][0][2] + down * (v.strips[0][1][2] - v.strips[0][0][2])]);\n";
 
 /* Breath: time moves the parts, and comes round. */
 static const char moving_script[] =
@@ -168,6 +181,14 @@ START_TEST(a_page_shows_sensitivity) {
 }
 END_TEST
 
+START_TEST(a_curved_detector_is_drawn_curved) {
+    need_browser();
+    write_text("s.json", scene);
+    ck_run(0, "view s.json -o a.html --quiet --set 'Detector.Curved={\"Radius\":[500,\"mm\"]}'");
+    if (!work(curved_script)) skip_test("the browser has no WebGL 2");
+}
+END_TEST
+
 /* Who does not ask has no legend, and the list in the order of the scene. */
 START_TEST(a_page_without_sensitivity) {
     need_browser();
@@ -195,6 +216,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_page_can_be_turned);
     tcase_add_test(tests, a_page_shows_sensitivity);
     tcase_add_test(tests, a_page_without_sensitivity);
+    tcase_add_test(tests, a_curved_detector_is_drawn_curved);
     tcase_add_test(tests, a_page_breathes);
 }
 

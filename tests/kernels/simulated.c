@@ -125,6 +125,7 @@ static const group groups[] = {
      .curved = 1,
      .parallel = 1,
      .strategy = SKG_STRATEGY_ATOMICS},
+    {.name = "curved_volume", .curved = 1, .volume = 1},
     {.name = "show", .picture = 1},
     {.name = "place", .placed = 1},
     {.name = "double_place", .precision = SKG_PRECISION_DOUBLE, .placed = 1}};

@@ -1,12 +1,18 @@
-"""CT images from folders of DICOM slices, written here by pydicom."""
+"""CT images from folders of DICOM slices, written here by pydicom: read by pydicom, and by the library as a scene file names them."""
+import json
+import pickle
+import subprocess
+
 import numpy as np
 import pytest
 
 import skiagraph as sk
+from skiagraph import _command
 
 pydicom = pytest.importorskip("pydicom")
-from pydicom.dataset import FileDataset, FileMetaDataset  # noqa: E402
-from pydicom.uid import ExplicitVRLittleEndian, generate_uid  # noqa: E402
+from pydicom.dataset import Dataset, FileDataset, FileMetaDataset  # noqa: E402
+from pydicom.sequence import Sequence  # noqa: E402
+from pydicom.uid import ExplicitVRLittleEndian, ImplicitVRLittleEndian, RLELossless, generate_uid  # noqa: E402
 
 CELLS = np.random.default_rng(2).integers(-1000, 1500, (6, 5, 4)).astype(np.int16)  # [z, y, x]
 TURN = np.linalg.qr(np.random.default_rng(3).normal(size=(3, 3)))[0]
@@ -14,12 +20,12 @@ TURN *= np.sign(np.linalg.det(TURN))
 SPACING, FIRST = np.array([1.5, 2.0, 3.0]), np.array([-10.0, 20.0, 30.0])  # x, y, z
 
 
-def write_slice(folder, index, *, at, series="1.2.3", **more):
+def write_slice(folder, index, *, at, series="1.2.3", implicit=False, compressed=False, **more):
     meta = FileMetaDataset()
     meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID = "1.2.840.10008.5.1.4.1.1.2", generate_uid()
-    meta.TransferSyntaxUID = ExplicitVRLittleEndian
+    meta.TransferSyntaxUID = ImplicitVRLittleEndian if implicit else ExplicitVRLittleEndian
     data = FileDataset(None, {}, file_meta=meta, preamble=b"\0" * 128)
-    data.is_little_endian, data.is_implicit_VR = True, False
+    data.is_little_endian, data.is_implicit_VR = True, implicit
     data.SOPClassUID, data.SOPInstanceUID, data.SeriesInstanceUID = meta.MediaStorageSOPClassUID, meta.MediaStorageSOPInstanceUID, series
     data.Rows, data.Columns = CELLS.shape[1:]
     data.PixelSpacing = [SPACING[1], SPACING[0]]
@@ -31,6 +37,8 @@ def write_slice(folder, index, *, at, series="1.2.3", **more):
     data.PixelData = (CELLS[index] + 1024).astype("<u2").tobytes()
     for name, value in more.items():
         setattr(data, name, value)
+    if compressed:
+        data.compress(RLELossless)
     data.save_as(folder / f"{(7 * index) % 11}.dcm", write_like_original=False)  # not in the order of their names
 
 
@@ -49,33 +57,140 @@ def scene_of(array, affine=None):
     return scene
 
 
+SCENE = {"Source": {"Position": [0, 0, -400, "mm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+         "Detector": {"Position": [0, 0, 100, "mm"], "ColumnStep": [1, 0, 0, "mm"], "RowStep": [0, 1, 0, "mm"], "NumberOfPixels": [60, 60]}}
+
+
+def scene_of_file(folder):
+    return sk.Scene(SCENE | {"Samples": [{"Label": "ct", "Volume": str(folder), "Values": "HU"}]})
+
+
+both = pytest.mark.parametrize("reading", [scene_of, scene_of_file])
+
+
+def same(folder):
+    """The same cells in the same place whoever reads them."""
+    ours, theirs = (reading(folder) for reading in (scene_of_file, scene_of))
+    for key in ("columns", "rows", "slices", "bits", "low", "high", "beyond", "classes"):
+        assert ours["ct"].volume[key] == theirs["ct"].volume[key], key
+    np.testing.assert_allclose(ours["ct"].volume["affine"], theirs["ct"].volume["affine"], rtol=0, atol=1e-12)  # roundings of 30 mm
+    image = theirs.image("attenuation")
+    assert image.max() > 0.05
+    np.testing.assert_allclose(ours.image("attenuation"), image, rtol=0, atol=1e-6 * image.max())  # crossings are floats
+
+
+@both
 @pytest.mark.parametrize("step", [TURN[:, 2] * SPACING[2], TURN @ [0.4, 0.2, 3.0]])  # upright; of a tilted gantry
-def test_a_series_is_its_cells_in_their_place(tmp_path, step):
+def test_a_series_is_its_cells_in_their_place(tmp_path, reading, step):
     affine = np.eye(4)
     affine[:3, :3], affine[:3, 3] = np.column_stack([TURN[:, 0] * SPACING[0], TURN[:, 1] * SPACING[1], step]), FIRST
-    found, expected = (scene_of(*given).image("attenuation") for given in ((write(tmp_path, step),), (CELLS, affine)))
+    found, expected = (scene.image("attenuation") for scene in (reading(write(tmp_path, step)), scene_of(CELLS, affine)))
     assert expected.max() > 0.05
     np.testing.assert_allclose(found, expected, atol=2e-6 * expected.max())  # places are written to a millionth of a mm
 
 
+def nested(depth):
+    """Attributes within attributes, a small picture among them."""
+    item = Dataset()
+    item.PixelData, item.Rows, item.Columns, item.ImagePositionPatient = b"\0" * 8, 2, 2, [9, 9, 9]
+    item["PixelData"].VR = "OW"
+    if depth:
+        item.IconImageSequence = Sequence([nested(depth - 1)])
+    for sequence in item:
+        if sequence.VR == "SQ":
+            sequence.is_undefined_length = depth % 2 == 0
+    item.is_undefined_length_sequence_item = depth % 2 == 1
+    return item
+
+
+@pytest.mark.parametrize("more", [
+    {},
+    {"implicit": True},
+    {"RescaleSlope": 0.25, "RescaleIntercept": -700},  # no whole numbers
+    {"RescaleSlope": 20},  # beyond 16 bits
+    {"PixelRepresentation": 1},
+    {"BitsAllocated": 8, "BitsStored": 8, "HighBit": 7, "PixelData": bytes(range(20)), "RescaleSlope": 50},
+    {"SliceThickness": 5, "ImageComments": "c" * 700, "ReferencedImageSequence": Sequence([])},
+    {"IconImageSequence": Sequence([nested(3), nested(2)])},
+    {"IconImageSequence": Sequence([nested(3), nested(2)]), "implicit": True},
+])
+def test_the_library_reads_what_pydicom_reads(tmp_path, more):
+    same(write(tmp_path, **more))
+
+
+@both
 @pytest.mark.parametrize("only, more, says", [
     ((0, 1, 2, 4, 5), {}, "6 mm lie between slices 2 and 3, 3 mm between others"),
     ((3,), {}, "holds 1 slice"),
     ((), {}, "holds no DICOM slice"),
+    (range(6), {"NumberOfFrames": 3}, "holds 3 frames"),
+    (range(6), {"SamplesPerPixel": 3, "PhotometricInterpretation": "RGB", "PlanarConfiguration": 0, "PixelData": b"\0" * 120}, "colours"),
+    (range(6), {"PixelData": b"\0" * 30}, "pixels|PixelData"),
 ])
-def test_what_is_no_volume_is_refused(tmp_path, only, more, says):
-    with pytest.raises(sk.FileError, match=says):
-        scene_of(write(tmp_path, only=only, **more))
+def test_what_is_no_volume_is_refused(tmp_path, reading, only, more, says):
+    with pytest.raises(sk.Error, match=says):
+        reading(write(tmp_path, only=only, **more))
 
 
+@both
 @pytest.mark.parametrize("more, says", [
     ({"series": "1.2.4"}, "holds 2 series: 5 slices of '1.2.3', 1 slices of '1.2.4'"),
-    ({"PixelSpacing": [1, 1]}, "PixelSpacing of slice . is .1.0, 1.0."),
+    ({"PixelSpacing": [1, 1]}, "PixelSpacing of slice . is .1"),
     ({"ImagePositionPatient": (FIRST + TURN[:, 2] * 6).tolist()}, "lie at one place"),
     ({"ImagePositionPatient": (FIRST + TURN @ [1, 0, 15]).tolist()}, "shifted sideways"),
 ])
-def test_a_slice_of_another_kind_is_named(tmp_path, more, says):
+def test_a_slice_of_another_kind_is_named(tmp_path, reading, more, says):
     write(tmp_path, only=range(5))
     write_slice(tmp_path, 5, at=FIRST + 5 * TURN[:, 2] * SPACING[2], **more)
-    with pytest.raises(sk.FileError, match=says):
-        scene_of(tmp_path)
+    with pytest.raises(sk.Error, match=says):
+        reading(tmp_path)
+
+
+def test_what_the_library_does_not_expand_is_named(tmp_path):
+    """Compressed pixels; and files that end early, wherever that is, end no process."""
+    write(tmp_path, compressed=True)
+    with pytest.raises(sk.Error, match="compressed .1.2.840.10008.1.2.5.; expand them"):
+        scene_of_file(tmp_path)
+    write(tmp_path, IconImageSequence=Sequence([nested(2)]))
+    path = tmp_path / "0.dcm"
+    whole, failed = path.read_bytes(), 0
+    for size in range(130, len(whole), 7):
+        path.write_bytes(whole[:size])
+        try:  # between two attributes the file ends as one without pixels does, and the others are a series
+            assert scene_of_file(tmp_path)["ct"].volume["slices"] == 5
+        except sk.Error as failure:
+            assert "is it the whole file" in str(failure) or "bytes of pixels" in str(failure)
+            failed += 1
+    assert failed > 50
+    path.write_bytes(whole)
+    same(tmp_path)
+
+
+def test_a_scene_of_a_folder_is_not_pickled(tmp_path):
+    with pytest.raises(sk.FileError, match="is a folder, .*cannot be pickled"):
+        pickle.dumps(scene_of_file(write(tmp_path)))
+
+
+def test_no_slice_is_overwritten(tmp_path, command):
+    folder, path = tmp_path / "series", tmp_path / "at" / "scene.json"
+    folder.mkdir(), path.parent.mkdir()
+    write(folder)
+    path.write_text(json.dumps(SCENE | {"Samples": [{"Label": "ct", "Volume": "../series"}]}))
+    before = (folder / "0.dcm").read_bytes()
+    for output, status in ((folder / "0.dcm", 5), (folder / "picture.png", 0), (folder / "picture.png", 0)):
+        run = subprocess.run([_command.path(), "image", str(path), "-o", str(output)], capture_output=True, text=True)
+        assert run.returncode == status, run.stderr
+        assert status == 0 or "is read by the scene, as ../series" in run.stderr
+    assert (folder / "0.dcm").read_bytes() == before
+
+
+def test_the_command_says_what_is_in_a_folder(tmp_path, command):
+    folder = tmp_path / "series"
+    folder.mkdir()
+    run = subprocess.run([_command.path(), "mesh", "--json", f"{write(folder)}/"], capture_output=True, text=True)
+    assert run.returncode == 0, run.stderr
+    found = json.loads(run.stdout)["files"][0]
+    assert found["cells"] == [4, 5, 6] and (found["low"], found["high"]) == (CELLS.min(), CELLS.max())
+    np.testing.assert_allclose(found["spacing_mm"], SPACING, rtol=1e-8)  # cosines have 9 decimals
+    run = subprocess.run([_command.path(), "mesh", str(tmp_path)], capture_output=True, text=True)
+    assert run.returncode == 3 and "holds no DICOM slice" in run.stderr

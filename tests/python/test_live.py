@@ -353,16 +353,18 @@ def test_a_scene_breathes(tmp_path):
     assert one.pages == 0
 
 
-def test_the_command_says_the_same(command, solid, tmp_path):
+@pytest.mark.parametrize("radius", [0, 150])  # flat, and curved
+def test_the_command_says_the_same(command, solid, tmp_path, radius):
     """Frames and texts of `skiagraph live` of the same scene."""
     path = pathlib.Path(__file__).parents[1] / "cli" / "live_client.py"
     spec = importlib.util.spec_from_file_location("live_client", path)
     client = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(client)
+    solid.view.radius = radius
     solid.save(tmp_path / "scene.json")
     scene = sk.Scene(tmp_path / "scene.json")
     one = Page(hubs.Hub(scene._state))
-    keys = {"poses": {"1": shift(5)}, "settings": {"Source.Position": [3, 0, -900, "mm"], "Collimation": {"Field": "detector"}}}
+    keys = {"poses": {"1": shift(5)}, "settings": {"Source.Position": [3, 0, -900, "mm"]} | ({} if radius else {"Collimation": {"Field": "detector"}})}
     one.wish(**keys)
     looks = [{"size": [320, 240], "distance": distance, "grey": [0, 2], "cut": [0, 0, 1, 3], "parts": {"0": [90, 160, 200, 120]}} for distance in (200, 2500)]
     try:
@@ -372,9 +374,10 @@ def test_the_command_says_the_same(command, solid, tmp_path):
     with server:
         other = client.Page(server)
         wish = other.wish(**keys)
-        frame, shot, told = other.frame(wish), None, None
-        while shot is None or shot["wish"] < wish:
+        frame, shot, told = None, None, None
+        while frame is None or shot is None or shot["wish"] < wish:
             message = other.receive()
+            frame = message if isinstance(message, client.Frame) and message.wish >= wish else frame
             shot = message if isinstance(message, dict) and "shot" in message else shot
             told = message if isinstance(message, dict) and "scene" in message else told
         pictures = []
@@ -388,6 +391,7 @@ def test_the_command_says_the_same(command, solid, tmp_path):
     assert (frame.columns, frame.rows, frame.low, frame.step, frame.flat, frame.quantity, frame.notes) == (*mine[3:8], *mine[10:])
     assert list(frame.numbers) == np.frombuffer(one.frames[-1], "<u2", offset=HEADER.size).tolist()
     assert shot.keys() == one.last("shot").keys() and shot["state"].keys() == one.last("shot")["state"].keys()
+    assert len(shot["view"]["strips"]) == (24 if radius else 2)
     for key, value in shot["view"].items():
         assert one.last("shot")["view"][key] == (value if isinstance(value, (str, int)) else pytest.approx(np.array(value), rel=1e-12, abs=1e-9)), key
     assert one.last("shot")["beam"] == pytest.approx(shot["beam"])

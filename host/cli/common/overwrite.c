@@ -110,12 +110,21 @@ static int is_same(const char *path, const char *other) {
            its.st_dev == others.st_dev && its.st_ino == others.st_ino;
 }
 
+/* Whether a file stands in a folder that is read, such as that of a DICOM series, and is not of this command. */
+static int is_of_folder(const char *path, const char *folder) {
+    char of_path[PATH_MAX];
+    struct stat its, others, there;
+    return stat(folder, &its) == 0 && S_ISDIR(its.st_mode) && stat(path, &there) == 0 &&
+           S_ISREG(there.st_mode) && folder_of(path, of_path) && stat(of_path, &others) == 0 &&
+           its.st_dev == others.st_dev && its.st_ino == others.st_ino && !is_ours(path);
+}
+
 int cli_check_file_kept(const skg_setup *setup, const char *output) {
     int64_t count = 0;
     const char *name = NULL, *path = NULL;
     if (skg_setup_file_count(setup, &count) != SKG_OK) return CLI_DONE;
     for (int64_t f = 0; f < count && skg_setup_file_get(setup, f, &name, &path) == SKG_OK; f++)
-        if (is_same(output, path))
+        if (is_same(output, path) || is_of_folder(output, path))
             return cli_error(CLI_OUTPUT, "%s: is read by the scene, as %s; name another file", output, name);
     return CLI_DONE;
 }

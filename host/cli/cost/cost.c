@@ -114,6 +114,7 @@ static int find_commands(cost_study *study) {
 
 static int measure(cost_study *study) {
     int exit_status = cost_measure_scatter(study);
+    if (exit_status == CLI_DONE) exit_status = cost_measure_between(study);
     if (exit_status == CLI_DONE) exit_status = cost_sweep(study);
     if (exit_status == CLI_DONE) exit_status = cost_advise(study);
     if (exit_status == CLI_DONE) exit_status = find_commands(study);

@@ -184,6 +184,7 @@ json_t *cost_json(const cost_study *study) {
     json_object_set_new(object, "summary", cli_json_text(study->summary));
     json_object_set_new(object, "sources", sources);
     json_object_set_new(object, "scatter", cost_scatter_json(study));
+    json_object_set_new(object, "interpolation", cost_between_json(study));
     json_object_set_new(object, "sensitivity", cost_sensitivity_json(study));
     add_run(study, object);
     json_object_set_new(object, "here", json_integer(study->here));

@@ -249,6 +249,22 @@ skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *im
     return SKG_FAILED(status) ? status : SKG_OK;
 }
 
+skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, double *image,
+                            cost_shot *shot) {
+    still its = {0};
+    skg_status status = cost_plan(study, &study->own, scene, &its.plan);
+    if (SKG_FAILED(status)) return status;
+    begin_still(&study->own, image, 1, &its);
+    status = make_still(&its);
+    if (!SKG_FAILED(status)) cost_widen(its.output.type, study->pixels, image);
+    begin_still(&study->own, batch, study->frames, &its);
+    shot->frames = study->frames;
+    if (!SKG_FAILED(status))
+        status = cost_time(study, make_still, &its, cost_first_runs(study), cost_first_ms(study), shot);
+    skg_plan_release(&its.plan);
+    return SKG_FAILED(status) ? status : SKG_OK;
+}
+
 static skg_status visit(cost_study *study, int number) {
     cost_shot *shot = &study->shots[number];
     still its = {.plan = shot->plan};

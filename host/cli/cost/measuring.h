@@ -15,6 +15,10 @@ skg_status cost_image(cost_study *study, const cost_setting *setting, double *im
 /* The image of a setting, [pixels], and the shot of that setting. A setting that is new is timed. */
 skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *image, int *number);
 
+/* The image, [pixels], of the scene's own setting with another scene, and the price of it in an empty shot. batch: [frames][pixels], to
+ * work with */
+skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, double *image, cost_shot *shot);
+
 /* Finds a shot; negative: the setting was not measured. */
 int cost_find_shot(const cost_study *study, const cost_setting *setting);
 
@@ -72,6 +76,9 @@ void cost_predict_scatter(cost_study *study, skg_plan *plan);
 
 /* Measures what it costs, as far as a share of the given time allows, and what images lack without it. */
 int cost_measure_scatter(cost_study *study);
+
+/* Fills in study->between where the scene has volumes. */
+int cost_measure_between(cost_study *study);
 
 /* Fills in study->sensitivity if study->sensitive is 1. */
 int cost_measure_sensitivity(cost_study *study);

@@ -9,6 +9,17 @@
 
 enum { THUMB = 320 };
 
+static int has_volume(const skg_scene *scene) {
+    int64_t parts = 0;
+    if (skg_scene_part_count(scene, &parts) != SKG_OK) return 0;
+    for (int64_t i = 0; i < parts; i++) {
+        skg_part part;
+        skg_part_init(&part);
+        if (skg_scene_part_get(scene, i, &part) == SKG_OK && part.volume) return 1;
+    }
+    return 0;
+}
+
 /* What the plan of the scene finds: leaky meshes, samples of the source, the flat field. */
 static int look_at_scene(cost_study *study) {
     const skg_plan_options *options = &study->session.options;
@@ -24,6 +35,7 @@ static int look_at_scene(cost_study *study) {
     study->flat_field = channel.flat_field;
     study->has_leaky = report.leaky_parts > 0;
     study->has_shells = options->unite != 0;
+    study->has_volume = has_volume(study->session.scene);
     study->triangles = report.triangles;
     study->has_spot = options->spot && options->spot->shape != SKG_SPOT_POINT && options->spot->grid == 0 &&
                       study->session.view.projection == SKG_PROJECTION_POINT;

@@ -15,6 +15,9 @@ json_t *cost_json(const cost_study *study);
 /* The object under the key "scatter". */
 json_t *cost_scatter_json(const cost_study *study);
 
+/* The object under the key "interpolation"; null: there is no volume. */
+json_t *cost_between_json(const cost_study *study);
+
 /* The object under the key "sensitivity"; null: it was not asked for. */
 json_t *cost_sensitivity_json(const cost_study *study);
 

@@ -193,6 +193,13 @@ typedef struct {
     char refusal[320]; /* why the scene's images cannot have scatter; empty: they can */
 } cost_scattering;
 
+/* Images with linear values between the cells of volumes, beside those with one value a cell: how they differ, as fractions of the flat
+ * field, and their prices. */
+typedef struct {
+    int is_known;
+    double max, rms, ms[2], uncertainty_ms[2]; /* of cells, of linear values */
+} cost_between;
+
 typedef struct {
     const cli_arguments *arguments;
     cli_session session;
@@ -211,10 +218,11 @@ typedef struct {
     cost_setting own;  /* the scene's own setting */
     int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
     int has_processor_clock; /* 1: prices are processor times (clock.h) */
-    int has_tube, has_energies, has_spot, has_leaky, has_shells, has_breath;
+    int has_tube, has_energies, has_spot, has_leaky, has_shells, has_breath, has_volume;
     const skg_scatter *own_scatter; /* of the scene, whose images are computed without; NULL: it has none */
     cost_scattering scattering;
-    int sensitive; /* 1: sensitivity is wanted */
+    cost_between between; /* if has_volume */
+    int sensitive;        /* 1: sensitivity is wanted */
     cli_sensitivity sensitivity;
     int64_t triangles;     /* of the scene */
     skg_body_options body; /* if has_breath */

@@ -224,6 +224,19 @@ static void price_union(cost_study *study) {
     }
 }
 
+/* What linear values between cells change, and what they take. */
+static void price_between(cost_study *study) {
+    const cost_between *between = &study->between;
+    char cells[64], linear[64], percent[48];
+    if (!between->is_known) return;
+    cost_append(
+        study->summary, sizeof study->summary,
+        " Linear values between the cells of volumes take %s instead of %s, and change the image by up to %s.",
+        cost_ms(between->ms[1], between->uncertainty_ms[1], linear, sizeof linear),
+        cost_ms(between->ms[0], between->uncertainty_ms[0], cells, sizeof cells),
+        cost_percent(between->max, percent, sizeof percent));
+}
+
 void cost_summarise(cost_study *study) {
     const cost_shot *here = &study->shots[study->here];
     char percent[48];
@@ -233,6 +246,7 @@ void cost_summarise(cost_study *study) {
         study->saving = -1; /* it saves time as well */
     state_here(study);
     price_union(study);
+    price_between(study);
     name_largest(study);
     name_scatter(study);
     if (study->noise > 10 * here->total_rms) {

@@ -46,7 +46,7 @@ static const char *const text[] = {
     "The unit of the numbers is said, and where it comes from: the file, --unit, or nobody (mm).",
     "Components that overlap, and triangles that are listed twice (duplicates), count twice: their status is 1. \"Repair\": "
     "\"union\" in a scene counts them once.",
-    "A volume of cells (.mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz) is described: cells, spacing, the world's axes that its axes follow, bounds, range, and if values are "
+    "A volume of cells (.mha, .mhd, .nrrd, .nhdr, .nii, .nii.gz, or a folder of DICOM slices) is described: cells, spacing, the world's axes that its axes follow, bounds, range, and if values are "
     "negative, as Hounsfield numbers are, the shares of tissues by Schneider's table and the mass.",
     "A file that cannot be read is reported, and the files after it are read all the same.",
     "--json prints {files: [{file, unit: {name, mm, from}, closed, triangles, vertices, open_edges, volume_mm3, area_mm2, bounds, "

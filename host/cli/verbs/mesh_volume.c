@@ -9,11 +9,18 @@
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
+#include <sys/stat.h>
 
 enum { TEXT = 64 };
 
+/* Of DICOM slices. */
+static int is_folder(const char *path) {
+    struct stat there;
+    return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
+}
+
 int cli_is_volume(const char *path) {
-    return cli_has_extension(path, ".mha") || cli_has_extension(path, ".mhd") ||
+    return is_folder(path) || cli_has_extension(path, ".mha") || cli_has_extension(path, ".mhd") ||
            cli_has_extension(path, ".nrrd") || cli_has_extension(path, ".nhdr") ||
            cli_has_extension(path, ".nii") || cli_has_extension(path, ".nii.gz");
 }

@@ -131,17 +131,38 @@ static int parts_json(const view_page *page, blob *to, json_t **made) {
     return exit_status;
 }
 
-/* The corners of the detector, one after the other, those of the beam on its plane and in the jaws, and where the beam to each
- * of these starts. */
+/* Flat strips that a page draws of a curved detector, side by side: an odd number, so that the ends of each are those of a narrower
+ * detector about the same middle. */
+enum { STRIPS = 23 };
+
+/* The ends of columns that stand side by side from edge to edge, low row and high row: two columns of a flat detector. */
+static skg_status strips_json(const skg_view *view, json_t *strips) {
+    const int count = view->radius > 0 ? STRIPS : 1;
+    for (int s = -count; s <= count; s += 2) {
+        skg_view part = *view;
+        double corners[4][3];
+        part.columns = 1;
+        skg_scale_vector(fabs((double)s) / count * (double)view->columns, view->column_step,
+                         part.column_step);
+        const skg_status status = skg_collimation_corners_get(NULL, &part, 0, corners[0]);
+        if (status != SKG_OK) return status;
+        json_array_append_new(strips, json_pack("[o,o]", cli_json_numbers(corners[s < 0 ? 0 : 1], 3),
+                                                cli_json_numbers(corners[s < 0 ? 3 : 2], 3)));
+    }
+    return SKG_OK;
+}
+
+/* Columns of the detector and its steps, the corners of the beam on its plane and in the jaws, one after the other, and where the beam to
+ * each of these starts. */
 int view_page_view(const view_page *page, json_t *object) {
     static const char *const names[] = {"point", "parallel", "parallel"};
     const skg_view *view = &page->session->view;
     const skg_collimation *limits = page->look->collimation;
-    double source[3], up[3], edges[4][3], field[4][3], opening[4][3];
-    json_t *corners = json_array(), *ends = json_array(), *starts = json_array(), *jaws = json_array();
-    skg_status status = skg_collimation_corners_get(NULL, view, 0, edges[0]);
-    if (status == SKG_OK) status = skg_collimation_corners_get(limits, view, 0, field[0]);
+    double source[3], up[3], field[4][3], opening[4][3];
+    json_t *strips = json_array(), *ends = json_array(), *starts = json_array(), *jaws = json_array();
+    skg_status status = skg_collimation_corners_get(limits, view, 0, field[0]);
     if (status == SKG_OK) status = skg_collimation_corners_get(limits, view, 1, opening[0]);
+    if (status == SKG_OK) status = strips_json(view, strips);
     view_source(view, page->places, source);
     skg_scale_vector(-1, view->row_step, up);
     for (int i = 0; status == SKG_OK && i < 4; i++) {
@@ -149,7 +170,6 @@ int view_page_view(const view_page *page, json_t *object) {
         for (int k = 0; k < 3; k++)
             start[k] = view->projection == SKG_PROJECTION_POINT ? source[k]
                                                                 : field[i][k] + source[k] - view->centre[k];
-        json_array_append_new(corners, cli_json_numbers(edges[i], 3));
         json_array_append_new(ends, cli_json_numbers(field[i], 3));
         json_array_append_new(starts, cli_json_numbers(start, 3));
         if (limits && limits->kind == SKG_COLLIMATION_RECTANGLE)
@@ -161,7 +181,10 @@ int view_page_view(const view_page *page, json_t *object) {
     json_object_set_new(object, "up", cli_json_numbers(up, 3));
     json_object_set_new(object, "columns", json_integer(view->columns));
     json_object_set_new(object, "rows", json_integer(view->rows));
-    json_object_set_new(object, "corners", corners);
+    json_object_set_new(object, "strips", strips);
+    json_object_set_new(
+        object, "steps",
+        json_pack("[o,o]", cli_json_numbers(view->column_step, 3), cli_json_numbers(view->row_step, 3)));
     json_object_set_new(object, "starts", starts);
     json_object_set_new(object, "field", ends);
     json_object_set_new(object, "jaws", jaws);

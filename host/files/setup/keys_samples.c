@@ -41,7 +41,7 @@ static const skg_json_key sample[] = {
     SKG_ASIDE("DiffuseColor"),
     SKG_ASIDE("SpecularColor"),
     SKG_ASIDE("Shininess"),
-    SKG_KEY("Volume", "text", "a CT image or another grid of cells, instead of a mesh"),
+    SKG_KEY("Volume", "text", "a CT image or another grid of cells, or a folder of DICOM slices, instead of a mesh"),
     SKG_KEY("Values", "words HU, density, mu",
             "of the cells: Hounsfield numbers (the default), g/cm3, or 1/cm"),
     SKG_KEY("Classes", "list class", "[[from, material], ...]: from each value on, a composition"),

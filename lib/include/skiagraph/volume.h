@@ -95,10 +95,11 @@ SKG_INIT(skg_volume_source)
  *               coefficients take 32 bits, in 2^-30 of the largest; with classes, 65,536 levels */
 SKG_API skg_status skg_volume_create(const skg_volume_source *source, skg_volume **volume);
 
-/** Reads a volume from a file.
+/** Reads a volume from a file, or from a folder of DICOM slices.
  *
  *     path      .mha, .mhd: MetaImage; .nrrd, .nhdr: NRRD, raw or gzip; .nii, .nii.gz: NIfTI-1 and -2. Three dimensions, one number a cell, compressed or not; positions
- *               are those of the file. What it leaves open, and what is taken for it, skg_volume_remark_get says
+ *               are those of the file. What it leaves open, and what is taken for it, skg_volume_remark_get says. A folder: the slices of one series that lie in it
+ *               (DICOM, not compressed), in the order of their places, evenly apart, rescaled each; other files in it are passed over
  *     unit_mm   mm per unit of the file's lengths, above 0: it wins over the unit that the file names; 0: that one, mm where there is none
  *     source    values, material, classes and name; sizes, type, cells and affine are those of the file. NULL: Hounsfield numbers
  *     errors    SKG_ERR_FILE; SKG_ERR_FORMAT; SKG_ERR_UNSUPPORTED; as above */

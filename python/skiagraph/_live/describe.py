@@ -1,6 +1,7 @@
 """What a page is told of the scene and of each image, as docs/live.md has it. Private."""
 from __future__ import annotations
 
+import copy
 import math
 from typing import Any
 
@@ -67,17 +68,30 @@ def _jaws(options: Any) -> dict[str, Any] | None:
 
 
 def view(subject: Subject, its: View) -> dict[str, Any]:
-    """Source, beam and detector as the page draws them: corners in turn, and where the beam to each starts."""
+    """Source, beam and detector as the page draws them: columns of the detector, the corners of the field in turn, and where the beam to each
+    starts."""
     state, keep = subject.state, []  # type: State, list[Any]
     jaws = state.plans.options(state.options_setup, {}, keep).collimation
-    corners, field, opening = (_corners(given, its, on_jaws) for given, on_jaws in ((ffi.NULL, 0), (jaws, 0), (jaws, 1)))
+    field, opening = (_corners(jaws, its, on_jaws) for on_jaws in (0, 1))
     source = _source(subject, its)
     starts = [source if its.projection == "point" else end + source - its.detector for end in field]
     has_jaws = jaws != ffi.NULL and jaws.kind == ENUMS["collimation_kind"]["rectangle"]
     return {"projection": "point" if its.projection == "point" else "parallel", "source": source.tolist(),
             "centre": its.detector.tolist(), "up": (-its.row_step).tolist(), "columns": its.pixels[0], "rows": its.pixels[1],
-            "corners": corners.tolist(), "field": field.tolist(), "starts": [start.tolist() for start in starts],
-            "jaws": opening.tolist() if has_jaws else []}
+            "strips": _strips(its), "steps": [its.column_step.tolist(), its.row_step.tolist()],
+            "field": field.tolist(), "starts": [start.tolist() for start in starts], "jaws": opening.tolist() if has_jaws else []}
+
+
+def _strips(its: View) -> list[Any]:
+    """The ends of columns side by side from edge to edge, as the page draws a curved detector: 23 flat strips, each between the edges of
+    narrower detectors about the same middle. Of a flat one two columns."""
+    count, strips = 23 if its.radius > 0 else 1, []
+    for place in range(-count, count + 1, 2):
+        part = copy.copy(its)
+        part.column_step, part.pixels = abs(place) / count * its.pixels[0] * its.column_step, (1, its.pixels[1])
+        low, high, high_down, low_down = _corners(ffi.NULL, part, 0).tolist()
+        strips.append([low, low_down] if place < 0 else [high, high_down])
+    return strips
 
 
 def _corners(jaws: Any, its: View, on_jaws: int) -> Any:

@@ -50,7 +50,7 @@ function fillSpot() {
 
 // Default of a rectangle: jaws halfway to the detector, open for 80 % of its width and height.
 function someJaws() {
-  const [a, b, , d] = scene.view.corners, half = [size(add(b, -1, a)), size(add(d, -1, a))].map(length => 0.4 * length);
+  const v = scene.view, half = [v.columns * size(v.steps[0]), v.rows * size(v.steps[1])].map(length => 0.4 * length);
   const isParallel = scene.view.projection !== 'point', share = isParallel ? 1 : 0.5;
   const [x, y] = half.map(length => Number((share * length).toPrecision(4)));
   return {edges: [-x, x, -y, y], distance: 0.5 * size(add(scene.view.centre, -1, scene.view.source))};

@@ -39,16 +39,15 @@ function moveChosen(by, dragging = false, begun = null) {
     set('Source.Position', [...round(carry(by, from.source)), 'mm'], dragging, old);
   } else if (chosen.kind === 'detector') {
     if (!valueOf('Detector.Position')) return say3D('The detector is fitted to the samples; a Position in the scene file makes it movable.');
-    const [a, b, , d] = from.corners, side = (p, q) => add(carry(by, q), -1, carry(by, p)), axis = (p, q) => round(unit(side(p, q)));
-    const step = (p, q, count) => [...round(side(p, q).map(x => x / count)), 'mm'];
+    const [column, row] = from.steps.map(step => add(carry(by, step), -1, carry(by, [0, 0, 0]))), axis = step => round(unit(step));
     alter(s => {
       s.settings['Detector.Position'] = [...round(carry(by, from.centre)), 'mm'];
       if (valueOf('Detector.ColumnStep')) {
-        s.settings['Detector.ColumnStep'] = step(a, b, from.columns);
-        s.settings['Detector.RowStep'] = step(a, d, from.rows);
+        s.settings['Detector.ColumnStep'] = [...round(column), 'mm'];
+        s.settings['Detector.RowStep'] = [...round(row), 'mm'];
       } else {
-        s.settings['Detector.UpVector'] = axis(a, d);
-        s.settings['Detector.RightVector'] = axis(a, b);
+        s.settings['Detector.UpVector'] = axis(row);
+        s.settings['Detector.RightVector'] = axis(column);
       }
     }, dragging, old);
   }

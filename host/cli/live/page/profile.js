@@ -2,10 +2,10 @@
 'use strict';
 const profile = {on: false, drags: false, from: [0.1, 0.5], to: [0.9, 0.5]};
 
-// mm on the detector between two fractions of the image.
+// mm on the detector between two fractions of the image; along the cylinder of a curved one.
 function lengthOnDetector(a, b) {
-  const [corner, right, , down] = scene.view.corners, at = p => add(add(corner, p[0], add(right, -1, corner)), p[1], add(down, -1, corner));
-  return size(add(at(a), -1, at(b)));
+  const v = scene.view, [column, row] = v.steps;
+  return size(add(column.map(x => (b[0] - a[0]) * v.columns * x), (b[1] - a[1]) * v.rows, row));
 }
 
 function drawProfile() {

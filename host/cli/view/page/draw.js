@@ -143,18 +143,19 @@ function uploadParts() {
 // What the view holds when all is seen.
 function measureWhole() {
   const v = scene.view, [low, high] = scene.box, path = scene.path.length / 3;
-  const everything = [...boxPoints(low, high), ...v.corners, ...v.field, ...v.starts, ...Array.from({length: path}, (_, i) => scene.path.slice(3 * i, 3 * i + 3))];
+  const everything = [...boxPoints(low, high), ...v.strips.flat(), ...v.field, ...v.starts, ...Array.from({length: path}, (_, i) => scene.path.slice(3 * i, 3 * i + 3))];
   const middle = [0, 1, 2].map(k => (Math.min(...everything.map(p => p[k])) + Math.max(...everything.map(p => p[k]))) / 2);
   whole = {points: everything, middle, reach: 1.02 * Math.max(...everything.map(p => size(add(p, -1, middle))))};
 }
 
 function prepareMarks() {
-  const v = scene.view, [a, b, c, d] = v.corners, starts = v.starts;
+  const v = scene.view, strips = v.strips, last = strips.length - 1, starts = v.starts;
   const beam = v.field.map((p, i) => [starts[i], p]), jaws = v.jaws;
   if (v.projection !== 'point') beam.push([starts[0], starts[1]], [starts[1], starts[2]], [starts[2], starts[3]], [starts[3], starts[0]]);
   const [low, high] = scene.box, length = 0.2 * Math.max(...high.map((x, k) => x - low[k]));
   beam.push([v.source, v.centre]);
-  const frames = [[a, b], [b, c], [c, d], [d, a], ...jaws.map((p, i) => [p, jaws[(i + 1) % 4]])];
+  const sides = strips.slice(1).flatMap((s, i) => [[strips[i][0], s[0]], [strips[i][1], s[1]]]);
+  const frames = [strips[0], strips[last], ...sides, ...jaws.map((p, i) => [p, jaws[(i + 1) % 4]])];
   lines = [makeLines(beam, [0.93, 0.62, 0.12, 1], LINE), makeLines(frames, [0.4, 0.43, 0.48, 1], THICK)];
   [[0.85, 0.22, 0.18, 1], [0.2, 0.62, 0.26, 1], [0.24, 0.44, 0.9, 1]].forEach((colour, k) => {
     const tip = low.map((x, i) => x + (i === k) * length), neck = low.map((x, i) => x + (i === k) * 0.82 * length);
@@ -165,8 +166,9 @@ function prepareMarks() {
   if (path > 1) lines.push(makeLines(Array.from({length: path - 1}, (_, i) => [step(i), step(i + 1)]), [0.55, 0.35, 0.82, 1], LINE));
   points = [{buffer: buffer(new Float32Array(v.source)), count: 1, colour: [0.96, 0.66, 0.14, 1], width: SOURCE}];
   if (path > 0) points.push({buffer: buffer(new Float32Array(scene.path)), count: path, colour: [0.55, 0.35, 0.82, 1], width: POINT});
-  const corner = [[0, 0], [1, 0], [1, 1], [0, 1]], quad = [0, 1, 2, 0, 2, 3].flatMap(i => [...v.corners[i], ...corner[i]]);
-  detector = {buffer: buffer(new Float32Array(quad)), texture: gl.createTexture(), frame: -1};
+  // Columns at equal angles are evenly spaced in the image.
+  const area = strips.slice(1).flatMap((s, i) => [[i, 0], [i + 1, 0], [i + 1, 1], [i, 0], [i + 1, 1], [i, 1]].flatMap(([k, side]) => [...strips[k][side], k / last, side]));
+  detector = {buffer: buffer(new Float32Array(area)), count: area.length / 5, texture: gl.createTexture(), frame: -1};
 }
 
 function showImage(frame) {
@@ -242,7 +244,7 @@ function drawMarks() {
   gl.uniformMatrix4fv(programs.detector.at.m, false, shot.m);
   attribute(0, detector.buffer, 3, gl.FLOAT, false, 20);
   attribute(1, detector.buffer, 2, gl.FLOAT, false, 20, 12);
-  gl.drawArrays(gl.TRIANGLES, 0, 6);
+  gl.drawArrays(gl.TRIANGLES, 0, detector.count);
   for (const [program, list] of [[programs.line, lines], [programs.point, points]]) {
     gl.useProgram(program.program);
     gl.uniformMatrix4fv(program.at.m, false, shot.m);

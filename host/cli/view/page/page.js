@@ -189,8 +189,9 @@ function addLabel(text, point) {
 
 function fillLabels() {
   const v = scene.view, d = scene.distances, [low, high] = scene.box, length = 0.2 * Math.max(...high.map((x, k) => x - low[k]));
+  const middle = v.strips.length / 2 - 1;
   addLabel(v.projection === 'point' ? 'source' : 'parallel beam', v.source);
-  addLabel(d.source_detector === null ? 'detector' : `detector at ${number(d.source_detector)} mm`, v.corners[0].map((x, k) => (x + v.corners[1][k]) / 2));
+  addLabel(d.source_detector === null ? 'detector' : `detector at ${number(d.source_detector)} mm`, v.strips[middle][0].map((x, k) => (x + v.strips[v.strips.length - 1 - middle][0][k]) / 2));
   ['x', 'y', 'z'].forEach((name, k) => addLabel(name, low.map((x, i) => x + (i === k) * length)));
   if (d.source_detector === null) return;
   addLabel(`${number(d.source_object)} mm to the centre`, add(v.source, d.source_object / 2, unit(add(v.centre, -1, v.source))));
