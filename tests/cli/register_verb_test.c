@@ -62,6 +62,7 @@ START_TEST(a_body_is_found_and_written) {
     ck_assert_double_lt(json_number_value(member(object, "loss")),
                         json_number_value(member(object, "loss_start")));
     ck_assert(json_integer_value(member(object, "evaluations")) > 4);
+    ck_assert(json_integer_value(member(member(object, "worst"), "view")) < 2);
     json_decref(object);
     static char page[1 << 20];
     read_back("page.html", page, sizeof page);

@@ -6,6 +6,7 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SIDE = 96, VIEWS = 2, PIXELS = SIDE * SIDE };
@@ -120,10 +121,13 @@ static void add_image(skg_registration *r, const skg_view *view, const double *v
     ck_skg(skg_registration_image_add(r, &image));
 }
 
+/* A square of pixels near the body that attenuates more in the first radiograph than the scene does. */
+enum { LUMP = 7, LUMP_ROW = 62, LUMP_COLUMN = 66 };
+
 /* What each test changes of the usual run: two views, from a start some mm and degrees off. */
 typedef struct {
     int views, noise, of_cells;
-    double shift, turn;
+    double shift, turn, lump;
     skg_registration_options options;
 } run_of;
 
@@ -144,6 +148,8 @@ static skg_registration *prepare(run_of *run, skg_scene *scene) {
     for (int v = 0; v < run->views; v++) {
         const skg_view view = view_from(v);
         render(scene, &view, SKG_QUANTITY_ATTENUATION, run->noise, values);
+        for (int p = 0; p < LUMP * LUMP && v == 0; p++)
+            values[(LUMP_ROW + p / LUMP - LUMP / 2) * SIDE + LUMP_COLUMN + p % LUMP - LUMP / 2] += run->lump;
         add_image(r, &view, values);
     }
     return r;
@@ -232,6 +238,42 @@ START_TEST(a_body_in_a_volume_of_cells_is_found) {
     ck_skg_fails(skg_registration_run(r), SKG_ERR_UNSUPPORTED, "skin is a volume of cells");
     skg_registration_release(&r);
     skg_scene_release(&scene);
+}
+END_TEST
+
+/* What the scene lacks is shown where it is, and noise is not. */
+START_TEST(structure_is_shown_where_it_is) {
+    static double picture[PIXELS];
+    for (int lumps = 0; lumps < 2; lumps++) {
+        run_of one = usual();
+        one.noise = 1, one.lump = 0.3 * lumps;
+        int64_t shown = 0;
+        double beside = 0;
+        skg_scene *scene = make_scene();
+        skg_registration *r = prepare(&one, scene);
+        ck_skg(skg_registration_run(r));
+        const skg_registration_result result = result_of(r);
+        ck_assert_int_eq(result.verdict == SKG_REGISTRATION_VERDICT_STRUCTURE, lumps);
+        ck_skg(skg_registration_picture_get(r, 0, SKG_REGISTRATION_PICTURE_STRUCTURE, picture));
+        for (int p = 0; p < PIXELS; p++) {
+            const int row = abs(p / SIDE - LUMP_ROW), column = abs(p % SIDE - LUMP_COLUMN);
+            shown += picture[p] != 0;
+            if (row > LUMP / 2 + 1 || column > LUMP / 2 + 1) beside = fmax(beside, fabs(picture[p]));
+        }
+        if (lumps) {
+            /* the polynomials and the body's pose take some of it */
+            ck_assert_double_eq_tol(picture[LUMP_ROW * SIDE + LUMP_COLUMN], -one.lump, 0.2 * one.lump);
+            ck_assert_int_eq(result.worst_image, 0);
+            ck_assert_int_eq(result.worst_row, 66); /* middle of rows 60 to 72 */
+            ck_assert_int_eq(result.worst_column, 66);
+        } else { /* three standard deviations of what is nearly normal: a hundredth, at most, of neighbours that are alike */
+            ck_assert_int_lt(shown, PIXELS / 100);
+        }
+        ck_assert_double_lt(beside,
+                            0.1); /* a third of the lump: what polynomials leave that bend towards it */
+        skg_registration_release(&r);
+        skg_scene_release(&scene);
+    }
 }
 END_TEST
 
@@ -437,6 +479,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, twists_are_their_own_inverse);
     tcase_add_test(tests, every_loss_finds_the_body);
     tcase_add_test(tests, a_body_in_a_volume_of_cells_is_found);
+    tcase_add_test(tests, structure_is_shown_where_it_is);
     tcase_add_test(tests, noise_displaces_as_sigma_says);
     tcase_add_test(tests, the_beam_of_one_view_is_the_least_certain);
     tcase_add_test(tests, restarts_find_it_from_afar);

@@ -86,7 +86,7 @@ static const char *const text[] = {
     "Ctrl-C ends the search, and the best pose so far is written.",
     "--json prints {status, verdict, parts: [{label, twist, sigma, sigma_structure, determined, middle, shift_mm, turn_deg, status, "
     "verdict, loss, directions: [{name, sigma_mm, sigma_structure_mm, determined}]}], views: [{projection, source, centre, column_step, "
-    "row_step}], loss, loss_start, residual, noise, explained, agreement, energy_kev, evaluations, jacobians, seconds}.",
+    "row_step}], loss, loss_start, residual, noise, explained, agreement, energy_kev, worst: {view, row, column}, evaluations, jacobians, seconds}.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_register_image,  &cli_flag_register_part,

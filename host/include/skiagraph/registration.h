@@ -211,6 +211,12 @@ typedef struct {
     double seconds;
     /** Number of free directions, whose combinations skg_registration_direction_get tells. */
     int64_t directions;
+    /** Where the mean square of what is left is largest, among cells of an eighth of a radiograph: number of the radiograph. */
+    int64_t worst_image;
+    /** Middle of this cell. */
+    int64_t worst_row;
+    /** Middle of this cell. */
+    int64_t worst_column;
 } skg_registration_result;
 
 SKG_INIT(skg_registration_result)
@@ -273,7 +279,11 @@ enum skg_registration_picture {
     /** Attenuation of the parts alone at the start. */
     SKG_REGISTRATION_PICTURE_SHADOW_BEFORE = 4,
     /** The same at the end. */
-    SKG_REGISTRATION_PICTURE_SHADOW_AFTER = 5
+    SKG_REGISTRATION_PICTURE_SHADOW_AFTER = 5,
+    /** Where the model lacks something: SKG_REGISTRATION_PICTURE_AFTER, averaged over the pixels that count among those at most an eightieth
+     * of the radiograph's shorter side away, along rows and along columns; 0 where noise alone may be the reason (three standard
+     * deviations). */
+    SKG_REGISTRATION_PICTURE_STRUCTURE = 6
 };
 
 /** Gets a picture of a radiograph, after skg_registration_run.
