@@ -154,6 +154,7 @@ skg_status reg_prepare(skg_registration *r) {
         SKG_TRY_CLEANUP(reg_progress(r));
         SKG_TRY_CLEANUP(find_mask(r, &shadow, &r->images[i]));
         SKG_TRY_CLEANUP(find_rest(r, &all, &r->images[i]));
+        SKG_TRY_CLEANUP(reg_shares_find(r, &r->images[i]));
     }
     SKG_TRY_CLEANUP(reg_levels_create(r));
 cleanup:

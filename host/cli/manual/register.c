@@ -80,7 +80,7 @@ const cli_flag cli_flag_register_need = {"--need", "MM",
 static const char *const text[] = {
     "Moves parts of a scene until their rendered attenuation agrees with radiographs, by the derivatives of the images. What does not move is "
     "rendered once. What the scene lacks is fitted with the pose: polynomials over the image that add to the attenuation (tissue, gain) and "
-    "to the transmission (scatter), and a share of what does not move.",
+    "to the transmission (scatter), and gains of kinds of tissue and of the body's contrast (density, energy).",
     "The verdict is one of: agrees, agrees but for structure, not determined (with the direction), failed. sigma is the standard deviation "
     "from noise alone, and no error; sigma_structure takes what is left in the images for noise.",
     "Ctrl-C ends the search, and the best pose so far is written.",

@@ -11,10 +11,14 @@
  *     method    Levenberg and Marquardt on the derivatives of the images (gradient.h), with H. B. Nielsen's damping
  *               (IMM-REP-1999-05, Technical University of Denmark), on a pyramid of images whose pixels are means of 2, 4, ...
  *               pixels as transmission; the model's rays are means as well. Steps of more than 15 mm are cut
- *     model     of SKG_REGISTRATION_LOSS_LSQ: -ln(exp(-(b + (1 + g) r + P c)) + P d), where b is the attenuation of the parts that move, r
- *               that of the rest, which is rendered once, and P are polynomials over the image, of order 2, at the finest level of several
- *               of order 4. c takes what adds to the attenuation (tissue that the scene lacks, another gain), d what adds to the
- *               transmission (scatter). g, c and d are found with the pose. 1e-4 is added to the transmissions of model and radiograph
+ *     model     of SKG_REGISTRATION_LOSS_LSQ: -ln(exp(-(b + h (b - a) + r + sum of g s + P c)) + P d), where b is the attenuation of the
+ *               parts that move with what they lie inside, a that of the latter alone, r that of the rest, and s are shares of what does
+ *               not move, all rendered once: what the parts lie inside, with volumes of cells; light, soft and dense materials (by
+ *               their attenuation: below 0.7 of water's, above 1.08 of it). P are polynomials over the image, of order 2, at the finest
+ *               level of several of order 4. c takes what adds to the attenuation (tissue that the scene lacks, another gain), d what
+ *               adds to the transmission (scatter), g and h other densities and energies. They are found with the pose, h only where
+ *               it explains more than noise does (25 of its squares for each radiograph). Where attenuations do not add, g and h
+ *               are 0. 1e-4 is added to the transmissions of model and radiograph
  *     energy    one: that of the spectrum, or the one at which the scene attenuates as it does with the spectrum
  *     detector  noise, blur, steps, scatter, jaws, focal spot, heel, bow-tie filter and grid of the plan's options are left out
  *
