@@ -137,7 +137,7 @@ static skg_status add_contrast(skg_registration *r, const reg_scene *around, con
     double *contrast = NULL;
     SKG_TRY(skg_alloc(s->rows * s->columns, sizeof *contrast, "contrast", &contrast));
     const skg_status status =
-        reg_render_once(r, around, NULL, &r->state.views[image], reg_rays(r), NULL, contrast);
+        reg_render_once(r, around, NULL, &r->state.views[image], r->rays, NULL, contrast);
     for (int64_t p = 0; p < s->rows * s->columns; p++) contrast[p] = (double)body[p] - contrast[p];
     if (status == SKG_OK) reg_contrast(level, &r->state, image, body, contrast, sums);
     skg_free(&contrast);

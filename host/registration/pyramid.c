@@ -90,9 +90,9 @@ static skg_status plan_image(skg_registration *r, reg_level *level, int64_t inde
             shrunk->plan = level->images[i].plan;
             return skg_plan_retain(shrunk->plan);
         }
-    const int64_t samples = level->factor < 2              ? reg_rays(r)
-                            : level->factor > MOST_SAMPLES ? MOST_SAMPLES
-                                                           : level->factor;
+    const int64_t coarse = level->factor * r->rays / 2, samples = level->factor < 2       ? r->rays
+                                                                  : coarse > MOST_SAMPLES ? MOST_SAMPLES
+                                                                                          : coarse;
     return reg_plan_create(r, r->body.scene, r->model, &view, samples, &shrunk->plan);
 }
 

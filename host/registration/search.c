@@ -148,7 +148,9 @@ static skg_status iterate(skg_registration *r, const reg_level *level, reg_state
         reg_nuisances_move(r, &s->equations, s->step, &s->trial);
         SKG_TRY(reg_render(r, level, &s->trial, s->tried));
         double next = reg_loss(r, level, &s->trial, s->tried);
-        if (!(next < *loss)) { /* a step of the pose may be right, and that of the nuisances too long */
+        if (!(next < *loss)) { /* the pose's step may be right, and that of the nuisances too long */
+            memcpy(s->trial.nuisances, state->nuisances,
+                   (size_t)(r->image_count * REG_NUISANCES) * sizeof *state->nuisances);
             SKG_TRY(reg_nuisances_find(r, level, &s->trial, s->tried));
             next = reg_loss(r, level, &s->trial, s->tried);
         }

@@ -62,7 +62,7 @@ static skg_status render_without(skg_registration *r, const reg_scene *rest, int
         SKG_TRY_CLEANUP(skg_scene_part_material_set(rest->scene, p, nothing));
         changed++;
     }
-    if (changed > 0) status = reg_render_once(r, rest, NULL, view, reg_rays(r), NULL, image);
+    if (changed > 0) status = reg_render_once(r, rest, NULL, view, r->rays, NULL, image);
 cleanup:
     for (int64_t p = 0; own && p < parts; p++) {
         if (own[p] && status == SKG_OK) status = skg_scene_part_material_set(rest->scene, p, own[p]);
@@ -80,7 +80,7 @@ static skg_status render_shares(skg_registration *r, const reg_scene *rest, int6
     double *whole = NULL;
     skg_status status = SKG_OK;
     SKG_TRY_CLEANUP(skg_alloc(count, sizeof *whole, "image of a registration", &whole));
-    SKG_TRY_CLEANUP(reg_render_once(r, rest, NULL, &image->view, reg_rays(r), NULL, whole));
+    SKG_TRY_CLEANUP(reg_render_once(r, rest, NULL, &image->view, r->rays, NULL, whole));
     memcpy(image->shares[REG_HOLDING], whole, (size_t)count * sizeof *whole);
     for (int k = REG_HOLDING + 1; k < REG_SHARES; k++) {
         double *own = image->shares[k];
@@ -106,7 +106,7 @@ skg_status reg_shares_find(skg_registration *r, reg_image *image) {
     if (!r->additive) return SKG_OK;
     SKG_TRY_CLEANUP(reg_scene_make(r, REG_AROUND, &around));
     SKG_TRY_CLEANUP(
-        reg_render_once(r, &around, NULL, &image->view, reg_rays(r), NULL, image->shares[REG_BODY_OWN]));
+        reg_render_once(r, &around, NULL, &image->view, r->rays, NULL, image->shares[REG_BODY_OWN]));
     SKG_TRY_CLEANUP(reg_scene_make(r, REG_REST, &rest));
     SKG_TRY_CLEANUP(skg_scene_part_count(rest.scene, &parts));
     if (parts == 0) goto cleanup;

@@ -109,6 +109,7 @@ struct skg_registration {
     reg_image *images;
     reg_scene body;   /* scene of REG_BODY, or of REG_ALL where attenuations do not add */
     int32_t additive; /* 1: they do */
+    int64_t rays;     /* along a side of a pixel of a radiograph */
     double middle[3], radius, axis[3];
     reg_level levels[REG_LEVELS]; /* the coarsest first */
     reg_state state;
@@ -169,12 +170,6 @@ skg_status reg_levels_create(skg_registration *r);
 void reg_levels_free(skg_registration *r);
 
 /* --- Rendering: render.c */
-
-/* Rays along a side of a pixel of a radiograph: those of the scene, and two at least, because slopes of single rays have no bound at
- * silhouettes. */
-static inline int64_t reg_rays(const skg_registration *r) {
-    return r->plan.supersampling > 2 ? r->plan.supersampling : 2;
-}
 
 /* A plan of attenuations. */
 skg_status reg_plan_create(const skg_registration *r, skg_scene *scene, skg_spectrum *spectrum,

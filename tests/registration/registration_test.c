@@ -103,13 +103,14 @@ static skg_view view_from(int which) {
     return view;
 }
 
-static void render(skg_scene *scene, const skg_view *view, int32_t quantity, int noise, double *values) {
+static void render(skg_scene *scene, const skg_view *view, int32_t quantity, int noise, int rays,
+                   double *values) {
     skg_plan_options options;
     skg_plan *plan;
     skg_output output;
     static float image[PIXELS];
     skg_plan_options_init(&options);
-    options.quantity = quantity, options.supersampling = 2, options.noise = noise;
+    options.quantity = quantity, options.supersampling = rays, options.noise = noise;
     ck_skg(skg_plan_create(context, scene, view, mono, &options, &plan));
     skg_output_init(&output);
     output.data = image;
@@ -152,7 +153,7 @@ static skg_registration *prepare(run_of *run, skg_scene *scene) {
     skg_scene *shown = run->other ? make_scene_in(0, others) : scene;
     for (int v = 0; v < run->views; v++) {
         const skg_view view = view_from(v);
-        render(shown, &view, SKG_QUANTITY_ATTENUATION, run->noise, values);
+        render(shown, &view, SKG_QUANTITY_ATTENUATION, run->noise, 2, values);
         for (int p = 0; p < LUMP * LUMP && v == 0; p++)
             values[(LUMP_ROW + p / LUMP - LUMP / 2) * SIDE + LUMP_COLUMN + p % LUMP - LUMP / 2] += run->lump;
         add_image(r, &view, values);
@@ -338,6 +339,50 @@ START_TEST(the_beam_of_one_view_is_the_least_certain) {
 }
 END_TEST
 
+/* A needle, 0.8 mm across pixels of 1.5 mm at its place: more rays see how much of a pixel it covers. */
+START_TEST(a_needle_thinner_than_a_pixel_is_found) {
+    static double values[PIXELS];
+    skg_registration_options options;
+    skg_registration *r;
+    skg_scene *scene;
+    skg_mesh *needle;
+    int64_t id;
+    ck_skg(skg_scene_create(context, &scene));
+    ck_skg(skg_mesh_create_cylinder(0.4, 70, 24, &needle));
+    id = add(scene, needle, 6, "needle", -1, 4, -3, 2);
+    double pose[16], turned[16];
+    const double askew[6] = {0, 0, 0, 0.5, 0.4, 0};
+    reg_motion_of(askew, turned);
+    skg_pose_translation(4, -3, 2, pose);
+    skg_pose_multiply(pose, turned, pose);
+    ck_skg(skg_scene_part_pose_set(scene, id, pose));
+    skg_registration_options_init(&options);
+    const double start[6] = {0.8, 0.6, -0.5, 0.01, -0.012, 0};
+    memcpy(options.start, start, sizeof start);
+    ck_skg(skg_registration_create(context, scene, mono, NULL, &options, &r));
+    ck_skg(skg_registration_part_add(r, id));
+    for (int v = 0; v < VIEWS; v++) {
+        const skg_view view = view_from(v);
+        render(scene, &view, SKG_QUANTITY_ATTENUATION, 1, 7, values);
+        add_image(r, &view, values);
+    }
+    ck_skg(skg_registration_run(r));
+    const skg_registration_result result = result_of(r);
+    double motion[16];
+    reg_motion_of(result.twist, motion);
+    for (int end = -1; end <= 1; end += 2) {
+        const double along[3] = {0, 0, 35.0 * end};
+        double at[3], moved[3];
+        skg_pose_point(pose, along, at);
+        skg_pose_point(motion, at, moved);
+        skg_add_scaled(moved, -1, at, moved);
+        ck_assert_double_lt(skg_length(moved), 0.15); /* a tenth of a pixel at the body */
+    }
+    skg_registration_release(&r);
+    skg_scene_release(&scene);
+}
+END_TEST
+
 START_TEST(restarts_find_it_from_afar) {
     run_of one = usual();
     one.shift = 30, one.turn = 25 * SKG_PI / 180;
@@ -384,7 +429,7 @@ START_TEST(a_phantom_calibrates_a_view) {
     }
     const skg_view truth = view_from(0);
     skg_view wrong = truth, found;
-    render(scene, &truth, SKG_QUANTITY_ATTENUATION, 0, values);
+    render(scene, &truth, SKG_QUANTITY_ATTENUATION, 0, 2, values);
     skg_registration_options_init(&options);
     options.free = SKG_REGISTRATION_FREE_SOURCE | SKG_REGISTRATION_FREE_DETECTOR;
     options.steps = 60, options.margin_mm = 8;
@@ -459,7 +504,7 @@ START_TEST(parts_out_of_sight_are_named) {
     skg_scene *scene = make_scene();
     static double values[PIXELS];
     const skg_view view = view_from(0);
-    render(scene, &view, SKG_QUANTITY_ATTENUATION, 0, values);
+    render(scene, &view, SKG_QUANTITY_ATTENUATION, 0, 2, values);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         run_of one = usual();
         skg_registration *r;
@@ -503,6 +548,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, structure_is_shown_where_it_is);
     tcase_add_test(tests, noise_displaces_as_sigma_says);
     tcase_add_test(tests, the_beam_of_one_view_is_the_least_certain);
+    tcase_add_test(tests, a_needle_thinner_than_a_pixel_is_found);
     tcase_add_test(tests, restarts_find_it_from_afar);
     tcase_add_test(tests, a_cancelled_one_keeps_the_best);
     tcase_add_test(tests, a_phantom_calibrates_a_view);
