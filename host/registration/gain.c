@@ -26,7 +26,7 @@ skg_status reg_gain_search(skg_registration *r, const reg_level *level, reg_stat
     reg_state gained = {0};
     skg_status status = SKG_OK;
     SKG_TRY(reg_search(r, level, state, loss));
-    if (r->loss != SKG_REGISTRATION_LOSS_LSQ || !r->additive || state->body_gain) return SKG_OK;
+    if (r->loss != SKG_REGISTRATION_LOSS_LSQ || !level->images[0].gains || state->body_gain) return SKG_OK;
     SKG_TRY_CLEANUP(reg_images_create(r, level, &images));
     SKG_TRY_CLEANUP(reg_state_create(r, &gained));
     reg_state_copy(r, state, &gained);

@@ -58,7 +58,7 @@ static skg_status shrink_image(const skg_registration *r, int64_t index, int64_t
     const reg_image *image = &r->images[index];
     const skg_view *view = &image->view;
     double *scratch = NULL;
-    shrunk->gains = r->additive;
+    shrunk->gains = r->options.free == SKG_REGISTRATION_FREE_POSE;
     shrunk->rows = view->rows / factor, shrunk->columns = view->columns / factor;
     const int64_t count = shrunk->rows * shrunk->columns;
     SKG_TRY(skg_alloc(count, sizeof *shrunk->fixed, "level of a pyramid", &shrunk->fixed));

@@ -103,7 +103,7 @@ skg_status reg_shares_find(skg_registration *r, reg_image *image) {
     reg_share *share = NULL;
     skg_status status = SKG_OK;
     for (int k = 0; k < REG_SHARES; k++) memset(image->shares[k], 0, (size_t)count * sizeof(double));
-    if (!r->additive) return SKG_OK;
+    if (r->options.free != SKG_REGISTRATION_FREE_POSE) return SKG_OK;
     SKG_TRY_CLEANUP(reg_scene_make(r, REG_AROUND, &around));
     SKG_TRY_CLEANUP(
         reg_render_once(r, &around, NULL, &image->view, r->rays, NULL, image->shares[REG_BODY_OWN]));
@@ -113,6 +113,11 @@ skg_status reg_shares_find(skg_registration *r, reg_image *image) {
     SKG_TRY_CLEANUP(skg_alloc(parts, sizeof *share, "parts of a registration", &share));
     SKG_TRY_CLEANUP(sort_parts(r, &rest, parts, share));
     status = render_shares(r, &rest, parts, share, image);
+    /* Otherwise every image is one of the whole scene. */
+    for (int64_t p = 0; p < count && !r->additive; p++) {
+        image->shares[REG_BODY_OWN][p] = 0;
+        for (int k = REG_HOLDING; k < REG_SHARES; k++) image->shares[REG_BODY_OWN][p] += image->shares[k][p];
+    }
 cleanup:
     reg_scene_free(&rest);
     reg_scene_free(&around);

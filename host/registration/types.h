@@ -43,10 +43,10 @@ typedef struct {
     double *given;        /* [rows][columns] 1: the caller lets it count */
     double *mask;         /* [rows][columns] 1: it counts, and is near the shadow */
     double *rest; /* [rows][columns] attenuation of what does not move, and is not in the scene of the body */
-    double *shares
-        [REG_SHARES]; /* [rows][columns] each; REG_BODY_OWN: attenuation of what the body lies inside, without it */
-    double *shadow; /* [rows][columns] attenuation of the parts alone at the start */
-    double *before; /* [rows][columns] model less radiograph at the start */
+    double *
+        shares[REG_SHARES]; /* [rows][columns] each; REG_BODY_OWN: what an image of the body has without it */
+    double *shadow;         /* [rows][columns] attenuation of the parts alone at the start */
+    double *before;         /* [rows][columns] model less radiograph at the start */
 } reg_image;
 
 /* A radiograph at a level of the pyramid. */
@@ -55,7 +55,7 @@ typedef struct {
     double *fixed; /* -ln(transmission + floor) */
     double *rest;
     double *shares[REG_SHARES]; /* as of reg_image */
-    int32_t gains;              /* 1: shares at rest have gains; 0: attenuations do not add */
+    int32_t gains;              /* 1: shares at rest have gains: where a pose is free */
     double *mask;               /* 1: counts */
     int64_t terms;              /* polynomials of each kind: the first ones of REG_BASIS */
     skg_plan *plan;

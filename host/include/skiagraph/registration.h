@@ -17,8 +17,8 @@
  *               their attenuation: below 0.7 of water's, above 1.08 of it). P are polynomials over the image, of order 2, at the finest
  *               level of several of order 4. c takes what adds to the attenuation (tissue that the scene lacks, another gain), d what
  *               adds to the transmission (scatter), g and h other densities and energies. They are found with the pose, h only where
- *               it explains more than noise does (25 of its squares for each radiograph). Where attenuations do not add, g and h
- *               are 0. 1e-4 is added to the transmissions of model and radiograph
+ *               it explains more than noise does (25 of its squares for each radiograph). Where source or detector
+ *               are free, g and h are 0. 1e-4 is added to the transmissions of model and radiograph
  *     energy    one: that of the spectrum, or the one at which the scene attenuates as it does with the spectrum
  *     detector  noise, blur, steps, scatter, jaws, focal spot, heel, bow-tie filter and grid of the plan's options are left out
  *
