@@ -9,12 +9,12 @@
 
 static const char usage[] =
     "[--data FOLDER] [--part LABEL] [--kind clean|noise|spectrum|tissue|scatter|hard] [--views N] [--side N] [--shift MM] [--turn DEGREES] "
-    "[--trials N] [--first N] [--restarts N] [--loss lsq|ncc|gradient-ncc] [--polish] [--verbose]";
+    "[--trials N] [--first N] [--mesh given|decimated|smoothed] [--restarts N] [--loss lsq|ncc|gradient-ncc] [--polish] [--verbose]";
 
 typedef struct {
     const char *data, *part, *kind_name;
     long views, side, shift, turn, trials, first, restarts, loss;
-    int kind, polish, verbose;
+    int kind, polish, mesh, verbose;
 } wishes;
 
 typedef struct {
@@ -165,6 +165,7 @@ static wishes read_wishes(int count, char **words) {
                                SUBJECT_NOISE | SUBJECT_SCATTER,
                                SUBJECT_NOISE | SUBJECT_SPECTRUM | SUBJECT_TISSUE | SUBJECT_SCATTER};
     static const char *const losses[] = {"lsq", "ncc", "gradient-ncc"};
+    static const char *const meshes[] = {"given", "decimated", "smoothed"};
     wishes w = {.kind_name = "clean", .views = 2, .side = 256, .shift = 10, .turn = 10, .trials = 20};
     bench_arguments arguments = {count, words, 1};
     const char *value;
@@ -188,6 +189,8 @@ static wishes read_wishes(int count, char **words) {
             w.kind = bits[word_of(value, kinds, 6)];
         } else if (bench_option(&arguments, "--loss", &value)) {
             w.loss = word_of(value, losses, 3);
+        } else if (bench_option(&arguments, "--mesh", &value)) {
+            w.mesh = word_of(value, meshes, 3);
         } else if (bench_flag(&arguments, "--polish")) {
             w.polish = 1;
         } else if (bench_flag(&arguments, "--verbose")) {
@@ -207,6 +210,7 @@ int main(int count, char **words) {
     outcome *all = bench_alloc((size_t)w.trials, sizeof *all);
     subject_make(w.data, w.part, w.side, &s);
     for (long v = 0; v < w.views; v++) values[v] = subject_radiograph(&s, (int)v, w.kind);
+    if (w.mesh != SUBJECT_AS_GIVEN) subject_segment(&s, w.mesh);
     for (long k = 0; k < w.trials; k++) all[k] = run(&w, &s, values, w.first + k);
     report(&w, all);
     for (int v = 0; v < SUBJECT_VIEWS; v++) free(values[v]);

@@ -42,7 +42,7 @@ typedef struct {
     const float *body;
     const double *derivatives, *nuisances;
     int64_t local;
-    int32_t loss;
+    int32_t loss, body_gain;
 } columns_of;
 
 /* Columns of a pixel: derivatives, for least squares those by the nuisances, and the difference; otherwise model, radiograph, 1. */
@@ -50,30 +50,44 @@ static int64_t column_count(const columns_of *c) {
     return c->local + (c->loss == SKG_REGISTRATION_LOSS_LSQ ? REG_NUISANCES + 1 : 3);
 }
 
+/* The gain of the body's contrast. */
+static double gain_of(const columns_of *c) {
+    return c->loss == SKG_REGISTRATION_LOSS_LSQ && c->body_gain ? 1 + c->nuisances[REG_BASIS + REG_BODY_OWN]
+                                                                : 1;
+}
+
+static void shares_at(const columns_of *c, int64_t pixel, double *shares) {
+    for (int k = 0; k < REG_SHARES; k++) shares[k] = c->shrunk->gains ? c->shrunk->shares[k][pixel] : 0;
+    shares[REG_BODY_OWN] = c->body_gain ? (double)c->body[pixel] - shares[REG_BODY_OWN] : 0;
+}
+
 static void columns_at(const columns_of *c, int64_t pixel, double *values) {
     const reg_shrunk *s = c->shrunk;
     const int64_t size = s->rows * s->columns;
-    double exponent = (double)c->body[pixel] + s->rest[pixel], added = 0, basis[REG_BASIS];
+    const double gain = gain_of(c);
+    double exponent = (double)c->body[pixel] + s->rest[pixel], added = 0, basis[REG_BASIS],
+           shares[REG_SHARES];
     if (c->loss == SKG_REGISTRATION_LOSS_LSQ) {
+        shares_at(c, pixel, shares);
         reg_basis(s->rows, s->columns, pixel / s->columns, pixel % s->columns, basis);
         for (int64_t k = s->terms; k < REG_BASIS; k++) basis[k] = 0;
         for (int k = 0; k < REG_BASIS; k++) {
             exponent += c->nuisances[k] * basis[k];
             added += c->nuisances[REG_ADDED + k] * basis[k];
         }
-        exponent += c->nuisances[REG_BASIS] * s->rest[pixel];
+        for (int k = 0; k < REG_SHARES; k++) exponent += c->nuisances[REG_BASIS + k] * shares[k];
     }
     const modelled m = model_at(exponent, added);
     for (int64_t k = 0; k < c->local; k++) {
         const double slope = c->derivatives ? c->derivatives[k * size + pixel] : 0;
-        *values++ = m.slope > 0 ? m.slope * slope : 0;
+        *values++ = m.slope > 0 ? m.slope * gain * slope : 0;
     }
     if (c->loss == SKG_REGISTRATION_LOSS_LSQ) {
         for (int k = 0; k < REG_BASIS; k++) {
             values[k] = m.slope * basis[k];
             values[REG_ADDED + k] = -m.inverse * basis[k];
         }
-        values[REG_BASIS] = m.slope * s->rest[pixel];
+        for (int k = 0; k < REG_SHARES; k++) values[REG_BASIS + k] = m.slope * shares[k];
         values[REG_NUISANCES] = m.value - s->fixed[pixel];
         return;
     }
@@ -109,28 +123,6 @@ static void make_gram(const columns_of *c, int64_t step, double gram[REG_GRAM][R
         add_product(count, values, gram);
     }
     mirror(count, gram);
-}
-
-int reg_solve(int64_t count, double *matrix, int64_t right, double *vectors) {
-    for (int64_t i = 0; i < count; i++)
-        for (int64_t j = 0; j <= i; j++) {
-            double sum = matrix[i * count + j];
-            for (int64_t k = 0; k < j; k++) sum -= matrix[i * count + k] * matrix[j * count + k];
-            if (i == j && !(sum > 0)) return 0;
-            matrix[i * count + j] = i == j ? sqrt(sum) : sum / matrix[j * count + j];
-        }
-    for (int64_t v = 0; v < right; v++) {
-        double *x = vectors + v * count;
-        for (int64_t i = 0; i < count; i++) {
-            for (int64_t k = 0; k < i; k++) x[i] -= matrix[i * count + k] * x[k];
-            x[i] /= matrix[i * count + i];
-        }
-        for (int64_t i = count; i-- > 0;) {
-            for (int64_t k = i + 1; k < count; k++) x[i] -= matrix[k * count + i] * x[k];
-            x[i] /= matrix[i * count + i];
-        }
-    }
-    return 1;
 }
 
 skg_status reg_equations_create(const skg_registration *r, reg_equations *e) {
@@ -219,6 +211,7 @@ static void add_image(const skg_registration *r, const reg_level *level, const r
                           .body = body,
                           .derivatives = derivatives,
                           .nuisances = state->nuisances + image * REG_NUISANCES,
+                          .body_gain = state->body_gain,
                           .local = local,
                           .loss = r->loss};
     double gram[REG_GRAM][REG_GRAM];
@@ -247,6 +240,7 @@ static double squares(const skg_registration *r, const reg_level *level, const r
     const columns_of c = {.shrunk = &level->images[image],
                           .body = body,
                           .nuisances = state->nuisances + image * REG_NUISANCES,
+                          .body_gain = state->body_gain,
                           .loss = r->loss};
     double values[REG_GRAM], sum = 0;
     for (int64_t p = 0; p < c.shrunk->rows * c.shrunk->columns; p++) {
@@ -321,6 +315,7 @@ void reg_model(const skg_registration *r, const reg_level *level, const reg_stat
     const columns_of c = {.shrunk = &level->images[image],
                           .body = body,
                           .nuisances = state->nuisances + image * REG_NUISANCES,
+                          .body_gain = state->body_gain,
                           .loss = SKG_REGISTRATION_LOSS_LSQ};
     double values[REG_GRAM];
     (void)r;
@@ -336,11 +331,13 @@ void reg_contrast(const reg_level *level, const reg_state *state, int64_t image,
                           .body = body,
                           .derivatives = contrast,
                           .nuisances = state->nuisances + image * REG_NUISANCES,
+                          .body_gain = state->body_gain,
                           .local = 1,
                           .loss = SKG_REGISTRATION_LOSS_LSQ};
     double gram[REG_GRAM][REG_GRAM], own[REG_NUISANCES * REG_NUISANCES], x[2 * REG_NUISANCES];
-    const int last = 1 + REG_NUISANCES, which[2] = {0, last};
+    const int last = 1 + REG_NUISANCES, own_gain = 1 + REG_BASIS + REG_BODY_OWN, which[2] = {0, last};
     make_gram(&c, 0, gram);
+    for (int a = 0; a < REG_GRAM; a++) gram[own_gain][a] = gram[a][own_gain] = 0;
     for (int a = 0; a < REG_NUISANCES; a++) {
         for (int b = 0; b < REG_NUISANCES; b++) own[a * REG_NUISANCES + b] = gram[1 + a][1 + b];
         double *diagonal = &own[a * (REG_NUISANCES + 1)];
@@ -348,12 +345,18 @@ void reg_contrast(const reg_level *level, const reg_state *state, int64_t image,
         for (int k = 0; k < 2; k++) x[k * REG_NUISANCES + a] = gram[1 + a][which[k]];
     }
     if (!reg_solve(REG_NUISANCES, own, 2, x)) memset(x, 0, sizeof x);
+    double left[3];
     for (int k = 0, at = 0; k < 2; k++)
         for (int l = k; l < 2; l++, at++) {
-            double sum = gram[which[k]][which[l]];
-            for (int a = 0; a < REG_NUISANCES; a++) sum -= gram[1 + a][which[k]] * x[l * REG_NUISANCES + a];
-            sums[at] += sum;
+            left[at] = gram[which[k]][which[l]];
+            for (int a = 0; a < REG_NUISANCES; a++)
+                left[at] -= gram[1 + a][which[k]] * x[l * REG_NUISANCES + a];
         }
+    /* A body that shows the other way round does not agree: the difference is from its contrast as it should be. */
+    const int turned = gain_of(&c) < 0;
+    sums[0] += left[0];
+    sums[1] += turned ? 2 * left[0] - left[1] : left[1];
+    sums[2] += turned ? 4 * left[0] - 4 * left[1] + left[2] : left[2];
 }
 
 void reg_scores(const skg_registration *r, const reg_level *level, const reg_state *state, int64_t image,
@@ -363,6 +366,7 @@ void reg_scores(const skg_registration *r, const reg_level *level, const reg_sta
                           .body = body,
                           .derivatives = derivatives,
                           .nuisances = state->nuisances + image * REG_NUISANCES,
+                          .body_gain = state->body_gain,
                           .local = reg_local_count(r),
                           .loss = SKG_REGISTRATION_LOSS_LSQ};
     const reg_shrunk *s = c.shrunk;

@@ -75,12 +75,13 @@ static skg_status set_mask(const skg_radiograph *given, reg_image *image) {
     return skg_fail(SKG_ERR_ARGUMENT, "%s: the mask hides every pixel", image->name);
 }
 
-enum { ARRAYS = 6 };
+enum { ARRAYS = 6 + REG_SHARES };
 
 static void list_arrays(reg_image *image, double **arrays[ARRAYS]) {
-    double **const all[ARRAYS] = {&image->transmission, &image->mask,   &image->given,
-                                  &image->rest,         &image->shadow, &image->before};
+    double **const all[ARRAYS - REG_SHARES] = {&image->transmission, &image->mask,   &image->given,
+                                               &image->rest,         &image->shadow, &image->before};
     memcpy(arrays, all, sizeof all);
+    for (int k = 0; k < REG_SHARES; k++) arrays[ARRAYS - REG_SHARES + k] = &image->shares[k];
 }
 
 void reg_image_free(reg_image *image) {

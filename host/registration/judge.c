@@ -137,7 +137,7 @@ static skg_status add_contrast(skg_registration *r, const reg_scene *around, con
     double *contrast = NULL;
     SKG_TRY(skg_alloc(s->rows * s->columns, sizeof *contrast, "contrast", &contrast));
     const skg_status status =
-        reg_render_once(r, around, NULL, &r->state.views[image], reg_rays(r), NULL, contrast);
+        reg_render_once(r, around, NULL, &r->state.views[image], r->rays, NULL, contrast);
     for (int64_t p = 0; p < s->rows * s->columns; p++) contrast[p] = (double)body[p] - contrast[p];
     if (status == SKG_OK) reg_contrast(level, &r->state, image, body, contrast, sums);
     skg_free(&contrast);
@@ -216,6 +216,8 @@ static skg_status judge(skg_registration *r, const reg_level *level, judging *j)
     SKG_TRY(reg_nuisances_find(r, level, &r->state, j->images));
     for (int64_t i = 0; i < r->image_count; i++) SKG_TRY(judge_image(r, level, i, j));
     set_rest(&j->rest, &r->result);
+    r->result.worst_image = j->rest.worst_image;
+    r->result.worst_row = j->rest.worst_row, r->result.worst_column = j->rest.worst_column;
     find_directions(reg_count(r), j);
     set_uncertainty(r, j);
     /* Noise hides what agrees; its own share of the radiographs' squares is left out. */

@@ -63,6 +63,37 @@ static skg_status find_mask(skg_registration *r, const reg_scene *shadow, reg_im
                     image->name, counted, body_name(r));
 }
 
+/* Mean length of the chords of the thinnest part: four volumes over the surface (Cauchy). */
+static skg_status mean_chord(const skg_registration *r, double *chord) {
+    *chord = HUGE_VAL;
+    for (int64_t p = 0; p < r->part_count; p++) {
+        skg_part part;
+        skg_mesh_health health;
+        skg_part_init(&part);
+        skg_mesh_health_init(&health);
+        SKG_TRY(skg_scene_part_get(r->scene, r->parts[p], &part));
+        SKG_TRY(skg_mesh_health_get(part.mesh, &health));
+        const double scale = cbrt(fabs(skg_pose_determinant(part.pose)));
+        if (health.closed && health.volume > 0)
+            *chord = fmin(*chord, scale * 4 * health.volume / health.area);
+    }
+    return SKG_OK;
+}
+
+/* Rays along a side of a pixel: those of the scene; two at least, because slopes of single rays have no bound at silhouettes; and four
+ * across the body where it is thin, because pixels do not see otherwise how much of them it covers. */
+static skg_status find_rays(skg_registration *r) {
+    enum { LEAST = 2, MOST = 8, ACROSS = 4 };
+    double chord = 0, pixel = 0;
+    SKG_TRY(mean_chord(r, &chord));
+    for (int64_t i = 0; i < r->image_count; i++)
+        pixel = fmax(pixel, pixel_at_body(&r->images[i].view, depth_of(r, &r->images[i], r->state.motion)));
+    r->rays = r->plan.supersampling > LEAST ? r->plan.supersampling : LEAST;
+    const double asked = ceil(fmin(ACROSS * pixel / chord, MOST));
+    if (asked > (double)r->rays) r->rays = (int64_t)asked;
+    return SKG_OK;
+}
+
 static double mean_of(int64_t count, const double *values) {
     double sum = 0;
     for (int64_t p = 0; p < count; p++) sum += values[p];
@@ -130,8 +161,8 @@ static skg_status find_rest(skg_registration *r, const reg_scene *all, reg_image
     double *body = NULL;
     if (!r->additive) return SKG_OK;
     SKG_TRY(skg_alloc(count, sizeof *body, "image of a registration", &body));
-    skg_status status = reg_render_once(r, all, NULL, &image->view, reg_rays(r), NULL, image->rest);
-    if (status == SKG_OK) status = reg_render_once(r, &r->body, NULL, &image->view, reg_rays(r), NULL, body);
+    skg_status status = reg_render_once(r, all, NULL, &image->view, r->rays, NULL, image->rest);
+    if (status == SKG_OK) status = reg_render_once(r, &r->body, NULL, &image->view, r->rays, NULL, body);
     for (int64_t p = 0; p < count; p++) image->rest[p] -= body[p];
     skg_free(&body);
     return status;
@@ -146,6 +177,7 @@ skg_status reg_prepare(skg_registration *r) {
         return skg_fail(SKG_ERR_ARGUMENT, "registration: no part was chosen; add the parts that move");
     SKG_TRY(reg_state_create(r, &r->state));
     SKG_TRY(reg_body_measure(r));
+    SKG_TRY(find_rays(r));
     SKG_TRY_CLEANUP(reg_scene_make(r, REG_ALL, &all));
     SKG_TRY_CLEANUP(reg_scene_make(r, REG_SHADOW, &shadow));
     SKG_TRY_CLEANUP(reg_scene_make(r, r->additive ? REG_BODY : REG_ALL, &r->body));
@@ -154,6 +186,7 @@ skg_status reg_prepare(skg_registration *r) {
         SKG_TRY_CLEANUP(reg_progress(r));
         SKG_TRY_CLEANUP(find_mask(r, &shadow, &r->images[i]));
         SKG_TRY_CLEANUP(find_rest(r, &all, &r->images[i]));
+        SKG_TRY_CLEANUP(reg_shares_find(r, &r->images[i]));
     }
     SKG_TRY_CLEANUP(reg_levels_create(r));
 cleanup:

@@ -58,14 +58,19 @@ static skg_status shrink_image(const skg_registration *r, int64_t index, int64_t
     const reg_image *image = &r->images[index];
     const skg_view *view = &image->view;
     double *scratch = NULL;
+    shrunk->gains = r->options.free == SKG_REGISTRATION_FREE_POSE;
     shrunk->rows = view->rows / factor, shrunk->columns = view->columns / factor;
     const int64_t count = shrunk->rows * shrunk->columns;
     SKG_TRY(skg_alloc(count, sizeof *shrunk->fixed, "level of a pyramid", &shrunk->fixed));
     SKG_TRY(skg_alloc(count, sizeof *shrunk->rest, "level of a pyramid", &shrunk->rest));
+    for (int k = 0; k < REG_SHARES; k++)
+        SKG_TRY(skg_alloc(count, sizeof(double), "level of a pyramid", &shrunk->shares[k]));
     SKG_TRY(skg_alloc(count, sizeof *shrunk->mask, "level of a pyramid", &shrunk->mask));
     SKG_TRY(skg_alloc(view->rows * view->columns, sizeof *scratch, "level of a pyramid", &scratch));
     reg_shrink(view, factor, image->transmission, shrunk->fixed);
     shrink_attenuation(view, factor, image->rest, scratch, shrunk->rest);
+    for (int k = 0; k < REG_SHARES; k++)
+        shrink_attenuation(view, factor, image->shares[k], scratch, shrunk->shares[k]);
     reg_shrink(view, factor, image->mask, shrunk->mask);
     skg_free(&scratch);
     for (int64_t p = 0; p < count; p++) {
@@ -85,9 +90,9 @@ static skg_status plan_image(skg_registration *r, reg_level *level, int64_t inde
             shrunk->plan = level->images[i].plan;
             return skg_plan_retain(shrunk->plan);
         }
-    const int64_t samples = level->factor < 2              ? reg_rays(r)
-                            : level->factor > MOST_SAMPLES ? MOST_SAMPLES
-                                                           : level->factor;
+    const int64_t coarse = level->factor * r->rays / 2, samples = level->factor < 2       ? r->rays
+                                                                  : coarse > MOST_SAMPLES ? MOST_SAMPLES
+                                                                                          : coarse;
     return reg_plan_create(r, r->body.scene, r->model, &view, samples, &shrunk->plan);
 }
 
@@ -113,6 +118,7 @@ void reg_levels_free(skg_registration *r) {
             reg_shrunk *shrunk = &r->levels[k].images[i];
             skg_free(&shrunk->fixed);
             skg_free(&shrunk->rest);
+            for (int share = 0; share < REG_SHARES; share++) skg_free(&shrunk->shares[share]);
             skg_free(&shrunk->mask);
             skg_plan_release(&shrunk->plan);
         }

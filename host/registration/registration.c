@@ -145,7 +145,7 @@ static skg_status search(skg_registration *r) {
         first = r->level_count - 1;
     }
     for (int64_t l = first; l < r->level_count; l++)
-        SKG_TRY(reg_search(r, &r->levels[l], &r->state, &r->result.loss));
+        SKG_TRY(reg_gain_search(r, &r->levels[l], &r->state, &r->result.loss));
     return polish(r);
 }
 

@@ -92,6 +92,59 @@ static skg_status model_of(skg_registration *r, int64_t image, double *values) {
     return status;
 }
 
+/* Model less radiograph at the end. */
+static skg_status after_of(skg_registration *r, int64_t image, double *values) {
+    const reg_shrunk *shrunk = &r->levels[r->level_count - 1].images[image];
+    SKG_TRY(model_of(r, image, values));
+    for (int64_t p = 0; p < shrunk->rows * shrunk->columns; p++)
+        values[p] = shrunk->mask[p] > 0 ? values[p] - shrunk->fixed[p] : 0;
+    return SKG_OK;
+}
+
+/* Sums over all rows and columns before: [rows + 1][columns + 1]. */
+static void sum_up(int64_t rows, int64_t columns, const double *from, double *sums) {
+    for (int64_t row = 0; row < rows; row++) {
+        double line = 0;
+        for (int64_t column = 0; column < columns; column++) {
+            line += from[row * columns + column];
+            sums[(row + 1) * (columns + 1) + column + 1] = sums[row * (columns + 1) + column + 1] + line;
+        }
+    }
+}
+
+/* Sum over the neighbourhood of a pixel. */
+static double sum_about(const reg_shrunk *s, const double *sums, int64_t row, int64_t column, int64_t reach) {
+    const int64_t top = row > reach ? row - reach : 0, first = column > reach ? column - reach : 0,
+                  bottom = row + reach < s->rows ? row + reach + 1 : s->rows,
+                  last = column + reach < s->columns ? column + reach + 1 : s->columns, step = s->columns + 1;
+    return sums[bottom * step + last] - sums[top * step + last] - sums[bottom * step + first] +
+           sums[top * step + first];
+}
+
+/* What is left at the end without the noise: means of neighbourhoods that are beyond three standard deviations of it. */
+static skg_status structure_of(skg_registration *r, int64_t image, double *values) {
+    const reg_shrunk *s = &r->levels[r->level_count - 1].images[image];
+    const int64_t reach = (s->rows < s->columns ? s->rows : s->columns) / 80;
+    double *sums = NULL, *counts = NULL;
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_alloc((s->rows + 1) * (s->columns + 1), sizeof *sums, "sums of a picture", &sums));
+    SKG_TRY_CLEANUP(
+        skg_alloc((s->rows + 1) * (s->columns + 1), sizeof *counts, "sums of a picture", &counts));
+    SKG_TRY_CLEANUP(after_of(r, image, values));
+    sum_up(s->rows, s->columns, values, sums);
+    sum_up(s->rows, s->columns, s->mask, counts);
+    for (int64_t p = 0; p < s->rows * s->columns; p++) {
+        const int64_t row = p / s->columns, column = p % s->columns;
+        const double count = sum_about(s, counts, row, column, reach),
+                     mean = count > 0 ? sum_about(s, sums, row, column, reach) / count : 0;
+        values[p] = s->mask[p] > 0 && fabs(mean) > 3 * r->result.noise / sqrt(count) ? mean : 0;
+    }
+cleanup:
+    skg_free(&sums);
+    skg_free(&counts);
+    return status;
+}
+
 static skg_status shadow_of(skg_registration *r, int64_t image, double *values) {
     reg_scene shadow = {0};
     skg_status status = reg_scene_make(r, REG_SHADOW, &shadow);
@@ -127,10 +180,9 @@ skg_status skg_registration_picture_get(skg_registration *registration, int64_t 
     case SKG_REGISTRATION_PICTURE_SHADOW_AFTER:
         return shadow_of(r, image, values);
     case SKG_REGISTRATION_PICTURE_AFTER:
-        SKG_TRY(model_of(r, image, values));
-        for (int64_t p = 0; p < count; p++)
-            values[p] = shrunk->mask[p] > 0 ? values[p] - shrunk->fixed[p] : 0;
-        break;
+        return after_of(r, image, values);
+    case SKG_REGISTRATION_PICTURE_STRUCTURE:
+        return structure_of(r, image, values);
     default:
         return skg_fail(SKG_ERR_ARGUMENT, "%s: %" PRId32 " is no SKG_REGISTRATION_PICTURE_ value", __func__,
                         which);

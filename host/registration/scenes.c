@@ -15,7 +15,7 @@ static int moves(const skg_registration *r, int64_t part) {
 static skg_status choose(const skg_registration *r, reg_kind kind, int64_t count, char *chosen) {
     skg_part part;
     skg_part_init(&part);
-    if (kind == REG_ALL) memset(chosen, 1, (size_t)count);
+    if (kind == REG_ALL || kind == REG_REST) memset(chosen, 1, (size_t)count);
     for (int64_t p = 0; p < r->part_count; p++) {
         chosen[r->parts[p]] = 1;
         if (kind == REG_SHADOW) continue;
@@ -25,7 +25,8 @@ static skg_status choose(const skg_registration *r, reg_kind kind, int64_t count
             SKG_TRY(skg_scene_part_get(r->scene, part.inside, &part));
         }
     }
-    for (int64_t p = 0; p < r->part_count && kind == REG_AROUND; p++) chosen[r->parts[p]] = 0;
+    for (int64_t p = 0; p < r->part_count && (kind == REG_AROUND || kind == REG_REST); p++)
+        chosen[r->parts[p]] = 0;
     return SKG_OK;
 }
 

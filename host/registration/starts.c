@@ -149,7 +149,7 @@ static skg_status follow(skg_registration *r, int64_t count, const double *motio
         reg_state_copy(r, &r->state, &state);
         memcpy(state.motion, motions + 16 * order[k].index, sizeof state.motion);
         for (int64_t l = 0; l < levels && status == SKG_OK; l++)
-            status = reg_search(r, &r->levels[l], &state, &loss);
+            status = reg_gain_search(r, &r->levels[l], &state, &loss);
         if (loss < best) {
             best = loss;
             reg_state_copy(r, &state, &found);

@@ -166,6 +166,7 @@ skg_status reg_state_create(const skg_registration *r, reg_state *state) {
 
 void reg_state_copy(const skg_registration *r, const reg_state *from, reg_state *to) {
     memcpy(to->motion, from->motion, sizeof to->motion);
+    to->body_gain = from->body_gain;
     memcpy(to->views, from->views, (size_t)r->image_count * sizeof *to->views);
     memcpy(to->nuisances, from->nuisances, (size_t)(r->image_count * REG_NUISANCES) * sizeof *to->nuisances);
 }

@@ -10,10 +10,14 @@
 
 #include <skiagraph/registration.h>
 
+/* Attenuations that have a gain each: the body less what it displaces; of what does not move, that what the body lies inside, with
+ * volumes of cells; and light, soft and dense materials. */
+typedef enum { REG_BODY_OWN, REG_HOLDING, REG_LIGHT, REG_SOFT, REG_DENSE, REG_SHARES } reg_share;
+
 enum {
-    REG_BASIS = 15,            /* polynomials of order 4 over the image */
-    REG_COARSE_BASIS = 6,      /* those of order 2 */
-    REG_ADDED = REG_BASIS + 1, /* what adds to attenuation: polynomials, and a share of what does not move */
+    REG_BASIS = 15,                     /* polynomials of order 4 over the image */
+    REG_COARSE_BASIS = 6,               /* those of order 2 */
+    REG_ADDED = REG_BASIS + REG_SHARES, /* what adds to attenuation: polynomials, and shares */
     REG_NUISANCES =
         REG_ADDED + REG_BASIS, /* of a radiograph: those of attenuation, then those of transmission */
     REG_POSE = 6,              /* free directions of a pose */
@@ -39,8 +43,10 @@ typedef struct {
     double *given;        /* [rows][columns] 1: the caller lets it count */
     double *mask;         /* [rows][columns] 1: it counts, and is near the shadow */
     double *rest; /* [rows][columns] attenuation of what does not move, and is not in the scene of the body */
-    double *shadow; /* [rows][columns] attenuation of the parts alone at the start */
-    double *before; /* [rows][columns] model less radiograph at the start */
+    double *
+        shares[REG_SHARES]; /* [rows][columns] each; REG_BODY_OWN: what an image of the body has without it */
+    double *shadow;         /* [rows][columns] attenuation of the parts alone at the start */
+    double *before;         /* [rows][columns] model less radiograph at the start */
 } reg_image;
 
 /* A radiograph at a level of the pyramid. */
@@ -48,8 +54,10 @@ typedef struct {
     int64_t rows, columns;
     double *fixed; /* -ln(transmission + floor) */
     double *rest;
-    double *mask;  /* 1: counts */
-    int64_t terms; /* polynomials of each kind: the first ones of REG_BASIS */
+    double *shares[REG_SHARES]; /* as of reg_image */
+    int32_t gains;              /* 1: shares at rest have gains: where a pose is free */
+    double *mask;               /* 1: counts */
+    int64_t terms;              /* polynomials of each kind: the first ones of REG_BASIS */
     skg_plan *plan;
 } reg_shrunk;
 
@@ -63,6 +71,7 @@ typedef struct {
     double motion[16]; /* of the body */
     skg_view *views;   /* [image_count] */
     double *nuisances; /* [image_count][REG_NUISANCES] */
+    int32_t body_gain; /* 1: the body's contrast has a gain */
 } reg_state;
 
 /* Normal equations of a state: the sum of squares is cost + 2 g s + s A s for a step s. Nuisances are eliminated; what is needed to find
@@ -75,8 +84,8 @@ typedef struct {
         coupling; /* [image_count][REG_LOCAL + 1][REG_NUISANCES] inverse of their matrix times coupling and gradient */
 } reg_equations;
 
-/* Scenes that are rendered: all parts; the body with what it lies inside; only the latter; the parts alone. */
-typedef enum { REG_ALL, REG_BODY, REG_AROUND, REG_SHADOW } reg_kind;
+/* Scenes that are rendered: all parts; the body with what it lies inside; only the latter; the parts alone; all but them. */
+typedef enum { REG_ALL, REG_BODY, REG_AROUND, REG_SHADOW, REG_REST } reg_kind;
 
 typedef struct {
     skg_scene *scene;
@@ -100,6 +109,7 @@ struct skg_registration {
     reg_image *images;
     reg_scene body;   /* scene of REG_BODY, or of REG_ALL where attenuations do not add */
     int32_t additive; /* 1: they do */
+    int64_t rays;     /* along a side of a pixel of a radiograph */
     double middle[3], radius, axis[3];
     reg_level levels[REG_LEVELS]; /* the coarsest first */
     reg_state state;
@@ -161,12 +171,6 @@ void reg_levels_free(skg_registration *r);
 
 /* --- Rendering: render.c */
 
-/* Rays along a side of a pixel of a radiograph: those of the scene, and two at least, because slopes of single rays have no bound at
- * silhouettes. */
-static inline int64_t reg_rays(const skg_registration *r) {
-    return r->plan.supersampling > 2 ? r->plan.supersampling : 2;
-}
-
 /* A plan of attenuations. */
 skg_status reg_plan_create(const skg_registration *r, skg_scene *scene, skg_spectrum *spectrum,
                            const skg_view *view, int64_t supersampling, skg_plan **plan);
@@ -186,6 +190,9 @@ skg_status reg_render_poses(skg_registration *r, const reg_shrunk *shrunk, const
 skg_status reg_differentiate(skg_registration *r, const reg_level *level, const reg_state *state,
                              int64_t image, double *derivatives);
 
+/* Solves a symmetric positive definite system in place: 0 if it is none: solve.c. */
+int reg_solve(int64_t count, double *matrix, int64_t right, double *vectors);
+
 /* --- Equations: equations.c */
 void reg_basis(int64_t rows, int64_t columns, int64_t row, int64_t column, double *basis);
 skg_status reg_equations_create(const skg_registration *r, reg_equations *equations);
@@ -204,9 +211,6 @@ void reg_equations_add(const skg_registration *r, const reg_level *level, const 
 void reg_nuisances_move(const skg_registration *r, const reg_equations *equations, const double *step,
                         reg_state *state);
 
-/* Solves a symmetric positive definite system in place: 0 if it is none. */
-int reg_solve(int64_t count, double *matrix, int64_t right, double *vectors);
-
 /* Finds the nuisances of a state whose images are given. */
 skg_status reg_nuisances_find(const skg_registration *r, const reg_level *level, reg_state *state,
                               float *const *images);
@@ -221,8 +225,8 @@ void reg_model(const skg_registration *r, const reg_level *level, const reg_stat
 void reg_scores(const skg_registration *r, const reg_level *level, const reg_state *state, int64_t image,
                 const float *body, const double *derivatives, const reg_equations *equations, double *meat);
 
-/* Adds sums over a radiograph of what is left of two columns when the polynomials have taken their share: the body's contrast, and model
- * less radiograph. sums: contrast^2, contrast times difference, difference^2. */
+/* Adds sums over a radiograph of what is left of two columns when polynomials and shares at rest have taken theirs: the body's contrast
+ * with its gain, and model less radiograph. sums: contrast^2, contrast times difference, difference^2. */
 void reg_contrast(const reg_level *level, const reg_state *state, int64_t image, const float *body,
                   const double *contrast, double sums[3]);
 
@@ -235,6 +239,9 @@ void reg_images_free(const skg_registration *r, float ***images);
 /* Minimizes at a level from a state; *loss: at the end. */
 skg_status reg_search(skg_registration *r, const reg_level *level, reg_state *state, double *loss);
 
+/* The same, and once more with a gain of the body's contrast where the radiographs ask for it: gain.c. */
+skg_status reg_gain_search(skg_registration *r, const reg_level *level, reg_state *state, double *loss);
+
 /* Replaces the state by the best of several starts, searched at all levels but the last. */
 skg_status reg_starts_try(skg_registration *r);
 
@@ -243,6 +250,9 @@ skg_status reg_progress(skg_registration *r);
 /* --- Before the search: images.c, prepare.c */
 void reg_image_free(reg_image *image);
 skg_status reg_prepare(skg_registration *r);
+
+/* The shares of a radiograph, once the energy of the model is known: shares.c. */
+skg_status reg_shares_find(skg_registration *r, reg_image *image);
 
 /* --- What is said of the result: judge.c, words.c */
 

@@ -6,12 +6,14 @@
 
 #include <float.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 enum { SIDE = 96, VIEWS = 2, PIXELS = SIDE * SIDE };
 
 static skg_context *context;
 static skg_spectrum *mono;
+static int32_t lung_priority; /* not 0: attenuations do not add */
 
 static void set_up(void) {
     ck_skg(skg_context_create(NULL, &context));
@@ -31,6 +33,7 @@ static int64_t add(skg_scene *scene, skg_mesh *mesh, double mu, const char *labe
     skg_part_init(&part);
     ck_skg(skg_material_create_mu(label, mu, &part.material));
     part.mesh = mesh, part.label = label, part.inside = inside;
+    part.priority = strcmp(label, "lung") ? 0 : lung_priority;
     skg_pose_translation(x, y, z, part.pose);
     ck_skg(skg_scene_part_add(scene, &part, &id));
     skg_mesh_release(&mesh);
@@ -60,8 +63,12 @@ static int64_t add_cells(skg_scene *scene, const char *label) {
     return id;
 }
 
+/* Attenuation, 1/cm: of the model, and of radiographs in which the skin is denser, the lung lighter, and the body's contrast 0.7 of the model's. */
+static const double modelled[PARTS] = {0.2, 0.05, 0.5, 0.6, 0.5},
+                    others[PARTS] = {0.23, 0.02, 0.44, 0.51, 0.44};
+
 /* A body of three parts without symmetry, inside a sphere or a cube of cells that holds something light as well. */
-static skg_scene *make_scene_in(int of_cells) {
+static skg_scene *make_scene_in(int of_cells, const double *mu) {
     skg_scene *scene;
     skg_mesh *skin, *lung, *block, *knob, *arm;
     ck_skg(skg_scene_create(context, &scene));
@@ -73,17 +80,17 @@ static skg_scene *make_scene_in(int of_cells) {
         ck_assert_int_eq(add_cells(scene, "skin"), SKIN);
     } else {
         ck_skg(skg_mesh_create_sphere(80, 48, &skin));
-        ck_assert_int_eq(add(scene, skin, 0.2, "skin", -1, 0, 0, 0), SKIN);
+        ck_assert_int_eq(add(scene, skin, mu[SKIN], "skin", -1, 0, 0, 0), SKIN);
     }
-    ck_assert_int_eq(add(scene, lung, 0.05, "lung", SKIN, -42, 10, 8), LUNG);
-    ck_assert_int_eq(add(scene, block, 0.5, "body block", SKIN, 3, -2, 4), BLOCK);
-    ck_assert_int_eq(add(scene, knob, 0.6, "body knob", SKIN, 14, 20, 28), KNOB);
-    ck_assert_int_eq(add(scene, arm, 0.5, "body arm", SKIN, 20, -18, -14), ARM);
+    ck_assert_int_eq(add(scene, lung, mu[LUNG], "lung", SKIN, -42, 10, 8), LUNG);
+    ck_assert_int_eq(add(scene, block, mu[BLOCK], "body block", SKIN, 3, -2, 4), BLOCK);
+    ck_assert_int_eq(add(scene, knob, mu[KNOB], "body knob", SKIN, 14, 20, 28), KNOB);
+    ck_assert_int_eq(add(scene, arm, mu[ARM], "body arm", SKIN, 20, -18, -14), ARM);
     return scene;
 }
 
 static skg_scene *make_scene(void) {
-    return make_scene_in(0);
+    return make_scene_in(0, modelled);
 }
 
 /* From the front and from the side; the detector is square. */
@@ -98,13 +105,14 @@ static skg_view view_from(int which) {
     return view;
 }
 
-static void render(skg_scene *scene, const skg_view *view, int32_t quantity, int noise, double *values) {
+static void render(skg_scene *scene, const skg_view *view, int32_t quantity, int noise, int rays,
+                   double *values) {
     skg_plan_options options;
     skg_plan *plan;
     skg_output output;
     static float image[PIXELS];
     skg_plan_options_init(&options);
-    options.quantity = quantity, options.supersampling = 2, options.noise = noise;
+    options.quantity = quantity, options.supersampling = rays, options.noise = noise;
     ck_skg(skg_plan_create(context, scene, view, mono, &options, &plan));
     skg_output_init(&output);
     output.data = image;
@@ -120,10 +128,13 @@ static void add_image(skg_registration *r, const skg_view *view, const double *v
     ck_skg(skg_registration_image_add(r, &image));
 }
 
+/* A square of pixels near the body that attenuates more in the first radiograph than the scene does. */
+enum { LUMP = 7, LUMP_ROW = 62, LUMP_COLUMN = 66 };
+
 /* What each test changes of the usual run: two views, from a start some mm and degrees off. */
 typedef struct {
-    int views, noise, of_cells;
-    double shift, turn;
+    int views, noise, of_cells, other;
+    double shift, turn, lump;
     skg_registration_options options;
 } run_of;
 
@@ -141,11 +152,15 @@ static skg_registration *prepare(run_of *run, skg_scene *scene) {
     memcpy(run->options.start, start, sizeof start);
     ck_skg(skg_registration_create(context, scene, mono, NULL, &run->options, &r));
     for (int64_t p = BLOCK; p <= ARM; p++) ck_skg(skg_registration_part_add(r, p));
+    skg_scene *shown = run->other ? make_scene_in(0, others) : scene;
     for (int v = 0; v < run->views; v++) {
         const skg_view view = view_from(v);
-        render(scene, &view, SKG_QUANTITY_ATTENUATION, run->noise, values);
+        render(shown, &view, SKG_QUANTITY_ATTENUATION, run->noise, 2, values);
+        for (int p = 0; p < LUMP * LUMP && v == 0; p++)
+            values[(LUMP_ROW + p / LUMP - LUMP / 2) * SIDE + LUMP_COLUMN + p % LUMP - LUMP / 2] += run->lump;
         add_image(r, &view, values);
     }
+    if (run->other) skg_scene_release(&shown);
     return r;
 }
 
@@ -171,7 +186,7 @@ static double error_of(const skg_registration_result *result) {
 }
 
 static skg_registration_result run(run_of *run, double bar) {
-    skg_scene *scene = make_scene_in(run->of_cells);
+    skg_scene *scene = make_scene_in(run->of_cells, modelled);
     skg_registration *r = prepare(run, scene);
     ck_skg(skg_registration_run(r));
     const skg_registration_result result = result_of(r);
@@ -226,12 +241,66 @@ START_TEST(a_body_in_a_volume_of_cells_is_found) {
     one.of_cells = 1;
     const skg_registration_result result = run(&one, 0.015); /* a hundredth of a pixel, as above */
     ck_assert_int_eq(result.verdict, SKG_REGISTRATION_VERDICT_AGREES);
-    skg_scene *scene = make_scene_in(1);
+    skg_scene *scene = make_scene_in(1, modelled);
     skg_registration *r = prepare(&one, scene);
     ck_skg(skg_registration_part_add(r, SKIN));
     ck_skg_fails(skg_registration_run(r), SKG_ERR_UNSUPPORTED, "skin is a volume of cells");
     skg_registration_release(&r);
     skg_scene_release(&scene);
+}
+END_TEST
+
+/* What holds the body, what is light, and the body's own contrast have gains. */
+START_TEST(other_densities_are_found) {
+    run_of one = usual();
+    one.other = 1;
+    for (lung_priority = 0; lung_priority < 2; lung_priority++) {
+        /* A pixel is a mean of transmissions, and so is each share of it: at borders they neither add nor scale. A tenth of a pixel. */
+        const skg_registration_result clean = run(&one, 0.15);
+        ck_assert_int_eq(clean.verdict, SKG_REGISTRATION_VERDICT_AGREES);
+        ck_assert(clean.agreement > 0.99);
+        ck_assert_double_lt(clean.residual,
+                            0.001); /* for the same reason; 0.006 without a gain of the body */
+    }
+    lung_priority = 0;
+    one.noise = 1;
+    ck_assert_int_eq(run(&one, 0.25).verdict, SKG_REGISTRATION_VERDICT_AGREES); /* the same, and noise */
+}
+END_TEST
+
+/* What the scene lacks is shown where it is, and noise is not. */
+START_TEST(structure_is_shown_where_it_is) {
+    static double picture[PIXELS];
+    for (int lumps = 0; lumps < 2; lumps++) {
+        run_of one = usual();
+        one.noise = 1, one.lump = 0.3 * lumps;
+        int64_t shown = 0;
+        double beside = 0;
+        skg_scene *scene = make_scene();
+        skg_registration *r = prepare(&one, scene);
+        ck_skg(skg_registration_run(r));
+        const skg_registration_result result = result_of(r);
+        ck_assert_int_eq(result.verdict == SKG_REGISTRATION_VERDICT_STRUCTURE, lumps);
+        ck_skg(skg_registration_picture_get(r, 0, SKG_REGISTRATION_PICTURE_STRUCTURE, picture));
+        for (int p = 0; p < PIXELS; p++) {
+            const int row = abs(p / SIDE - LUMP_ROW), column = abs(p % SIDE - LUMP_COLUMN);
+            shown += picture[p] != 0;
+            if (row > LUMP / 2 + 1 || column > LUMP / 2 + 1) beside = fmax(beside, fabs(picture[p]));
+        }
+        if (lumps) {
+            /* the polynomials and the body's pose take some of it */
+            ck_assert_double_eq_tol(picture[LUMP_ROW * SIDE + LUMP_COLUMN], -one.lump, 0.2 * one.lump);
+            ck_assert_int_eq(result.worst_image, 0);
+            ck_assert_int_eq(result.worst_row, 66); /* middle of rows 60 to 72 */
+            ck_assert_int_eq(result.worst_column, 66);
+        } else { /* three standard deviations of what is nearly normal: a hundredth, at most, of neighbours that are alike */
+            ck_assert_int_lt(shown, PIXELS / 100);
+        }
+        ck_assert_double_lt(beside,
+                            0.1); /* a third of the lump: what polynomials leave that bend towards it */
+        skg_registration_release(&r);
+        skg_scene_release(&scene);
+    }
 }
 END_TEST
 
@@ -271,6 +340,50 @@ START_TEST(the_beam_of_one_view_is_the_least_certain) {
     ck_assert_int_eq(result_of(r).determined[1], 0); /* along y */
     ck_skg(skg_registration_verdict_get(r, &sentence));
     ck_assert_ptr_nonnull(strstr(sentence, "not determined: shift along the beam of view 1"));
+    skg_registration_release(&r);
+    skg_scene_release(&scene);
+}
+END_TEST
+
+/* A needle, 0.8 mm across pixels of 1.5 mm at its place: more rays see how much of a pixel it covers. */
+START_TEST(a_needle_thinner_than_a_pixel_is_found) {
+    static double values[PIXELS];
+    skg_registration_options options;
+    skg_registration *r;
+    skg_scene *scene;
+    skg_mesh *needle;
+    int64_t id;
+    ck_skg(skg_scene_create(context, &scene));
+    ck_skg(skg_mesh_create_cylinder(0.4, 70, 24, &needle));
+    id = add(scene, needle, 6, "needle", -1, 4, -3, 2);
+    double pose[16], turned[16];
+    const double askew[6] = {0, 0, 0, 0.5, 0.4, 0};
+    reg_motion_of(askew, turned);
+    skg_pose_translation(4, -3, 2, pose);
+    skg_pose_multiply(pose, turned, pose);
+    ck_skg(skg_scene_part_pose_set(scene, id, pose));
+    skg_registration_options_init(&options);
+    const double start[6] = {0.8, 0.6, -0.5, 0.01, -0.012, 0};
+    memcpy(options.start, start, sizeof start);
+    ck_skg(skg_registration_create(context, scene, mono, NULL, &options, &r));
+    ck_skg(skg_registration_part_add(r, id));
+    for (int v = 0; v < VIEWS; v++) {
+        const skg_view view = view_from(v);
+        render(scene, &view, SKG_QUANTITY_ATTENUATION, 1, 7, values);
+        add_image(r, &view, values);
+    }
+    ck_skg(skg_registration_run(r));
+    const skg_registration_result result = result_of(r);
+    double motion[16];
+    reg_motion_of(result.twist, motion);
+    for (int end = -1; end <= 1; end += 2) {
+        const double along[3] = {0, 0, 35.0 * end};
+        double at[3], moved[3];
+        skg_pose_point(pose, along, at);
+        skg_pose_point(motion, at, moved);
+        skg_add_scaled(moved, -1, at, moved);
+        ck_assert_double_lt(skg_length(moved), 0.15); /* a tenth of a pixel at the body */
+    }
     skg_registration_release(&r);
     skg_scene_release(&scene);
 }
@@ -322,7 +435,7 @@ START_TEST(a_phantom_calibrates_a_view) {
     }
     const skg_view truth = view_from(0);
     skg_view wrong = truth, found;
-    render(scene, &truth, SKG_QUANTITY_ATTENUATION, 0, values);
+    render(scene, &truth, SKG_QUANTITY_ATTENUATION, 0, 2, values);
     skg_registration_options_init(&options);
     options.free = SKG_REGISTRATION_FREE_SOURCE | SKG_REGISTRATION_FREE_DETECTOR;
     options.steps = 60, options.margin_mm = 8;
@@ -397,7 +510,7 @@ START_TEST(parts_out_of_sight_are_named) {
     skg_scene *scene = make_scene();
     static double values[PIXELS];
     const skg_view view = view_from(0);
-    render(scene, &view, SKG_QUANTITY_ATTENUATION, 0, values);
+    render(scene, &view, SKG_QUANTITY_ATTENUATION, 0, 2, values);
     for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
         run_of one = usual();
         skg_registration *r;
@@ -437,8 +550,11 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, twists_are_their_own_inverse);
     tcase_add_test(tests, every_loss_finds_the_body);
     tcase_add_test(tests, a_body_in_a_volume_of_cells_is_found);
+    tcase_add_test(tests, other_densities_are_found);
+    tcase_add_test(tests, structure_is_shown_where_it_is);
     tcase_add_test(tests, noise_displaces_as_sigma_says);
     tcase_add_test(tests, the_beam_of_one_view_is_the_least_certain);
+    tcase_add_test(tests, a_needle_thinner_than_a_pixel_is_found);
     tcase_add_test(tests, restarts_find_it_from_afar);
     tcase_add_test(tests, a_cancelled_one_keeps_the_best);
     tcase_add_test(tests, a_phantom_calibrates_a_view);

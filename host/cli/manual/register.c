@@ -80,13 +80,13 @@ const cli_flag cli_flag_register_need = {"--need", "MM",
 static const char *const text[] = {
     "Moves parts of a scene until their rendered attenuation agrees with radiographs, by the derivatives of the images. What does not move is "
     "rendered once. What the scene lacks is fitted with the pose: polynomials over the image that add to the attenuation (tissue, gain) and "
-    "to the transmission (scatter), and a share of what does not move.",
+    "to the transmission (scatter), and gains of kinds of tissue and of the body's contrast (density, energy).",
     "The verdict is one of: agrees, agrees but for structure, not determined (with the direction), failed. sigma is the standard deviation "
     "from noise alone, and no error; sigma_structure takes what is left in the images for noise.",
     "Ctrl-C ends the search, and the best pose so far is written.",
     "--json prints {status, verdict, parts: [{label, twist, sigma, sigma_structure, determined, middle, shift_mm, turn_deg, status, "
     "verdict, loss, directions: [{name, sigma_mm, sigma_structure_mm, determined}]}], views: [{projection, source, centre, column_step, "
-    "row_step}], loss, loss_start, residual, noise, explained, agreement, energy_kev, evaluations, jacobians, seconds}.",
+    "row_step}], loss, loss_start, residual, noise, explained, agreement, energy_kev, worst: {view, row, column}, evaluations, jacobians, seconds}.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_register_image,  &cli_flag_register_part,

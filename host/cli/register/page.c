@@ -19,11 +19,12 @@ static const char head[] =
     "*{box-sizing:border-box}body{font:15px/1.45 system-ui,sans-serif;color:var(--ink);background:var(--ground);max-width:1100px;"
     "margin:0 auto;padding:16px}\nh1{font-size:15px;color:var(--faint);margin:0}h2{font-size:17px;margin:28px 0 6px;overflow-wrap:anywhere}"
     "#verdict{font-size:20px;line-height:1.35;margin:6px 0 10px}\n"
-    ".views{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,330px),1fr));gap:18px}figure{margin:0;min-width:0}"
+    ".views{display:grid;grid-template-columns:repeat(auto-fit,minmax(min(100%,240px),1fr));gap:18px}figure{margin:0;min-width:0}"
     "figcaption{color:var(--faint);font-size:13px;margin-top:4px}\n"
     ".stack{position:relative;background:#000;line-height:0}.stack img{width:100%;image-rendering:pixelated}"
     ".stack img+img{position:absolute;left:0;top:0}.stack .model{clip-path:inset(0 0 0 var(--at,50%))}\n"
-    ".difference{background:var(--plate);line-height:0}.difference img{width:100%;image-rendering:pixelated}\n"
+    ".difference{position:relative;background:var(--plate);line-height:0}.difference img{width:100%;image-rendering:pixelated}"
+    ".cell{position:absolute;width:12.5%;height:12.5%;transform:translate(-50%,-50%);border:2px solid #1a1c20}\n"
     "input[type=range]{width:100%;accent-color:var(--mark)}label{font-size:13px}\n"
     ".scroll{overflow-x:auto}table{border-collapse:collapse;font-variant-numeric:tabular-nums}td,th{padding:3px 10px;border-bottom:1px "
     "solid var(--rule);text-align:right}td:first-child,th:first-child{text-align:left;padding-left:0}.open{color:var(--open)}\n"
@@ -36,6 +37,25 @@ static int put_picture(FILE *page, const register_png *picture, const char *kind
     fprintf(page, "<img class=\"%s\" alt=\"%s\" src=\"%s\">", kind, what, uri);
     free(uri);
     return CLI_DONE;
+}
+
+/* What noise does not explain, and the cell with most of it. */
+static int put_structure(FILE *page, const register_work *work, int64_t image, const register_png *picture) {
+    const skg_registration_result *r = &work->bodies[work->body_count - 1].result;
+    const skg_view *view = &work->images[image].view;
+    if (!picture->png) return CLI_DONE;
+    fputs("<figure><div class=\"difference\">", page);
+    const int exit_status = put_picture(page, picture, "structure", "what noise does not explain");
+    if (image == r->worst_image)
+        fprintf(page, "<div class=\"cell\" style=\"left:%.2f%%;top:%.2f%%\"></div>",
+                100 * (double)r->worst_column / (double)view->columns,
+                100 * (double)r->worst_row / (double)view->rows);
+    fprintf(
+        page,
+        "</div><figcaption>What noise does not explain of it: means of neighbouring pixels beyond three standard deviations. The "
+        "full colour is %.2g.%s</figcaption></figure>",
+        picture->most, image == r->worst_image ? " Most of what is left is in the frame." : "");
+    return exit_status;
 }
 
 static int put_view(FILE *page, const register_work *work, int64_t image, const register_png *pictures) {
@@ -63,15 +83,20 @@ static int put_view(FILE *page, const register_work *work, int64_t image, const 
         page);
     if (exit_status == CLI_DONE)
         exit_status = put_picture(page, &pictures[REGISTER_AFTER], "", "difference at the end");
-    fputs("</div><figcaption>The same at the end, with the same colours.</figcaption></figure></div>\n",
-          page);
+    fprintf(
+        page,
+        "</div><figcaption>The same at the end, with the same colours. The full one is %.2g.</figcaption></figure>\n",
+        pictures[REGISTER_AFTER].most);
+    if (exit_status == CLI_DONE)
+        exit_status = put_structure(page, work, image, &pictures[REGISTER_STRUCTURE]);
+    fputs("</div>\n", page);
     return exit_status;
 }
 
 static int put_views(FILE *page, const register_work *work) {
     int exit_status = CLI_DONE;
     for (int64_t i = 0; i < work->image_count && exit_status == CLI_DONE; i++) {
-        register_png pictures[REGISTER_PICTURES] = {{NULL, 0}};
+        register_png pictures[REGISTER_PICTURES] = {{NULL, 0, 0}};
         exit_status = register_pictures(work, i, pictures);
         if (exit_status == CLI_DONE) exit_status = put_view(page, work, i, pictures);
         for (int k = 0; k < REGISTER_PICTURES; k++) free(pictures[k].png);

@@ -90,6 +90,7 @@ static int contour_png(const skg_view *view, const double *start, const double *
 
 /* Blue where the model attenuates less than the radiograph, red where more, clear where they agree. */
 static int difference_png(const skg_view *view, const double *values, double most, register_png *out) {
+    out->most = most;
     static const double less[3] = {0.02, 0.19, 0.56}, more[3] = {0.65, 0.06, 0.12};
     cairo_surface_t *surface = make_surface(view);
     if (cairo_surface_status(surface) != CAIRO_STATUS_SUCCESS)
@@ -99,6 +100,13 @@ static int difference_png(const skg_view *view, const double *values, double mos
         set_pixel(surface, p / view->columns, p % view->columns, values[p] < 0 ? less : more, share);
     }
     return finish(surface, out);
+}
+
+/* On a scale of its own; nothing, if no pixel has any. */
+static int structure_png(const skg_view *view, const double *values, register_png *out) {
+    double most = 0;
+    for (int64_t p = 0; p < view->rows * view->columns; p++) most = fmax(most, fabs(values[p]));
+    return most > 0 ? difference_png(view, values, most, out) : CLI_DONE;
 }
 
 static int get(const register_work *work, int64_t image, int32_t which, double *values) {
@@ -126,6 +134,8 @@ static int make(const register_work *work, int64_t image, double *a, double *b, 
     if (exit_status == CLI_DONE) exit_status = get(work, image, SKG_REGISTRATION_PICTURE_BEFORE, a);
     if (exit_status == CLI_DONE) exit_status = difference_png(view, a, most, &pictures[REGISTER_BEFORE]);
     if (exit_status == CLI_DONE) exit_status = difference_png(view, b, most, &pictures[REGISTER_AFTER]);
+    if (exit_status == CLI_DONE) exit_status = get(work, image, SKG_REGISTRATION_PICTURE_STRUCTURE, a);
+    if (exit_status == CLI_DONE) exit_status = structure_png(view, a, &pictures[REGISTER_STRUCTURE]);
     return exit_status;
 }
 

@@ -85,6 +85,11 @@ json_t *register_json(const register_work *work) {
                    {"energy_kev", r->energy_kev}};
     for (size_t k = 0; k < sizeof numbers / sizeof *numbers; k++)
         json_object_set_new(object, numbers[k].name, cli_json_number(numbers[k].value));
+    json_t *worst = json_object();
+    json_object_set_new(worst, "view", json_integer(r->worst_image));
+    json_object_set_new(worst, "row", json_integer(r->worst_row));
+    json_object_set_new(worst, "column", json_integer(r->worst_column));
+    json_object_set_new(object, "worst", worst);
     json_object_set_new(object, "evaluations", json_integer(evaluations));
     json_object_set_new(object, "jacobians", json_integer(jacobians));
     json_object_set_new(object, "seconds", cli_json_number(seconds));

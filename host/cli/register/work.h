@@ -57,8 +57,17 @@ void register_print(const register_work *work);
 typedef struct {
     unsigned char *png;
     size_t size;
+    double most; /* of a difference: what the full colour means */
 } register_png;
-enum { REGISTER_FIXED, REGISTER_MODEL, REGISTER_CONTOUR, REGISTER_BEFORE, REGISTER_AFTER, REGISTER_PICTURES };
+enum {
+    REGISTER_FIXED,
+    REGISTER_MODEL,
+    REGISTER_CONTOUR,
+    REGISTER_BEFORE,
+    REGISTER_AFTER,
+    REGISTER_STRUCTURE, /* without a PNG if there is none */
+    REGISTER_PICTURES
+};
 int register_pictures(const register_work *work, int64_t image, register_png pictures[REGISTER_PICTURES]);
 
 /* Writes one page that loads nothing. */

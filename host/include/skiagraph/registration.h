@@ -11,10 +11,14 @@
  *     method    Levenberg and Marquardt on the derivatives of the images (gradient.h), with H. B. Nielsen's damping
  *               (IMM-REP-1999-05, Technical University of Denmark), on a pyramid of images whose pixels are means of 2, 4, ...
  *               pixels as transmission; the model's rays are means as well. Steps of more than 15 mm are cut
- *     model     of SKG_REGISTRATION_LOSS_LSQ: -ln(exp(-(b + (1 + g) r + P c)) + P d), where b is the attenuation of the parts that move, r
- *               that of the rest, which is rendered once, and P are polynomials over the image, of order 2, at the finest level of several
- *               of order 4. c takes what adds to the attenuation (tissue that the scene lacks, another gain), d what adds to the
- *               transmission (scatter). g, c and d are found with the pose. 1e-4 is added to the transmissions of model and radiograph
+ *     model     of SKG_REGISTRATION_LOSS_LSQ: -ln(exp(-(b + h (b - a) + r + sum of g s + P c)) + P d), where b is the attenuation of the
+ *               parts that move with what they lie inside, a that of the latter alone, r that of the rest, and s are shares of what does
+ *               not move, all rendered once: what the parts lie inside, with volumes of cells; light, soft and dense materials (by
+ *               their attenuation: below 0.7 of water's, above 1.08 of it). P are polynomials over the image, of order 2, at the finest
+ *               level of several of order 4. c takes what adds to the attenuation (tissue that the scene lacks, another gain), d what
+ *               adds to the transmission (scatter), g and h other densities and energies. They are found with the pose, h only where
+ *               it explains more than noise does (25 of its squares for each radiograph). Where source or detector
+ *               are free, g and h are 0. 1e-4 is added to the transmissions of model and radiograph
  *     energy    one: that of the spectrum, or the one at which the scene attenuates as it does with the spectrum
  *     detector  noise, blur, steps, scatter, jaws, focal spot, heel, bow-tie filter and grid of the plan's options are left out
  *
@@ -211,6 +215,12 @@ typedef struct {
     double seconds;
     /** Number of free directions, whose combinations skg_registration_direction_get tells. */
     int64_t directions;
+    /** Where the mean square of what is left is largest, among cells of an eighth of a radiograph: number of the radiograph. */
+    int64_t worst_image;
+    /** Middle of this cell. */
+    int64_t worst_row;
+    /** Middle of this cell. */
+    int64_t worst_column;
 } skg_registration_result;
 
 SKG_INIT(skg_registration_result)
@@ -273,7 +283,11 @@ enum skg_registration_picture {
     /** Attenuation of the parts alone at the start. */
     SKG_REGISTRATION_PICTURE_SHADOW_BEFORE = 4,
     /** The same at the end. */
-    SKG_REGISTRATION_PICTURE_SHADOW_AFTER = 5
+    SKG_REGISTRATION_PICTURE_SHADOW_AFTER = 5,
+    /** Where the model lacks something: SKG_REGISTRATION_PICTURE_AFTER, averaged over the pixels that count among those at most an eightieth
+     * of the radiograph's shorter side away, along rows and along columns; 0 where noise alone may be the reason (three standard
+     * deviations). */
+    SKG_REGISTRATION_PICTURE_STRUCTURE = 6
 };
 
 /** Gets a picture of a radiograph, after skg_registration_run.
