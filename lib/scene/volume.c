@@ -138,7 +138,8 @@ static skg_status look(const making *m, int *whole) {
                             "%s: the value of the cell in column %" PRId64 ", row %" PRId64 ", slice %" PRId64
                             " is %g; %s",
                             v->name, at % columns, at / columns % rows, at / columns / rows, value,
-                            isfinite(value) ? "densities and attenuation coefficients are at least 0"
+                            isfinite(value) ? "densities and attenuation coefficients are at least 0: set "
+                                              "what noise has taken below it to 0"
                                             : "values have to be finite");
         v->low = fmin(v->low, value), v->high = fmax(v->high, value);
         *whole &= floor(value) == value;
