@@ -37,14 +37,14 @@ static size_t read_file(const char *name, char *to) {
 
 /* mpirun with the ranks' environment; it replaces the shell, so that the ranks are its children. Under ASan leaks are not
  * reported there: what Open MPI's plugins keep has no name any more when they are unloaded, so none can be suppressed. */
-static pid_t start(const char *name) {
+static pid_t start(const char *words) {
     char line[2048];
     snprintf(
         line, sizeof line,
         "cd %s && export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 POCL_MAX_PTHREAD_COUNT=1 "
         "ASAN_OPTIONS=$ASAN_OPTIONS:detect_leaks=0 && "
-        "exec %s --oversubscribe -n 2 %s scan scene.json %s -o %s --quiet >.said 2>.complained </dev/null",
-        folder, SKG_MPIRUN, SKG_COMMAND, scan, name);
+        "exec %s --oversubscribe -n 2 %s scan scene.json %s %s >.said 2>.complained </dev/null",
+        folder, SKG_MPIRUN, SKG_COMMAND, scan, words);
     fflush(NULL);
     const pid_t child = fork();
     ck_assert_int_ge(child, 0);
@@ -101,7 +101,7 @@ static void end_job(pid_t child) {
 
 START_TEST(two_ranks_make_the_scan_of_one) {
     ck_run(0, "scan scene.json %s -o whole.mha --quiet", scan);
-    const int status = wait_for(start("shared.mha"));
+    const int status = wait_for(start("-o shared.mha --quiet"));
     ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "mpirun: %d", status);
     const size_t size = read_file("whole.mha", before);
     ck_assert_uint_eq(read_file("shared.mha", bytes), size);
@@ -116,14 +116,14 @@ START_TEST(a_killed_rank_loses_nothing) {
     uint64_t state = 5;
     ck_run(0, "scan scene.json %s -o whole.mha --quiet", scan);
     for (int kills = 0; kills < KILLS; kills++) {
-        const pid_t child = start("shared.mha");
+        const pid_t child = start("-o shared.mha --quiet");
         const struct timespec pause = {.tv_nsec = (long)draw(&state, 3e8, 9e8)};
         nanosleep(&pause, NULL);
         const pid_t rank = find_rank(child);
         if (rank > 0) kill(rank, SIGKILL);
         end_job(child);
     }
-    const int status = wait_for(start("shared.mha"));
+    const int status = wait_for(start("-o shared.mha --quiet"));
     ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "mpirun: %d", status);
     const size_t size = read_file("whole.mha", before);
     ck_assert_uint_eq(read_file("shared.mha", bytes), size);
@@ -131,10 +131,29 @@ START_TEST(a_killed_rank_loses_nothing) {
 }
 END_TEST
 
+/* Clipped pixels of all ranks are one sum, and one warning. */
+START_TEST(two_ranks_warn_once) {
+    static const char bright[] = "--set 'Detector.GreyValues={\"Full\":100000}'";
+    static const char sentence[] = " pixels of the projections are at 65535";
+    char words[200];
+    ck_run(0, "scan scene.json %s %s -o alone.mha", scan, bright);
+    const char *alone = strstr(complained, "warning: ");
+    ck_assert_msg(alone && strstr(alone, sentence), "%s", complained);
+    snprintf(words, sizeof words, "%s -o shared.mha", bright);
+    const int status = wait_for(start(words));
+    ck_assert_msg(WIFEXITED(status) && WEXITSTATUS(status) == 0, "mpirun: %d", status);
+    bytes[read_file(".complained", bytes)] = '\0';
+    const char *first = strstr(bytes, "warning: "), *said_at = first ? strstr(first, sentence) : NULL;
+    ck_assert_msg(said_at && !strstr(said_at + 1, sentence), "%s", bytes);
+    ck_assert_int_eq(strtol(first + 9, NULL, 10), strtol(alone + 9, NULL, 10));
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
     tcase_add_test(tests, two_ranks_make_the_scan_of_one);
     tcase_add_test(tests, a_killed_rank_loses_nothing);
+    tcase_add_test(tests, two_ranks_warn_once);
 }
 
 SKG_SUITE_MAIN("mpi", add_tests)

@@ -225,7 +225,7 @@ int acquisition_run(const cli_arguments *arguments, cli_acquisition *a) {
         a->options.progress = cli_progress();
     }
     const int exit_status = a->ranks.count > 1 ? shared_run(arguments, a) : run_alone(a);
-    grey_warn(a);
+    if (a->ranks.rank == 0) grey_warn(a);
     if (exit_status != CLI_DONE || a->ranks.rank > 0 || a->is_stopped) return exit_status;
     const skg_status status = skg_scan_file_finish(a->file);
     if (status != SKG_OK) return cli_fail(status);

@@ -114,6 +114,7 @@ int shared_run(const cli_arguments *arguments, cli_acquisition *a) {
     }
     a->seconds = 1e-3 * (cli_now_ms() - start);
     a->computed = ranks_sum(&a->ranks, a->computed);
+    a->clipped = ranks_sum(&a->ranks, a->clipped);
     free(list);
     return exit_status;
 }
