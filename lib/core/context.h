@@ -25,6 +25,7 @@ struct skg_context {
     skg_error_handler error;
     skg_mailbox *driver; /* messages of the OpenCL driver's threads, and of the library's own */
     skg_turn *turn;
+    skg_pool *jobs; /* whose handles another thread may cancel when they are over */
     struct skg_device *device;
     atomic_int interrupted; /* 1: what a plan computes while it is made is to end */
     struct skg_job *held;   /* the job some of whose frames are not enqueued yet (lib/frame); NULL: none */

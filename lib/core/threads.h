@@ -27,6 +27,20 @@ void skg_turn_stop(skg_turn *turn, int32_t *stop);
 /* 0: this process is a child by fork of the one that made the turn. */
 int skg_turn_is_here(const skg_turn *turn);
 
+/* --- Blocks of one size, for objects that other threads may still name when they are gone.
+ *
+ * A pool lives until its last owner and every block is back; whoever takes a block retains it. What a block held is still there when
+ * it is taken again: 0 the first time. */
+typedef struct skg_pool skg_pool;
+
+skg_status skg_pool_create(skg_pool **pool);
+skg_pool *skg_pool_retain(skg_pool *pool);
+void skg_pool_release(skg_pool **pool);
+skg_status skg_pool_take(skg_pool *pool, size_t size, const char *what, void *pointer_address);
+void skg_pool_give(skg_pool *pool, void *bytes);
+
+/* --- Work beside the calls. */
+
 /* Work of a thread that takes turns with the calls of the program. */
 typedef struct {
     /* Does what can be done now. Returns what to wait for; NULL: nothing is left to do. */

@@ -165,9 +165,11 @@ static skg_status new_context(skg_context **context) {
     made->process = (int64_t)getpid();
     skg_status status = skg_alloc(1, sizeof *made->device, "device", &made->device);
     if (status == SKG_OK) status = skg_turn_create(&made->turn);
+    if (status == SKG_OK) status = skg_pool_create(&made->jobs);
     if (status == SKG_OK) status = skg_mailbox_create(&made->driver);
     if (status != SKG_OK) {
         skg_turn_release(&made->turn);
+        skg_pool_release(&made->jobs);
         skg_free(&made->device);
         skg_free(&made);
     }
@@ -306,6 +308,7 @@ void skg_context_release(skg_context **context) {
     skg_free(&device->store);
     skg_mailbox_release(&last->driver);
     skg_turn_release(&last->turn);
+    skg_pool_release(&last->jobs);
     skg_free(&last->device);
     skg_free(&last);
 }

@@ -2,6 +2,17 @@
 #include "frame/jobs.h"
 
 #include <inttypes.h>
+#include <stddef.h>
+#include <string.h>
+
+/* The memory of a job, all 0. */
+static skg_status take_shell(const skg_context *context, skg_job **job) {
+    SKG_TRY(skg_pool_take(context->jobs, sizeof **job, "job", job));
+    memset((char *)*job + offsetof(skg_job, pool), 0, sizeof **job - offsetof(skg_job, pool));
+    atomic_store(&(*job)->cancelled, 0);
+    (*job)->pool = skg_pool_retain(context->jobs);
+    return SKG_OK;
+}
 
 skg_status skg_job_create(const char *call, const skg_job_kind *kind, const skg_recipe *recipe,
                           skg_machine *machine, skg_outcome *outcome, int64_t count, int64_t output_count,
@@ -12,7 +23,7 @@ skg_status skg_job_create(const char *call, const skg_job_kind *kind, const skg_
         return skg_fail(SKG_ERR_ARGUMENT, "%" PRId64 " frames were asked for; at least one", count);
     if (output_count < 1 || !outputs)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: there is no output to put images into", call);
-    SKG_TRY(skg_alloc(1, sizeof *made, "job", &made));
+    SKG_TRY(take_shell(machine->context, &made));
     skg_results *results = &made->results;
     atomic_init(&made->references, 1);
     made->kind = kind;
@@ -88,7 +99,9 @@ void skg_job_release(skg_job **job) {
         skg_job_empty(left);
         (void)skg_call_end(begun, SKG_OK);
     }
-    skg_free(&left);
+    skg_pool *pool = left->pool;
+    skg_pool_give(pool, left);
+    skg_pool_release(&pool);
 }
 
 void skg_job_end(skg_job **job) {

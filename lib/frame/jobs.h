@@ -36,6 +36,9 @@ typedef struct {
 } skg_job_kind;
 
 struct skg_job {
+    atomic_int
+        cancelled;      /* the only member that is written when the job is gone, by who cancels it too late */
+    skg_pool *pool;     /* retained: it has the memory of this */
     skg_plan *plan;     /* retained; NULL: the caller keeps machine and outcome */
     skg_recipe *recipe; /* retained: that of the submission, or of then.scene */
     skg_machine *machine;
@@ -62,8 +65,8 @@ struct skg_job {
     int32_t together;    /* its small frames are drawn together, so many side by side; 0: each by itself */
     int32_t uncounted;   /* 1: the count of negative exponents is 0 */
     int32_t followed;    /* 1: that count is of several frames, of which the last is not the job's */
-    atomic_int cancelled, references;
-    atomic_int over;    /* 1: the job was waited for, and nothing of it is left but this and the two above */
+    atomic_int references;
+    atomic_int over; /* 1: the job was waited for, and nothing of it is left but what its references need */
     skg_status failure; /* of a frame that was to be enqueued after the submission */
     char *sentence;     /* of the failure */
 };

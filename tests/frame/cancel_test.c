@@ -153,6 +153,55 @@ START_TEST(another_thread_cancels_while_one_waits) {
 }
 END_TEST
 
+static skg_job *submit_one(void) {
+    const skg_output output = jobs_output(jobs_pixels);
+    skg_job *job = NULL;
+    ck_skg(skg_plan_submit(jobs_plan, 1, NULL, &output, &job));
+    return job;
+}
+
+static _Atomic(skg_job *) current;
+static atomic_int ends;
+
+/* Without a reference, as programs do: most cancels come when the job is gone. */
+static void *cancel_what_is_there(void *unused) {
+    (void)unused;
+    while (!atomic_load(&ends)) {
+        skg_job *job = atomic_load(&current);
+        if (job && skg_job_cancel(job) != SKG_OK) return &current;
+    }
+    return NULL;
+}
+
+/* A handle whose job is gone may still be cancelled: the memory behind it is that of a job, or of none, and the next job begins anew. */
+START_TEST(a_thread_cancels_too_late) {
+    pthread_t thread;
+    void *failed = NULL;
+    int64_t before = 0, after = 0;
+    skg_job *job = submit_one();
+    ck_skg(skg_job_wait(&job));
+    ck_skg(skg_allocation_count(&before));
+    atomic_store(&ends, 0);
+    ck_assert_int_eq(pthread_create(&thread, NULL, cancel_what_is_there, NULL), 0);
+    for (int k = 0; k < 20 * TRIES; k++) {
+        job = submit_one();
+        atomic_store(&current, job);
+        const skg_status status = skg_job_wait(&job);
+        ck_assert(status == SKG_OK || status == SKG_ERR_CANCELLED);
+    }
+    atomic_store(&ends, 1);
+    ck_assert_int_eq(pthread_join(thread, &failed), 0);
+    ck_assert_ptr_null(failed);
+    job = submit_one();
+    ck_skg(skg_job_wait(&job));
+    ck_skg(skg_job_cancel(atomic_load(&current)));
+    job = submit_one();
+    ck_skg(skg_job_wait(&job));
+    ck_skg(skg_allocation_count(&after));
+    ck_assert_int_eq(before, after);
+}
+END_TEST
+
 /* However late it is cancelled: no frame is in place, nothing was written, and its steps were counted. */
 START_TEST(cancelled_within_a_frame) {
     if (!jobs_hold_frames()) return;
@@ -223,6 +272,7 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, cancelled_in_the_middle, 0, 2);
     tcase_add_test(tests, cancelled_after_the_end);
     tcase_add_test(tests, another_thread_cancels_while_one_waits);
+    tcase_add_test(tests, a_thread_cancels_too_late);
     tcase_add_loop_test(tests, cancelled_within_a_frame, 0, 2);
     tcase_add_test(tests, a_plan_that_is_made_is_interrupted);
 }

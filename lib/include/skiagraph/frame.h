@@ -192,7 +192,8 @@ SKG_API skg_status skg_job_progress(skg_job *job, int64_t *done, int64_t *total)
 
 /** Cancels a job: frames, and steps of a frame, that the device was not given yet are not made. Those that it was given cannot be taken back;
  * skg_job_wait waits for them. Does nothing if the device has them all, or if the job was waited for. Other jobs are not touched.
- * Any thread, and any handler of a signal, may call it while it holds a reference: a window's thread retains the job that another waits for. */
+ * Any thread, and any handler of a signal, may call it while it holds a reference: a window's thread retains the job that another waits
+ * for. Without one it is no error as long as the context lives, but a younger job may have the same handle, which is then cancelled. */
 SKG_API skg_status skg_job_cancel(skg_job *job);
 
 /** Adds a reference to a job, for another thread that may cancel it. Any thread that holds a reference may call it. */
