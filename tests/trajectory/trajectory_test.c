@@ -261,15 +261,18 @@ START_TEST(a_short_scan) {
 }
 END_TEST
 
-/* A circle that is written as a table and read again has the same bits in every view. */
+/* A circle that is written as a table and read again has the same bits in every view, and the kind of beam: a reconstruction knows
+ * nothing but the table. _i: enum skg_projection */
 START_TEST(a_table_is_read_as_it_was_written) {
     skg_scan *table = NULL;
+    const skg_view any = view;
+    view.projection = (int32_t)_i;
     options.projections = 33;
     options.step_rad = 0.1;
     options.centre[0] = 1.0 / 3;
     ck_skg(skg_scan_create(&view, &options, &scan));
     ck_skg(skg_scan_geometry_save(scan, path));
-    ck_skg(skg_scan_load_table(&view, NULL, path, &table));
+    ck_skg(skg_scan_load_table(&any, NULL, path, &table));
     int64_t count = 0;
     ck_skg(skg_scan_projection_count(table, &count));
     ck_assert_int_eq(count, 33);
@@ -527,7 +530,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, times);
     tcase_add_test(tests, positions_between_projections);
     tcase_add_test(tests, a_short_scan);
-    tcase_add_test(tests, a_table_is_read_as_it_was_written);
+    tcase_add_loop_test(tests, a_table_is_read_as_it_was_written, 0, 3);
     tcase_add_test(tests, tables_in_other_hands);
     tcase_add_test(tests, nerf_sees_points_where_we_do);
     tcase_add_test(tests, rtk_projects_points_where_we_do);

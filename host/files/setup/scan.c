@@ -189,6 +189,20 @@ static skg_status check_steps(const skg_setup *setup, const skg_json_node *node,
         wanted);
 }
 
+/* A table says so if its beam is parallel. */
+static skg_status check_beam(const skg_view *own, const char *path, const skg_scan *scan) {
+    skg_view of_table;
+    skg_view_init(&of_table);
+    SKG_TRY(skg_scan_view_get(scan, 0, &of_table));
+    if (of_table.projection == own->projection) return SKG_OK;
+    return skg_fail(SKG_ERR_SCENE, "%s: the poses are of a parallel beam%s, which the Source is not; %s",
+                    path,
+                    of_table.projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY ? " from infinity" : "",
+                    of_table.projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY
+                        ? "give it the Shape ParallelBeam and a Direction"
+                        : "give it the Shape ParallelBeam and a Position");
+}
+
 /* A table of poses: a file, or the rows themselves. */
 static skg_status make_table(skg_setup_reader *reader, const skg_json_node *node,
                              const skg_scan_options *options, skg_scan **scan) {
@@ -200,6 +214,7 @@ static skg_status make_table(skg_setup_reader *reader, const skg_json_node *node
         SKG_TRY(skg_json_text(node, &text));
         SKG_TRY(skg_setup_find_file(reader, text, &path));
         SKG_TRY(skg_json_at(node, skg_scan_load_table(view, options, path, scan)));
+        SKG_TRY(skg_json_at(node, check_beam(view, path, *scan)));
         return check_steps(reader->setup, node, *scan);
     }
     skg_status status = skg_setup_read_rows(node, 12, "rows of 12 numbers", &count, &poses);

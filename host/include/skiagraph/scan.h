@@ -106,7 +106,9 @@ SKG_API skg_status skg_scan_create_table(const skg_view *view, const skg_scan_op
 /** Reads a table of poses from a text file: a line for each projection with the 12 numbers of
  * skg_scan_create_table, separated by commas, semicolons or blanks. Empty lines, lines that begin with # and
  * headings are skipped. This is also the layout of ASTRA's cone_vec. A 13th number, the same in every line, is the radius of a
- * curved detector, instead of that of the view (cyl_cone_vec of ASTRA).
+ * curved detector, instead of that of the view (cyl_cone_vec of ASTRA). A comment before them that begins with "parallel beam", as
+ * skg_scan_geometry_save writes it, makes the projection parallel whatever that of the view; with "from infinity" the first three
+ * numbers are the direction of the rays (parallel3d_vec of ASTRA).
  *
  *     errors   SKG_ERR_FILE, SKG_ERR_FORMAT with the line, and as of skg_scan_create_table */
 SKG_API skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *options,

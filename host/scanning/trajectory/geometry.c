@@ -7,9 +7,14 @@
 
 enum { NOTE_LENGTH = 1024 };
 
+const char *const skg_scan_table_beams[] = {[SKG_PROJECTION_POINT] = "source",
+                                            [SKG_PROJECTION_PARALLEL] = "parallel beam: source",
+                                            [SKG_PROJECTION_PARALLEL_FROM_INFINITY] =
+                                                "parallel beam from infinity: direction"};
+
 static skg_status write_table(const skg_scan *scan, FILE *stream) {
-    fprintf(stream, "# source x y z, detector centre x y z, column step x y z, row step x y z%s (mm)\n",
-            scan->view.radius > 0 ? ", radius" : "");
+    fprintf(stream, "# %s x y z, detector centre x y z, column step x y z, row step x y z%s (mm)\n",
+            skg_scan_table_beams[scan->view.projection], scan->view.radius > 0 ? ", radius" : "");
     for (int64_t k = 0; k < scan->options.projections; k++) {
         skg_view view;
         skg_view_init(&view);

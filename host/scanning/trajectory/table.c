@@ -2,6 +2,7 @@
 #include "core/files.h"
 #include "core/text.h"
 #include "trajectory/types.h"
+#include "trajectory/writers.h"
 
 #include <ctype.h>
 #include <errno.h>
@@ -15,6 +16,7 @@ typedef struct {
     double *poses;
     double radius; /* of a curved detector, which each line gives then */
     int64_t radii; /* lines that give it */
+    int32_t beam;  /* enum skg_projection of a parallel beam that the first line names; -1: none */
 } table;
 
 static int is_skipped(const table *t, const char *text) {
@@ -43,8 +45,19 @@ static skg_status read_radius(table *t, const char **text) {
     return SKG_OK;
 }
 
+/* The kind of beam, as skg_scan_geometry_save writes it into a comment before the poses. */
+static void read_beam(table *t, const char *comment) {
+    for (int32_t k = SKG_PROJECTION_PARALLEL_FROM_INFINITY; k > SKG_PROJECTION_POINT; k--) {
+        const char *words = skg_scan_table_beams[k];
+        if (strncmp(comment, words, strlen(words)) != 0) continue;
+        t->beam = k;
+        return;
+    }
+}
+
 static skg_status read_line(table *t, const char *text) {
     text = skip(text, "");
+    if (*text == '#' && t->count == 0) read_beam(t, skip(text + 1, ""));
     if (is_skipped(t, text)) return SKG_OK;
     if (t->count == t->capacity) {
         t->capacity = t->capacity ? 2 * t->capacity : 256;
@@ -84,7 +97,7 @@ static skg_status read_lines(table *t, FILE *file) {
 skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *options, const char *path,
                                skg_scan **scan) {
     SKG_PLAIN;
-    table t = {.path = path};
+    table t = {.path = path, .beam = -1};
     SKG_NEEDS(scan);
     *scan = NULL;
     SKG_NEEDS(path);
@@ -96,6 +109,7 @@ skg_status skg_scan_load_table(const skg_view *view, const skg_scan_options *opt
     skg_view_init(&ours);
     if (status == SKG_OK) status = skg_struct_read(view, "skg_view", &ours, sizeof ours);
     if (t.radii > 0) ours.radius = t.radius;
+    if (t.beam >= 0) ours.projection = t.beam;
     if (status == SKG_OK) status = skg_scan_create_table(&ours, options, t.count, t.poses, scan);
     skg_free(&t.poses);
     return status;
