@@ -23,6 +23,24 @@ skg_status skg_material_create_element(int32_t z, skg_material **material) {
     return skg_material_compose(symbol, NULL, 1, &part, skg_elements[z].density, material);
 }
 
+/* Molecules of one element. Another formula of one element, such as "SS304" or "C45", is rather the name of an alloy. */
+static const struct {
+    int32_t z;
+    double atoms;
+} molecules[] = {{1, 2},  {7, 2},  {8, 2},  {8, 3},  {9, 2},  {15, 4}, {16, 8},
+                 {17, 2}, {34, 8}, {35, 2}, {53, 2}, {6, 60}, {6, 70}};
+
+static skg_status check_molecule(const char *formula, int64_t count, int32_t z, double atoms) {
+    if (count != 1 || atoms == 1) return SKG_OK;
+    for (size_t i = 0; i < sizeof molecules / sizeof *molecules; i++)
+        if (molecules[i].z == z && molecules[i].atoms == atoms) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_MATERIAL,
+        "\"%s\" is ambiguous: as a formula it is the element %s alone; write %s for that, and an alloy by its name in "
+        "the tables (such as 304, 316L, Ti-6Al-4V) or by its parts by mass (weight:Fe98.5C0.5Mn1)",
+        formula, skg_elements[z].symbol, skg_elements[z].symbol);
+}
+
 skg_status skg_material_create_formula(const char *formula, double density, skg_material **material) {
     SKG_PLAIN;
     skg_mass_fraction parts[SKG_LAST_ELEMENT];
@@ -33,6 +51,7 @@ skg_status skg_material_create_formula(const char *formula, double density, skg_
     *material = NULL;
     SKG_TRY(check_density(formula, density));
     SKG_TRY(skg_read_formula(formula, 0, &count, parts, &sum));
+    SKG_TRY(check_molecule(formula, count, parts[0].z, sum));
     const skg_mixture_row *known = skg_find_mixture(formula);
     if (!(density > 0) && count == 1) density = skg_elements[parts[0].z].density;
     if (!(density > 0) && known && !skg_lacks_hyphens(known, formula)) density = known->density;

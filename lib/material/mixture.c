@@ -88,17 +88,21 @@ int skg_lacks_hyphens(const skg_mixture_row *row, const char *text) {
     return 0;
 }
 
+/* Fewer letters stand for a word only if they are all of it: "Cf" is no carbon fibre, "CAS" no casting alloy. */
+enum { SHORTEST_BEGINNING = 4 };
+
 /* Whether the text begins with these letters. Hyphens in the text are skipped: "icru44" begins "ICRU-44". */
 static int begins(const char *text, const char *word, size_t length) {
+    const int is_short = length < SHORTEST_BEGINNING;
     for (; length > 0; text++) {
         if (*text == '-') continue;
         if (tolower((unsigned char)*text) != tolower((unsigned char)*word)) return 0;
         word++, length--;
     }
-    return 1;
+    return !is_short || !isalnum((unsigned char)*text);
 }
 
-/* Whether every word of the query begins a word of the names. */
+/* Whether every word of the query is a word of the names, or begins one. */
 static int has_words(const char *names, const char *query) {
     for (const char *word = query; *word;) {
         while (*word && !isalnum((unsigned char)*word)) word++;

@@ -93,6 +93,48 @@ static skg_status from_mass(const char *text, skg_material **material) {
     return skg_material_compose(text, "parts by mass", count, parts, density, material);
 }
 
+/* The digits below the line (U+2080 to U+2089) are written on it. */
+static int lift_digits(const char *text, char plain[SKG_LONGEST_NAME]) {
+    size_t length = 0;
+    int found = 0;
+    for (; *text && length + 1 < SKG_LONGEST_NAME; text++) {
+        const unsigned char *c = (const unsigned char *)text;
+        const int is_below = c[0] == 0xE2 && c[1] == 0x82 && c[2] >= 0x80 && c[2] <= 0x89;
+        plain[length++] = is_below ? (char)('0' + (c[2] - 0x80)) : *text;
+        if (is_below) text += 2, found = 1;
+    }
+    plain[length] = '\0';
+    return found && !*text;
+}
+
+/* Letters that are a formula to a program and a plastic to everybody else. */
+static const char *const plastics[][2] = {{"PB", "polybutylene"},   {"PC", "polycarbonate"},
+                                          {"PF", "phenolic resin"}, {"PI", "polyimide"},
+                                          {"PS", "polystyrene"},    {"PU", "polyurethane"}};
+
+/* What reads as a formula and is hardly ever meant so. */
+static skg_status check_meaning(const char *text) {
+    const char *bracket = strrchr(text, '(');
+    const size_t length = strlen(text);
+    for (size_t i = 0; i < sizeof plastics / sizeof *plastics; i++)
+        if (strcmp(text, plastics[i][0]) == 0)
+            return skg_fail(
+                SKG_ERR_MATERIAL,
+                "\"%s\" is ambiguous: a formula of two elements, or %s; write that name, its formula with a density, or "
+                "[\"Compound\", \"%s1\"]",
+                text, plastics[i][1], text);
+    if (!bracket || bracket == text || text[length - 1] != ')' || length - (size_t)(bracket - text) > 4)
+        return SKG_OK;
+    char symbol[4] = "";
+    memcpy(symbol, bracket + 1, length - (size_t)(bracket - text) - 2);
+    if (!skg_find_element(symbol)) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_MATERIAL,
+        "\"%s\" is ambiguous: as a formula it has a whole atom of %s for each %.*s; leave a dopant out (%.*s), or give "
+        "it a number, as in %s0.001",
+        text, symbol, (int)(bracket - text), text, (int)(bracket - text), text, text);
+}
+
 /* The text behind "key:"; NULL if the text does not begin with it. */
 static const char *after(const char *text, const char *key) {
     size_t length = strlen(key);
@@ -111,12 +153,13 @@ static skg_status number_of(const char *text, const char *digits, double *value)
 
 skg_status skg_material_create_named(const char *text, skg_material **material) {
     SKG_PLAIN;
-    char list[SKG_NAME_SUGGESTIONS * SKG_LONGEST_NAME];
+    char list[SKG_NAME_SUGGESTIONS * SKG_LONGEST_NAME], lifted[SKG_LONGEST_NAME];
     const char *rest;
     double value = 0;
     SKG_NEEDS(material);
     *material = NULL;
     if (!text || !*text) return skg_fail(SKG_ERR_MATERIAL, "a material without a name; give H2O, Fe, HU:52");
+    if (lift_digits(text, lifted)) text = lifted;
     if ((rest = after(text, "weight"))) return from_mass(rest, material);
     if ((rest = after(text, "hu"))) {
         SKG_TRY(number_of(text, rest, &value));
@@ -142,6 +185,7 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
     const skg_mixture_row *row = skg_find_mixture(text);
     if (row) SKG_TRY(check_alloy(text, row));
     if (row) return from_row(row, material);
+    SKG_TRY(check_meaning(text));
     skg_status status = from_formula(text, material);
     if (status == SKG_OK || (status != SKG_ERR_MATERIAL) || strstr(skg_last_error(), "weight:") ||
         strstr(skg_last_error(), "is ambiguous"))

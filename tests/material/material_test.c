@@ -291,6 +291,42 @@ START_TEST(names_that_are_not_found) {
 }
 END_TEST
 
+/* Texts that once were a material that nobody meant: an element for a steel, the beginning of another name, a formula for a plastic, a
+ * whole atom of a dopant. */
+START_TEST(names_that_are_not_guessed) {
+    static const char *const texts[][2] = {{"C45", "is the element C alone"},
+                                           {"S355", "is the element S alone"},
+                                           {"In625", "is the element In alone"},
+                                           {"SS409", "is the element S alone"},
+                                           {"Al6082", "is the element Al alone"},
+                                           {"Cf", "no material that is known"},
+                                           {"CAS", "no material that is known"},
+                                           {"cs", "no material that is known"},
+                                           {"Wo", "no material that is known"},
+                                           {"PC", "polycarbonate"},
+                                           {"PU", "polyurethane"},
+                                           {"NaI(Tl)", "whole atom of Tl"},
+                                           {"CaCO\xE2\x82\x87x", "no material that is known"}};
+    static const char *const same[][2] = {{"TiO\xE2\x82\x82", "TiO2"},
+                                          {"CO\xE2\x82\x82", "CO2"},
+                                          {"SS304", "Stainless steel 304"},
+                                          {"Ti64", "Ti-6Al-4V"},
+                                          {"Ca(OH)2", "CaO2H2"}};
+    static const char *const molecules[] = {"H2", "N2", "O2", "O3", "Cl2", "S8", "Fe", "C60"};
+    skg_material *material = NULL;
+    for (size_t i = 0; i < sizeof texts / sizeof *texts; i++)
+        ck_skg_fails(skg_material_create_named(texts[i][0], &material), SKG_ERR_MATERIAL, texts[i][1]);
+    ck_skg_fails(skg_material_create_formula("SS304", 8, &material), SKG_ERR_MATERIAL,
+                 "is the element S alone");
+    for (size_t i = 0; i < sizeof same / sizeof *same; i++)
+        ck_assert_double_eq(mu_rho(same[i][0], 60), mu_rho(same[i][1], 60));
+    for (size_t i = 0; i < sizeof molecules / sizeof *molecules; i++) {
+        material = named(molecules[i]);
+        skg_material_release(&material);
+    }
+}
+END_TEST
+
 /* Alloys, plastics and scintillators by the names that people write, with their densities in g/cm3. */
 START_TEST(names_of_engineering) {
     static const struct {
@@ -580,6 +616,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, solutions);
     tcase_add_test(tests, materials_of_practice);
     tcase_add_test(tests, names_that_are_not_found);
+    tcase_add_test(tests, names_that_are_not_guessed);
     tcase_add_test(tests, names_of_engineering);
     tcase_add_test(tests, alloys_without_hyphens_are_refused);
     tcase_add_test(tests, density_unknown_or_another);
