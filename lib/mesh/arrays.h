@@ -27,6 +27,7 @@ typedef struct {
     int64_t not_printed; /* objects of a 3MF file that support others */
     skg_mesh_piece *pieces;
     int64_t piece_count, piece_capacity;
+    int64_t unused;   /* vertices of no triangle, which were left out */
     int64_t left_out; /* points and lines that a file has, and a mesh has not */
 } skg_mesh_arrays;
 
@@ -50,7 +51,10 @@ skg_status skg_mesh_begin_group(skg_mesh_arrays *arrays, const char *name);
 /* The name by which a piece is listed: its group's, otherwise its object's; NULL: none. */
 const char *skg_mesh_piece_name(const skg_mesh_piece *piece);
 
-/* Keeps the triangles of the pieces whose object or group has this name, and the vertices that they use. */
+/* Leaves out the vertices that no triangle uses, which would count in bounds, and counts them; the others keep their order. */
+skg_status skg_mesh_drop_unused(skg_mesh_arrays *arrays, const char *path);
+
+/* Keeps the triangles of the pieces whose object or group has this name. */
 skg_status skg_mesh_keep_group(skg_mesh_arrays *arrays, const char *path, const char *name);
 
 #endif

@@ -117,6 +117,31 @@ void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh) {
                 "%s: inverted as a whole (its triangles face inward); turned outward", mesh->name);
 }
 
+/* Vertices of no triangle keep their numbers, so that arrays of positions fit; where they stretch the bounds, these are not the body's. */
+static skg_status warn_unused(const skg_context *context, const skg_mesh *mesh) {
+    uint8_t *used = NULL;
+    int64_t unused = 0, outside = 0;
+    float low[3] = {FLT_MAX, FLT_MAX, FLT_MAX}, high[3] = {-FLT_MAX, -FLT_MAX, -FLT_MAX};
+    SKG_TRY(skg_alloc(mesh->vertices, sizeof *used, mesh->name, &used));
+    for (int64_t c = 0; c < 3 * mesh->triangles; c++) used[mesh->corners[c]] = 1;
+    for (int64_t v = 0; v < mesh->vertices; v++)
+        for (int k = 0; k < 3; k++) {
+            const float at = mesh->offsets[3 * v + k];
+            unused += k == 0 && !used[v];
+            if (used[v]) low[k] = fminf(low[k], at), high[k] = fmaxf(high[k], at);
+        }
+    skg_free(&used);
+    for (int k = 0; k < 3; k++) outside += mesh->lowest[k] < low[k] || mesh->highest[k] > high[k];
+    if (outside > 0)
+        skg_log(context, SKG_LOG_WARNING,
+                "%s: %" PRId64
+                " %s to no triangle, but %s its bounds, by which detectors are fitted and parts moved "
+                "to the centre; leave them out",
+                mesh->name, unused, skg_plural(unused, "vertex belongs", "vertices belong"),
+                skg_plural(unused, "stretches", "stretch"));
+    return SKG_OK;
+}
+
 skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_arrays *arrays, skg_mesh **mesh) {
     skg_mesh *made = NULL;
     if (!name || !*name) name = "mesh";
@@ -131,8 +156,10 @@ skg_status skg_mesh_adopt(skg_context *context, const char *name, skg_mesh_array
         return status;
     }
     skg_mesh_warn_turned(context, made);
+    if (context) status = warn_unused(context, made);
+    if (status != SKG_OK) skg_mesh_release(&made);
     *mesh = made;
-    return SKG_OK;
+    return status;
 }
 
 static skg_status check_stride(const char *name, const char *what, int64_t *stride) {

@@ -30,20 +30,21 @@ static skg_status fail(const skg_mesh_arrays *arrays, const char *path, const ch
     return SKG_ERR_MESH;
 }
 
-/* Moves the vertices that are used to the front, in their order. */
-static skg_status drop_vertices(skg_mesh_arrays *arrays, const char *path) {
+skg_status skg_mesh_drop_unused(skg_mesh_arrays *arrays, const char *path) {
     int32_t *number = NULL; /* of each vertex, and 1 more; 0: not used */
     int64_t count = 0;
     SKG_TRY(skg_alloc(arrays->vertices, sizeof *number, path, &number));
     for (int64_t i = 0; i < 3 * arrays->triangles; i++)
-        if (arrays->corners[i] < arrays->vertices) number[arrays->corners[i]] = 1;
+        if (arrays->corners[i] >= 0 && arrays->corners[i] < arrays->vertices) number[arrays->corners[i]] = 1;
     for (int64_t v = 0; v < arrays->vertices; v++) {
         if (!number[v]) continue;
         memmove(arrays->positions + 3 * count, arrays->positions + 3 * v, 3 * sizeof(double));
         number[v] = (int32_t)++count;
     }
     for (int64_t i = 0; i < 3 * arrays->triangles; i++)
-        if (arrays->corners[i] < arrays->vertices) arrays->corners[i] = number[arrays->corners[i]] - 1;
+        if (arrays->corners[i] >= 0 && arrays->corners[i] < arrays->vertices)
+            arrays->corners[i] = number[arrays->corners[i]] - 1;
+    arrays->unused = arrays->vertices - count;
     arrays->vertices = count;
     skg_free(&number);
     return SKG_OK;
@@ -62,5 +63,5 @@ skg_status skg_mesh_keep_group(skg_mesh_arrays *arrays, const char *path, const 
     }
     if (!found) return fail(arrays, path, name);
     arrays->triangles = kept;
-    return drop_vertices(arrays, path);
+    return SKG_OK;
 }

@@ -209,6 +209,7 @@ skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *read
     *loaded = (skg_loaded){0};
     skg_status status = read_file(path, &arrays);
     if (status == SKG_OK && reading->group) status = skg_mesh_keep_group(&arrays, path, reading->group);
+    if (status == SKG_OK && arrays.triangles > 0) status = skg_mesh_drop_unused(&arrays, path);
     if (status != SKG_OK) {
         skg_mesh_arrays_free(&arrays);
         return status;
@@ -221,6 +222,7 @@ skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *read
                                                : 1;
     loaded->left_out = arrays.left_out;
     loaded->trailing = arrays.trailing;
+    loaded->unused = reading->group ? 0 : arrays.unused;
     loaded->not_printed = arrays.not_printed;
     for (int64_t i = 0; i < 3 * arrays.vertices; i++) arrays.positions[i] *= arrays.unit_mm;
     return skg_mesh_adopt(NULL, name_of(path), &arrays, &loaded->mesh);
@@ -243,6 +245,9 @@ void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_
     if (loaded->trailing > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " bytes behind the last triangle are not read",
                 name_of(path), loaded->trailing);
+    if (loaded->unused > 0)
+        skg_log(context, SKG_LOG_NOTE, "%s: %" PRId64 " %s of no triangle left out", name_of(path),
+                loaded->unused, skg_plural(loaded->unused, "vertex", "vertices"));
     if (loaded->not_printed > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " objects of the type support or other left out",
                 name_of(path), loaded->not_printed);

@@ -58,6 +58,7 @@ void skg_mesh_warn_turned(const skg_context *context, const skg_mesh *mesh);
 typedef struct {
     skg_mesh *mesh;      /* NULL: it could not be loaded */
     int64_t left_out;    /* points and lines of the file */
+    int64_t unused;      /* vertices of no triangle */
     int64_t trailing;    /* bytes behind the last triangle of a binary file */
     int64_t not_printed; /* objects that support others */
 } skg_loaded;

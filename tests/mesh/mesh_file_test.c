@@ -237,6 +237,38 @@ START_TEST(obj_keeps_its_numbering) {
 }
 END_TEST
 
+/* A file's vertices of no triangle are left out, because they would count in its bounds; an array keeps its numbers, and a warning says
+ * when they do count. */
+START_TEST(vertices_of_no_triangle) {
+    static const char tetrahedron[] = "v 1 1 1\nv 1000 1000 1000\nv 2 1 1\nv 1 2 1\nv 1 1 2\n"
+                                      "f 1 4 3\nf 1 3 5\nf 1 5 4\nf 3 4 5\n";
+    static const double places[] = {1, 1, 1, 1.2, 1.2, 1.2, 2, 1, 1, 1, 2, 1, 1, 1, 2};
+    static const int32_t faces[] = {0, 3, 2, 0, 2, 4, 0, 4, 3, 2, 3, 4}, first_face[] = {0, 2, 1};
+    skg_mesh *mesh = load(file_of("stray.obj", tetrahedron));
+    ck_assert_int_eq(mesh->vertices, 4);
+    ck_assert_mem_eq(mesh->corners, first_face, sizeof first_face);
+    ck_assert_double_eq_tol((double)mesh->highest[0] + mesh->origin[0], 2, 1e-6); /* a float's last bits */
+    ck_assert_ptr_nonnull(strstr(last_warning, "stray.obj: 1 vertex of no triangle left out"));
+    skg_mesh_release(&mesh);
+    for (int outside = 0; outside < 2; outside++) {
+        static char nobody[sizeof(void *)]; /* stands for a context, which only the log would read */
+        skg_mesh_arrays arrays = {.vertices = 5, .triangles = 4};
+        ck_skg(skg_alloc(15, sizeof(double), "test", &arrays.positions));
+        ck_skg(skg_alloc(12, sizeof(int32_t), "test", &arrays.corners));
+        memcpy(arrays.positions, places, sizeof places);
+        memcpy(arrays.corners, faces, sizeof faces);
+        arrays.positions[3] += 9 * outside;
+        last_warning[0] = '\0';
+        ck_skg(skg_mesh_adopt((skg_context *)(void *)nobody, "array", &arrays, &mesh));
+        ck_assert_int_eq(mesh->vertices, 5);
+        ck_assert(outside ==
+                  (strstr(last_warning, "array: 1 vertex belongs to no triangle, but stretches its bounds") !=
+                   NULL));
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
 #define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
 START_TEST(damaged_obj_is_refused) {
@@ -382,6 +414,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, strips_of_ply);
     tcase_add_test(tests, files_that_are_none);
     tcase_add_test(tests, obj_keeps_its_numbering);
+    tcase_add_test(tests, vertices_of_no_triangle);
     tcase_add_test(tests, damaged_obj_is_refused);
     tcase_add_test(tests, ply_of_every_kind);
     tcase_add_test(tests, damaged_ply_is_refused);
