@@ -9,6 +9,8 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdarg.h>
+#include <stdio.h>
 #include <string.h>
 
 enum { CODES_MAX = 65536, SIDE_MAX = 32768, CLASSES_MAX = 256 };
@@ -125,25 +127,54 @@ static skg_status check_classes(const skg_volume_source *s, const char *name) {
     return SKG_OK;
 }
 
+void skg_volume_say(skg_volume *volume, int32_t level, const char *format, ...) {
+    skg_volume_remark *one = &volume->remarks[volume->remark_count++];
+    va_list values;
+    va_start(values, format);
+    one->level = level;
+    vsnprintf(one->text, sizeof one->text, format, values);
+    va_end(values);
+}
+
+/* Densities and coefficients of a reconstruction are below 0 where noise or ripples take air there; more than that is another kind of
+ * values, such as Hounsfield numbers. As a share of the largest: an assumption. */
+static const double NOISE_MAX = 0.25;
+
+static double counted(const making *m, double value) {
+    return m->volume->values == SKG_VOLUME_HU || value > 0 ? value : 0;
+}
+
+static skg_status fail_at(const making *m, int64_t at, const char *why) {
+    const int64_t columns = m->volume->size[0], rows = m->volume->size[1];
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "%s: the value of the cell in column %" PRId64 ", row %" PRId64 ", slice %" PRId64
+                    " is %g; %s",
+                    m->volume->name, at % columns, at / columns % rows, at / columns / rows,
+                    value_at(m->source, at), why);
+}
+
 /* The range of the values; whether all are whole numbers. */
 static skg_status look(const making *m, int *whole) {
     skg_volume *v = m->volume;
-    const int64_t columns = v->size[0], rows = v->size[1];
+    int64_t lowest = 0, below = 0;
     *whole = 1;
     v->low = HUGE_VAL, v->high = -HUGE_VAL;
     for (int64_t at = 0; at < m->count; at++) {
         const double value = value_at(m->source, at);
-        if (!isfinite(value) || (v->values != SKG_VOLUME_HU && value < 0))
-            return skg_fail(SKG_ERR_ARGUMENT,
-                            "%s: the value of the cell in column %" PRId64 ", row %" PRId64 ", slice %" PRId64
-                            " is %g; %s",
-                            v->name, at % columns, at / columns % rows, at / columns / rows, value,
-                            isfinite(value) ? "densities and attenuation coefficients are at least 0: set "
-                                              "what noise has taken below it to 0"
-                                            : "values have to be finite");
-        v->low = fmin(v->low, value), v->high = fmax(v->high, value);
+        if (!isfinite(value)) return fail_at(m, at, "values have to be finite");
+        if (value < v->low) v->low = value, lowest = at;
+        v->high = fmax(v->high, value);
         *whole &= floor(value) == value;
+        below += value < 0;
     }
+    if (v->values == SKG_VOLUME_HU || below == 0) return SKG_OK;
+    if (v->low < -NOISE_MAX * v->high)
+        return fail_at(
+            m, lowest,
+            "densities and attenuation coefficients are at least 0, but for noise of a quarter of the largest");
+    skg_volume_say(v, SKG_LOG_WARNING, "%" PRId64 " of its values are below 0, down to %g, and count as 0",
+                   below, v->low);
+    v->low = 0;
     return SKG_OK;
 }
 
@@ -234,7 +265,7 @@ static skg_status encode(making *m) {
     SKG_TRY(skg_alloc(m->count, sizeof *cells, "cells of a volume", &cells));
     v->cells = cells;
     for (int64_t at = 0; at < m->count; at++) {
-        const double value = value_at(m->source, at);
+        const double value = counted(m, value_at(m->source, at));
         const int64_t code = (int64_t)rint(((is_hu ? rint(value) : value) - v->low) / m->step);
         cells[at] = (uint16_t)code;
         m->used[code]++;
@@ -253,7 +284,7 @@ static skg_status widen(making *m) {
     SKG_TRY(skg_alloc(m->count, sizeof *cells, "cells of a volume", &cells));
     v->cells = cells;
     for (int64_t at = 0; at < m->count; at++) {
-        const double value = value_at(m->source, at);
+        const double value = counted(m, value_at(m->source, at));
         cells[at] = (int32_t)rint(value / v->unit);
         sum += value;
     }

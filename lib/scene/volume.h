@@ -7,8 +7,8 @@
 #include <skiagraph/mesh.h>
 #include <skiagraph/volume.h>
 
-/* Sentences about the file of a volume, at most: of its unit, of the size of its cells, of the order of its bytes. */
-enum { SKG_VOLUME_REMARKS = 3 };
+/* Sentences about a volume, at most: of values below 0; of its file's unit, the size of its cells, the order of its bytes. */
+enum { SKG_VOLUME_REMARKS = 4 };
 
 typedef struct {
     int32_t level; /* enum skg_log_level */
@@ -41,6 +41,10 @@ struct skg_volume {
     int32_t remark_count;
     skg_volume_remark remarks[SKG_VOLUME_REMARKS];
 };
+
+/* Adds a sentence about a volume. level: enum skg_log_level */
+void skg_volume_say(skg_volume *volume, int32_t level, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 int64_t skg_volume_bytes(const skg_volume *volume);
 

@@ -7,7 +7,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdarg.h>
 #include <string.h>
 
 typedef skg_status (*reader)(const char *path, skg_grid *grid);
@@ -40,17 +39,6 @@ static skg_status find_reader(const char *path, reader *found) {
         path, dot ? dot : "", dot ? "" : "is missing and");
 }
 
-static void remark(skg_volume *volume, int32_t level, const char *format, ...)
-    __attribute__((format(printf, 3, 4)));
-static void remark(skg_volume *volume, int32_t level, const char *format, ...) {
-    skg_volume_remark *one = &volume->remarks[volume->remark_count++];
-    va_list values;
-    va_start(values, format);
-    one->level = level;
-    vsnprintf(one->text, sizeof one->text, format, values);
-    va_end(values);
-}
-
 /* A unit that the caller names wins. */
 static void note_unit(skg_volume *volume, const skg_grid *grid, double unit_mm) {
     const double *of_file = grid->unit_mm;
@@ -64,20 +52,20 @@ static void note_unit(skg_volume *volume, const skg_grid *grid, double unit_mm) 
     else
         snprintf(all, sizeof all, "%s, %s and %s", named[0], named[1], named[2]);
     skg_unit_contradict(unit_mm, all, text, sizeof text);
-    remark(volume, SKG_LOG_NOTE, "%s", text);
+    skg_volume_say(volume, SKG_LOG_NOTE, "%s", text);
 }
 
 static void note(skg_volume *volume, const skg_grid *grid, double unit_mm) {
     const double *a = volume->affine;
     note_unit(volume, grid, unit_mm);
     if (grid->no_spacing)
-        remark(
+        skg_volume_say(
             volume, SKG_LOG_WARNING,
             "its header does not say how large its cells are, which are taken as %g x %g x %g mm; write it there (NRRD: "
             "space directions; MetaImage: ElementSpacing), or name a unit that is their side",
             fabs(a[0]), fabs(a[5]), fabs(a[10]));
     if (grid->no_order)
-        remark(
+        skg_volume_say(
             volume, SKG_LOG_WARNING,
             "its header has no endian, which NRRD demands of numbers of several bytes; little endian is taken; write "
             "\"endian: little\" or \"endian: big\" there");

@@ -19,6 +19,30 @@ static void source_of(skg_volume_source *source, const void *cells, int32_t type
     source->cells = cells, source->type = type, source->values = values;
 }
 
+/* What noise leaves below 0 in a reconstruction counts as 0, and a sentence says of how many cells. values: those of the source */
+static void noise_below_zero(const skg_volume_source *source, double *values) {
+    skg_volume *noisy = NULL, *clean = NULL;
+    skg_volume_contents of_noisy, of_clean;
+    int32_t level = 0;
+    const char *sentence = "";
+    skg_volume_contents_init(&of_noisy);
+    skg_volume_contents_init(&of_clean);
+    values[7] = -0.0625, values[9] = -0.03125;
+    ck_skg(skg_volume_create(source, &noisy));
+    values[7] = values[9] = 0;
+    ck_skg(skg_volume_create(source, &clean));
+    ck_skg(skg_volume_contents_get(noisy, &of_noisy));
+    ck_skg(skg_volume_contents_get(clean, &of_clean));
+    ck_assert(of_noisy.low == 0 && of_noisy.mass == of_clean.mass && of_noisy.remarks == 1 &&
+              of_clean.remarks == 0);
+    ck_skg(skg_volume_remark_get(noisy, 0, &level, &sentence));
+    ck_assert_int_eq(level, SKG_LOG_WARNING);
+    ck_assert_str_eq(sentence, "2 of its values are below 0, down to -0.0625, and count as 0");
+    skg_volume_release(&noisy);
+    skg_volume_release(&clean);
+    values[9] = 1;
+}
+
 START_TEST(bad_volumes_are_refused) {
     double values[CELLS];
     float floats[CELLS] = {0};
@@ -39,8 +63,10 @@ START_TEST(bad_volumes_are_refused) {
     source = good;
     values[7] = NAN;
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "column 1, row 0, slice 1 is nan");
-    values[7] = -0.5;
-    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "at least 0");
+    values[7] = -5;
+    ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT,
+                 "column 1, row 0, slice 1 is -5; densities");
+    noise_below_zero(&source, values);
     values[7] = 1;
     source.affine[0] = 0;
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_SCENE, "singular");
