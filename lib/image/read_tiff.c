@@ -8,11 +8,30 @@
 /* What a page says of its values. */
 typedef struct {
     uint32_t columns, rows;
-    uint16_t bits, samples, format, photometric;
+    uint16_t bits, samples, format;
 } page_of;
 
+/* What values and places are not the plain ones. Photometric numbers from 2 on are colours. */
+static skg_status check_meaning(const char *path, uint16_t photometric, uint16_t orientation) {
+    if (photometric > PHOTOMETRIC_MINISBLACK)
+        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: has colours; write it grey", path);
+    if (photometric == PHOTOMETRIC_MINISWHITE)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s: its least value is white (PhotometricInterpretation 0), so that values fall where more arrives; write it "
+            "with PhotometricInterpretation 1",
+            path);
+    if (orientation != ORIENTATION_TOPLEFT)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s: its rows do not run from the upper left corner (Orientation %d); write them so (Orientation 1)",
+            path, (int)orientation);
+    return SKG_OK;
+}
+
 static skg_status look(const char *path, TIFF *tiff, page_of *page) {
-    uint16_t samples = 1, format = SAMPLEFORMAT_UINT, bits = 1, photometric = PHOTOMETRIC_MINISBLACK;
+    uint16_t samples = 1, format = SAMPLEFORMAT_UINT, bits = 1, photometric = PHOTOMETRIC_MINISBLACK,
+             orientation = ORIENTATION_TOPLEFT;
     if (!TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &page->columns) ||
         !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &page->rows))
         return skg_fail(SKG_ERR_FORMAT, "%s: has no image", path);
@@ -20,10 +39,11 @@ static skg_status look(const char *path, TIFF *tiff, page_of *page) {
     TIFFGetFieldDefaulted(tiff, TIFFTAG_SAMPLEFORMAT, &format);
     TIFFGetFieldDefaulted(tiff, TIFFTAG_BITSPERSAMPLE, &bits);
     TIFFGetField(tiff, TIFFTAG_PHOTOMETRIC, &photometric);
-    page->bits = bits, page->samples = samples, page->format = format, page->photometric = photometric;
+    TIFFGetFieldDefaulted(tiff, TIFFTAG_ORIENTATION, &orientation);
+    page->bits = bits, page->samples = samples, page->format = format;
     SKG_TRY(skg_picture_size_check(path, page->columns, page->rows, 1));
-    if (samples != 1 || photometric > PHOTOMETRIC_MINISBLACK)
-        return skg_fail(SKG_ERR_UNSUPPORTED, "%s: has colours; write it grey", path);
+    if (samples != 1) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: has colours; write it grey", path);
+    SKG_TRY(check_meaning(path, photometric, orientation));
     if (TIFFIsTiled(tiff)) return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is tiled; write it in strips", path);
     const int whole = bits == 8 || bits == 16 || bits == 32 || bits == 64;
     const int is_float = format == SAMPLEFORMAT_IEEEFP, known = format == SAMPLEFORMAT_UINT ||

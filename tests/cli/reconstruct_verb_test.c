@@ -77,6 +77,34 @@ START_TEST(a_folder_is_a_stack) {
 }
 END_TEST
 
+/* A dead pixel is told of, and what is no number is refused where it stands. */
+START_TEST(dead_pixels_are_told) {
+    enum { COLUMNS = 80, ROWS = 48, COUNT = 60 };
+    static float values[COUNT][ROWS][COLUMNS];
+    ck_run(0, "scan body.json -o t.mha --quantity transmission --geometry t.csv --quiet");
+    for (int is_nan = 0; is_nan < 2; is_nan++) {
+        char path[512];
+        snprintf(path, sizeof path, "%s/t.mha", folder);
+        FILE *stream = fopen(path, "r+b");
+        ck_assert_ptr_nonnull(stream);
+        ck_assert_int_eq(fseek(stream, -(long)sizeof values, SEEK_END), 0);
+        ck_assert_uint_eq(fread(values, sizeof values, 1, stream), 1);
+        for (int k = 0; k < COUNT; k++) values[k][3][5] = 0;
+        if (is_nan) values[7][4][6] = NAN;
+        ck_assert_int_eq(fseek(stream, -(long)sizeof values, SEEK_END), 0);
+        ck_assert_uint_eq(fwrite(values, sizeof values, 1, stream), 1);
+        ck_assert_int_eq(fclose(stream), 0);
+        if (is_nan) {
+            ck_run_fails(2, "row 4, column 6", "reconstruct t.mha --geometry t.csv -o v.mha --size 8");
+        } else {
+            ck_run(0, "reconstruct t.mha --geometry t.csv -o v.mha --size 8");
+            ck_assert_msg(strstr(complained, "warning: 60 pixels of the projections") != NULL, "%s",
+                          complained);
+        }
+    }
+}
+END_TEST
+
 START_TEST(what_a_folder_lacks_is_named) {
     ck_run_fails(3, "out: holds projections without the places", "reconstruct out -o a.mha");
     ck_run_fails(3, "name the .mhd", "reconstruct out.raw --geometry poses.csv -o a.mha");
@@ -143,6 +171,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
     tcase_add_test(tests, a_folder_is_a_stack);
+    tcase_add_test(tests, dead_pixels_are_told);
     tcase_add_test(tests, what_a_folder_lacks_is_named);
     tcase_add_test(tests, a_nikon_scan_is_its_scan);
 }

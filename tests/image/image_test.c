@@ -43,6 +43,37 @@ static void check_tiff(const char *file, int32_t type, int channels) {
     TIFFClose(tiff);
 }
 
+/* Tags that say that values or rows run the other way: such files were once read as if they did not. */
+START_TEST(tiffs_that_are_turned_are_refused) {
+    static const struct {
+        int photometric, orientation;
+        const char *reason;
+    } cases[] = {{PHOTOMETRIC_MINISBLACK, ORIENTATION_TOPLEFT, NULL},
+                 {PHOTOMETRIC_MINISWHITE, ORIENTATION_TOPLEFT, "its least value is white"},
+                 {PHOTOMETRIC_MINISBLACK, ORIENTATION_TOPRIGHT, "Orientation 2"},
+                 {PHOTOMETRIC_MINISBLACK, ORIENTATION_RIGHTTOP, "Orientation 6"}};
+    for (size_t k = 0; k < sizeof cases / sizeof *cases; k++) {
+        uint8_t row[2] = {3, 7};
+        double values[2] = {0};
+        TIFF *tiff = TIFFOpen(at("turned.tif"), "w");
+        ck_assert_ptr_nonnull(tiff);
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, 2);
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, cases[k].photometric);
+        TIFFSetField(tiff, TIFFTAG_ORIENTATION, cases[k].orientation);
+        ck_assert_int_eq(TIFFWriteScanline(tiff, row, 0, 0), 1);
+        TIFFClose(tiff);
+        if (cases[k].reason)
+            ck_skg_fails(skg_picture_load(at("turned.tif"), 0, values), SKG_ERR_UNSUPPORTED, cases[k].reason);
+        else
+            ck_skg(skg_picture_load(at("turned.tif"), 0, values));
+        ck_assert_double_eq(values[1], cases[k].reason ? 0 : 7);
+        unlink(path);
+    }
+}
+END_TEST
+
 START_TEST(tiff_keeps_every_bit) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     ck_skg(skg_picture_save(&picture, at("a.tif")));
@@ -237,6 +268,7 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, tiff_keeps_every_bit);
+    tcase_add_test(tests, tiffs_that_are_turned_are_refused);
     tcase_add_test(tests, metaimage_keeps_bits_and_place);
     tcase_add_test(tests, channels_have_names_of_their_own);
     tcase_add_test(tests, metaimage_interleaves_channels);

@@ -22,6 +22,8 @@ typedef struct {
     skg_fdk_options options;
     const char *place;
     float *image;
+    int64_t pixels; /* of it */
+    int64_t dark;   /* pixels of all projections that nothing reached */
     int64_t projections;
     double seconds;
     skg_fdk_report report;
@@ -109,7 +111,8 @@ static skg_status prepare(const cli_arguments *arguments, reconstruction *r, int
         r->options.voxels[k] = size > 0 ? size : view.columns < VOXELS_MAX ? view.columns : VOXELS_MAX;
         r->options.middle[k] = r->options.centre[k];
     }
-    r->image = calloc((size_t)(view.columns * view.rows), sizeof *r->image);
+    r->pixels = view.columns * view.rows;
+    r->image = calloc((size_t)r->pixels, sizeof *r->image);
     return r->image ? skg_fdk_create(r->scan, &r->options, &r->fdk) : SKG_ERR_MEMORY;
 }
 
@@ -119,12 +122,20 @@ static skg_status read_projection(reconstruction *r, int64_t k) {
     return stack_attenuation(r->stack, k, r->image) == CLI_DONE ? SKG_OK : SKG_ERR_FILE;
 }
 
+/* Where a millionth of the flat field or less arrives, the readers give -ln of that. */
+static void count_dark(reconstruction *r) {
+    static const double LEAST = 1e-6;
+    const float most = (float)-log(LEAST);
+    for (int64_t i = 0; i < r->pixels; i++) r->dark += r->image[i] == most;
+}
+
 static skg_status add_projections(reconstruction *r) {
     const double start = cli_now_ms();
     skg_status status = SKG_OK;
     cli_progress_follow("projections");
     for (int64_t k = 0; k < r->projections && status == SKG_OK; k++) {
         status = read_projection(r, k);
+        if (status == SKG_OK) count_dark(r);
         if (status == SKG_OK) status = skg_fdk_add(r->fdk, k, r->image);
     }
     cli_progress_end();
@@ -151,6 +162,12 @@ static void warn(const reconstruction *r) {
         cli_note(
             "the detector is displaced: rays are weighted for it, and %.4g mm about the axis are covered",
             seen->covered_mm);
+    if (r->dark > 0)
+        cli_warn(
+            "%" PRId64
+            " pixels of the projections have a millionth of the flat field or less, as dead pixels and those behind "
+            "much metal have, and count as an attenuation of 13.8: streaks and rings follow from them",
+            r->dark);
     if (seen->truncated > 0)
         cli_warn(
             "projections are truncated: in %.3g %% of the rows the shadow goes beyond the detector, and values are %s, "

@@ -230,7 +230,9 @@ int stack_attenuation(stack_reader *r, int64_t index, float *image) {
     for (int64_t i = 0; i < pixels && exit_status == CLI_DONE; i++) {
         const double value = r->values[i], dark = r->dark ? r->dark[i] : 0;
         const double white = (r->white ? r->white[i] : r->flat_field) - dark;
-        image[i] = (float)(is_attenuation(r) ? value : -log(fmax((value - dark) / white, LEAST)));
+        const double share = (value - dark) / white;
+        /* what is no number stays so, and is refused where it stands */
+        image[i] = (float)(is_attenuation(r) ? value : -log(share < LEAST ? LEAST : share));
     }
     return exit_status;
 }

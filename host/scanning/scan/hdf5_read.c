@@ -216,7 +216,7 @@ skg_status skg_scan_reader_axis_get(const skg_scan_reader *reader, double *axis,
 static float attenuation(const skg_scan_reader *reader, int64_t i, float value) {
     const double flat = (double)reader->white[i] - (double)reader->dark[i];
     const double share = ((double)value - (double)reader->dark[i]) / flat;
-    return flat > 0 ? (float)-log(share > 1e-6 ? share : 1e-6) : 0;
+    return flat > 0 ? (float)-log(share < 1e-6 ? 1e-6 : share) : 0; /* NaN stays */
 }
 
 skg_status skg_scan_reader_attenuation_get(skg_scan_reader *reader, int64_t index, float *image) {
