@@ -522,6 +522,12 @@ def fixed(path):
         found, _ = registered(page, BONE, LIMIT) if page.frame(page.wish(projection=1)) else None
         assert abs(found["pose"][11] - MOVED[11]) < 0.2, found  # z, as above; from the side x is along the beam
         assert server.end() == 0
+    for words, flat, share in ((["--flat", "70000"], 70000, 1), (["--flat", own], 1, None), (["--quantity", "transmission"], 1, 1)):
+        with Server(command, scene, "--fixed", own, *words) as server:
+            other = Radiograph(Page(server).find(lambda m: isinstance(m, bytes)))
+            assert other.flat == flat, words  # of an image of flat fields, here the radiograph itself, transmissions are made
+            assert other.numbers == shown.numbers if share else abs(other.low - 1) < EPS and abs(other.step) < EPS, words
+            assert server.end() == 0
     with Server(command, scene) as server:
         page = Page(server)
         page.frame()
