@@ -26,7 +26,8 @@ nb_execution_mode = "cache"
 nb_execution_raise_on_error = True
 nb_execution_timeout = 300
 nb_execution_cache_path = os.environ["SKG_SITE_CACHE"]
-nb_execution_excludepatterns = ["*.md"]
+# PyTorch takes gigabytes: its notebook is shown with the pictures that it was stored with.
+nb_execution_excludepatterns = ["*.md", "*_torch.ipynb"]
 
 autodoc_member_order = "bysource"
 autodoc_typehints = "description"

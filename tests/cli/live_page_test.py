@@ -13,6 +13,7 @@ import chromium
 from chromium import Browser
 from live_client import Page, Server
 from live_controls import cut, exposure, sinogram, tape
+from live_radiograph import radiograph
 from live_test import SCENE, check_same, has_server, image
 from live_tried import Tried, check, failures
 
@@ -364,6 +365,7 @@ def main():
         work(folder, path)
         breathes(folder)
         bends(folder)
+        radiograph(folder, pictures)
     for failure in failures:
         print("failed:", failure)
     print(f"{len(failures)} failures")

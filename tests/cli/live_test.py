@@ -284,7 +284,7 @@ def errors(path):
 def malformed(path, seconds=4):
     """Messages at random: each gets a sentence, and the server goes on."""
     random.seed(1)
-    good = [{"wish": 1, "settings": {"Tolerance": 0.1}, "poses": {}, "drag": True}, {"ack": 1}, {"probe": [1, 2]}, {"take": "png"}, {"look": LOOK}]
+    good = [{"wish": 1, "settings": {"Tolerance": 0.1}, "poses": {}, "drag": True}, {"ack": 1}, {"probe": [1, 2]}, {"take": "png"}, {"look": LOOK}, {"register": 1}]
     with Server(command, path) as server:
         page = Page(server)
         page.frame()
@@ -437,6 +437,125 @@ def looks(path):
         assert picture(other, size=[31, 17]) and picture(page) == first
 
 
+# A block that lies askew in another one, seen by 64 x 64 pixels that are means of 3 x 3 rays.
+BLOCKS = {
+    "Source": {"Position": [0, -600, 0, "mm"], "Shape": "PointSource", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": 1000}]},
+    "Detector": {"Position": [0, 200, 0, "mm"], "UpVector": [0, 0, -1], "NumberOfPixels": [64, 64], "Spacing": [3, 3, "mm"], "Oversampling": 3},
+    "Scan": {"NumberOfProjections": 2, "AngleStep": 90},
+    "Samples": [{"Label": "skin", "Cube": [90, "mm"], "Type": "outer", "Material": ["mu", 0.2], "Transform": [["Rotation", 10, 1, 2, 3]]},
+                {"Label": "bone", "Cuboid": [20, 34, 40, "mm"], "Material": ["mu", 0.5], "Transform": [["Rotation", 12, 1, -2, 1]]},
+                {"Label": "away", "Cube": [5, "mm"], "Material": ["mu", 0.5], "Transform": [["Translation", 0, 0, 900, "mm"]]}]}
+BONE = 1
+MOVED = [1, 0, 0, 4, 0, 1, 0, 0, 0, 0, 1, 2, 0, 0, 0, 1]  # what the radiograph shows: the bone beside its place, mm
+
+
+def write_blocks(folder):
+    """The scene, and radiographs of where the bone is: of the scene's own view, and of each projection."""
+    paths = [os.path.join(folder, name) for name in ("blocks.json", "own.mha", "scan.mha")]
+    with open(paths[0], "w", encoding="ascii") as file:
+        json.dump(BLOCKS, file)
+    where = 'Samples.bone.Transform=[["Translation", 4, 0, 2, "mm"], ["Rotation", 12, 1, -2, 1]]'
+    subprocess.run([command, "image", paths[0], "--set", where, "-o", paths[1], "--quiet"], check=True)
+    subprocess.run([command, "scan", paths[0], "--set", where, "-o", paths[2], "--quiet"], check=True)
+    return paths
+
+
+class Radiograph(Frame):
+    """What pages get of --fixed."""
+
+    def __init__(self, data):
+        assert data[:4] == b"SKLR"
+        super().__init__(b"SKLF" + data[4:])
+
+
+def registered(page, part, seconds=LIMIT):
+    """What comes of a registration, and the images that came meanwhile."""
+    page.send({"register": part})
+    images = []
+    while True:
+        message = page.find(lambda m: isinstance(m, Frame) or isinstance(m, dict) and ("registered" in m or "refused" in m), seconds)
+        if not isinstance(message, Frame):
+            return message.get("registered", message), images
+        images.append(message)
+
+
+def fixed(path):
+    """A radiograph goes to each page, a part is registered to it, and images go on meanwhile."""
+    scene, own, scan = write_blocks(os.path.dirname(path))
+    with Server(command, scene, "--fixed", own) as server:
+        page = Page(server)
+        assert page.text("scene")["scene"]["fixed"] == {"path": own, "projection": None}
+        shown = Radiograph(page.find(lambda m: isinstance(m, bytes)))
+        with open(own, "rb") as file:
+            pixels = file.read().partition(b"ElementDataFile = LOCAL\n")[2]
+        check_same(shown, struct.unpack("<4096f", pixels))
+        assert shown.flat == max(struct.unpack("<4096f", pixels)) and (shown.columns, shown.rows) == (64, 64)
+        page.frame()
+        found, _ = registered(page, BONE)
+        # a tenth of a pixel of 2.2 mm at the bone; along the beam, here y, one view says little
+        assert all(abs(found["pose"][k] - MOVED[k]) < 0.2 for k in (3, 11)), found
+        assert found["part"] == BONE and found["label"] == "bone" and found["verdict"] and len(found["sigma"]) == 6
+        assert found["status"] in ("agrees", "not determined") and found["warnings"] == []
+        # the same from where it was dragged, with a turn about the beam: the pose is over that of the file, the motion after that of the drag
+        page.frame(page.wish(poses={str(BONE): [0.96, 0, 0.28, -3, 0, 1, 0, 0, -0.28, 0, 0.96, 9, 0, 0, 0, 1]}))
+        again, _ = registered(page, BONE)
+        assert "pose" in again and all(abs(again["pose"][k] - MOVED[k]) < 0.2 for k in (3, 11)), again
+        # another projection, another size, no such part, what does not show: a sentence each
+        for keys, part, word in (({"projection": 1}, BONE, "the page shows projection 1"), ({"settings": {"Detector.NumberOfPixels": [32, 64]}}, BONE, "64 x 64 pixels"),
+                                 ({}, 9, "part"), ({}, 2, "away")):
+            page.frame(page.wish(**keys))
+            refused, _ = registered(page, part)
+            assert word in refused["error"], refused
+        for bad in ({"register": -1}, {"register": "bone"}, {"register": 0.5}):
+            page.send(bad)
+            assert "register" in page.text("refused")["refused"], bad
+        page.send({"register": None})
+        assert "no registration" in page.text("refused")["refused"]
+        reader = join(server)
+        assert Radiograph(reader.find(lambda m: isinstance(m, bytes))).numbers == shown.numbers
+        reader.send({"register": BONE})
+        assert "another page" in reader.text("refused")["refused"]
+        assert server.end() == 0
+    with Server(command, scene, "--fixed", scan + "@1") as server:
+        page = Page(server)
+        assert page.text("scene")["scene"]["state"]["projection"] == 1
+        found, _ = registered(page, BONE, LIMIT) if page.frame(page.wish(projection=1)) else None
+        assert abs(found["pose"][11] - MOVED[11]) < 0.2, found  # z, as above; from the side x is along the beam
+        assert server.end() == 0
+    for words, flat, share in ((["--flat", "70000"], 70000, 1), (["--flat", own], 1, None), (["--quantity", "transmission"], 1, 1)):
+        with Server(command, scene, "--fixed", own, *words) as server:
+            other = Radiograph(Page(server).find(lambda m: isinstance(m, bytes)))
+            assert other.flat == flat, words  # of an image of flat fields, here the radiograph itself, transmissions are made
+            assert other.numbers == shown.numbers if share else abs(other.low - 1) < EPS and abs(other.step) < EPS, words
+            assert server.end() == 0
+    with Server(command, scene) as server:
+        page = Page(server)
+        page.frame()
+        assert "--fixed" in registered(page, BONE)[0]["refused"] and server.end() == 0
+
+
+def stopped(path):
+    """A registration that takes long: images follow wishes meanwhile, a second one is refused, and it is stopped; so does the end."""
+    scene, own, _ = write_blocks(os.path.dirname(path))
+    slow = {"Detector.Oversampling": 16, "Precision": "double"}
+    with Server(command, scene, "--fixed", own) as server:
+        page = Page(server)
+        page.frame()
+        for is_last in (False, True):
+            page.frame(page.wish(settings=slow))
+            page.send({"register": BONE})
+            assert page.text("registering")["registering"]["part"] == BONE
+            page.frame(page.wish(settings={"Source.Position": [8, -600, 0, "mm"]}))
+            if is_last:
+                break
+            page.send({"register": BONE})
+            assert "under way" in page.text("refused")["refused"]
+            page.send({"register": None})
+            found = page.text("registered")["registered"]
+            assert found.get("status") == "stopped" or "before the search" in found.get("error", ""), found
+        assert server.end() == 0
+
+
 def lost_pages(path):
     """Pages that are killed, that come 100 times, and one that takes no frames."""
     with Server(command, path, "--set", "Detector.NumberOfPixels=[400,300]") as server:
@@ -515,16 +634,25 @@ def changed_file(path):
 
 def fails(path):
     """Command lines that are refused."""
+    for name, columns, rows, at in (("small.mha", 4, 4, None), ("nan.mha", 80, 60, 2 * 80 + 5)):
+        head = f"ObjectType = Image\nNDims = 2\nDimSize = {columns} {rows}\nElementType = MET_FLOAT\nElementSpacing = 4 4\nElementDataFile = LOCAL\n"
+        values = [float("nan") if k == at else 1 + k % 7 for k in range(columns * rows)]
+        with open(os.path.join(os.path.dirname(path), name), "wb") as file:
+            file.write(head.encode() + struct.pack(f"<{len(values)}f", *values))
     for words, status, word in ((["-"], 2, "standard input"), ([path, "--bind", "a b"], 2, "--bind"), ([path, "--port", "70000"], 2, "--port"),
-                                ([path, "--set", "Nonsense=1"], 3, "Nonsense"), ([path + "x"], 3, "cannot be read")):
-        run = subprocess.run([command, "live", *words, "--no-open"], capture_output=True, text=True, timeout=LIMIT)
+                                ([path, "--set", "Nonsense=1"], 3, "Nonsense"), ([path + "x"], 3, "cannot be read"),
+                                ([path, "--quantity", "intensity"], 2, "--fixed"), ([path, "--fixed", path + ".mha"], 3, path + ".mha"),
+                                ([path, "--fixed", "small.mha"], 3, "4 x 4 pixels"), ([path, "--fixed", "small.mha@9"], 3, "4 projections"),
+                                ([path, "--fixed", "nan.mha", "--quantity", "attenuation"], 3, "row 2, column 5"),
+                                ([path, "--fixed", "a.mha", "--fixed", "b.mha"], 2, "twice")):
+        run = subprocess.run([command, "live", *words, "--no-open"], capture_output=True, text=True, timeout=LIMIT, cwd=os.path.dirname(path))
         assert run.returncode == status and word in run.stderr, (words, run)
     with Server(command, path) as server:
         run = subprocess.run([command, "live", path, "--no-open", "--port", str(server.port)], capture_output=True, text=True, timeout=LIMIT)
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, answers, looks, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, answers, looks, fixed, stopped, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

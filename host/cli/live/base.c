@@ -78,6 +78,8 @@ void live_base_free(live_base *base) {
     forget_files(base);
     free(base->text);
     base->text = NULL;
+    register_free_images(1, base->fixed);
+    base->fixed = NULL;
     json_decref(base->warnings);
     base->warnings = NULL;
 }

@@ -97,6 +97,16 @@ static json_t *angles_json(const live_scene *scene) {
     return angles;
 }
 
+/* Of the radiograph of --fixed; null: there is none. */
+static json_t *fixed_json(const register_image *fixed) {
+    if (!fixed) return json_null();
+    json_t *object = json_object();
+    json_object_set_new(object, "path", cli_json_text(fixed->path));
+    json_object_set_new(object, "projection",
+                        fixed->projection < 0 ? json_null() : json_integer(fixed->projection));
+    return object;
+}
+
 json_t *live_describe_scene(const live_base *base, live_scene *scene, const live_wish *wish,
                             int64_t geometry) {
     json_t *object = json_object(), *inner = json_object();
@@ -123,6 +133,7 @@ json_t *live_describe_scene(const live_base *base, live_scene *scene, const live
     json_object_set_new(inner, "spot", spot_json(scene));
     json_object_set_new(inner, "jaws", jaws_json(scene));
     json_object_set_new(inner, "angles", angles_json(scene));
+    json_object_set_new(inner, "fixed", fixed_json(base->fixed));
     json_object_set_new(object, "scene", inner);
     return object;
 }

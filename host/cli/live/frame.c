@@ -151,18 +151,18 @@ int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *
     return is_listed;
 }
 
-static int pack(const float *values, live_header *header, live_shot *shot) {
+int live_frame_pack(const float *values, live_header *header, unsigned char **bytes, size_t *size) {
     const int64_t count = (int64_t)header->columns * header->rows;
     float low, high;
     if (!live_range_find(values, count, &low, &high)) header->notes |= LIVE_NOTE_INFINITE;
     header->low = (double)low;
     header->step = ((double)high - (double)low) / UINT16_MAX;
-    shot->size = sizeof *header + (size_t)count * sizeof(uint16_t);
-    shot->bytes = malloc(shot->size);
-    if (!shot->bytes) return 0;
-    uint16_t *numbers = (uint16_t *)(void *)(shot->bytes + sizeof *header);
+    *size = sizeof *header + (size_t)count * sizeof(uint16_t);
+    *bytes = malloc(*size);
+    if (!*bytes) return 0;
+    uint16_t *numbers = (uint16_t *)(void *)(*bytes + sizeof *header);
     live_numbers_write(values, count, low, header->step, numbers);
-    memcpy(shot->bytes, header, sizeof *header);
+    memcpy(*bytes, header, sizeof *header);
     return 1;
 }
 
@@ -216,7 +216,9 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
     scene->shown_wish = wish->number;
     scene->shown_channel = wish->channel;
     scene->shown_flat = header.flat_field;
-    if (pack(scene->values + wish->channel * view.columns * view.rows, &header, shot)) return 1;
+    if (live_frame_pack(scene->values + wish->channel * view.columns * view.rows, &header, &shot->bytes,
+                        &shot->size))
+        return 1;
     snprintf(sentence, LIVE_SENTENCE, "out of host memory for the frame");
     return 0;
 }

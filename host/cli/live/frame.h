@@ -8,7 +8,7 @@
 /* What a page receives as a frame: this, in the order of the processor, and [rows][columns] numbers of 16 bits. A value is
  * low + step * number. */
 typedef struct {
-    char mark[4];    /* "SKLF" */
+    char mark[4];    /* "SKLF"; of the radiograph of --fixed "SKLR" */
     uint32_t number; /* of the frame */
     uint32_t wish;   /* of the wish that it shows */
     uint16_t columns, rows;
@@ -30,6 +30,10 @@ typedef struct {
     skg_view view;  /* of the whole detector */
     int is_dropped; /* a newer wish came before the image was begun */
 } live_shot;
+
+/* Header and 16-bit numbers of values; low, step and LIVE_NOTE_INFINITE are written into the header. The caller frees the bytes. Returns
+ * 0 without memory. */
+int live_frame_pack(const float *values, live_header *header, unsigned char **bytes, size_t *size);
 
 /* Makes the image of a wish that fits the scene. hub: asked for newer wishes. Returns 0 with a sentence. */
 int live_frame_make(const live_base *base, live_scene *scene, const live_wish *wish, live_hub *hub,

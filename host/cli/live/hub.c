@@ -37,8 +37,9 @@ struct live_hub {
     live_asked waiting;
     double active_ms;
     char *page;
-    char *greeting, *shot; /* texts for pages that begin: the scene, and the last frame's */
-    live_packet *last;     /* frame, likewise */
+    char *greeting, *shot;   /* texts for pages that begin: the scene, and the last frame's */
+    live_packet *last;       /* frame, likewise */
+    live_packet *radiograph; /* NULL: there is none */
 };
 
 live_hub *live_hub_create(live_send send) {
@@ -60,6 +61,7 @@ void live_hub_free(live_hub *hub) {
     if (!hub) return;
     if (hub->waiting.has_wish) live_wish_free(&hub->waiting.wish);
     live_packet_release(&hub->last);
+    live_packet_release(&hub->radiograph);
     free(hub->page);
     free(hub->greeting);
     free(hub->shot);
@@ -163,6 +165,7 @@ int live_hub_greet(live_client *client) {
     client->order = hub->greeted++;
     tell_role(client, find_owner(hub) == client);
     if (hub->greeting) tell(client, hub->greeting);
+    if (hub->radiograph) live_mail_add(&client->mail, 1, hub->radiograph->bytes, hub->radiograph->size);
     if (hub->shot) tell(client, hub->shot);
     client->frame = live_packet_retain(hub->last);
     hub->active_ms = cli_now_ms();
@@ -214,6 +217,9 @@ static void keep(live_hub *hub, live_message *message) {
         waiting->has_probe = 1;
     } else if (message->kind == LIVE_MEASURE) {
         waiting->has_measure = 1;
+    } else if (message->kind == LIVE_REGISTER) {
+        waiting->part = message->part;
+        waiting->has_register = 1;
     } else if (waiting->take_count < LIVE_FORMATS) {
         memcpy(waiting->takes[waiting->take_count++], message->take, sizeof message->take);
     }
@@ -265,7 +271,8 @@ char *live_hub_page_get(live_hub *hub) {
 
 static int has_asked(const live_hub *hub) {
     const live_asked *waiting = &hub->waiting;
-    return waiting->has_wish || waiting->has_probe || waiting->has_measure || waiting->take_count > 0;
+    return waiting->has_wish || waiting->has_probe || waiting->has_measure || waiting->has_register ||
+           waiting->take_count > 0;
 }
 
 /* The page whose look has waited longest; NULL: there is none. */
@@ -359,6 +366,13 @@ static void replace(live_hub *hub, char **text, char *by) {
 
 void live_hub_page_set(live_hub *hub, char *html) {
     replace(hub, &hub->page, html);
+}
+
+void live_hub_radiograph_set(live_hub *hub, unsigned char *bytes, size_t size) {
+    pthread_mutex_lock(&hub->lock);
+    live_packet_release(&hub->radiograph);
+    hub->radiograph = live_packet_create(0, bytes, size);
+    pthread_mutex_unlock(&hub->lock);
 }
 
 void live_hub_greeting_set(live_hub *hub, const char *text) {

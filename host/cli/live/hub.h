@@ -38,9 +38,10 @@ char *live_hub_page_get(live_hub *hub);
 
 /* What pages have asked for since the last time; of each kind the newest. */
 typedef struct {
-    int has_wish, has_probe, has_measure;
+    int has_wish, has_probe, has_measure, has_register;
     live_wish wish; /* the caller frees it if has_wish */
     double probe[2];
+    int64_t part; /* to register; -1: what is under way ends */
     char takes[LIVE_FORMATS][8];
     int take_count;
 } live_asked;
@@ -65,6 +66,9 @@ double live_hub_idle(live_hub *hub);
 
 /* The page as HTML. Takes over the text. */
 void live_hub_page_set(live_hub *hub, char *html);
+
+/* A radiograph, which each page that begins later is sent. Takes over the bytes. */
+void live_hub_radiograph_set(live_hub *hub, unsigned char *bytes, size_t size);
 
 /* What each new page is told first: the scene. */
 void live_hub_greeting_set(live_hub *hub, const char *text);

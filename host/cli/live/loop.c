@@ -7,12 +7,14 @@
 #include "common/say.h"
 #include "live/ask.h"
 #include "live/describe.h"
+#include "live/fixed.h"
 #include "live/frame.h"
 #include "live/page.h"
 #include "live/paths.h"
 #include "live/picture.h"
 
 #include <math.h>
+#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -133,8 +135,12 @@ int live_loop_begin(live_loop *loop, const char *nonce) {
     int is_made = live_base_read(&loop->base, sentence);
     /* the terminal has the warnings of the file as it is; those that follow are the pages' */
     (void)skg_context_log_set(loop->base.context, keep_warning, loop->base.warnings);
-    is_made = is_made && change_scene(loop, &loop->wish, sentence) && make_frame(loop, sentence);
+    is_made = is_made && change_scene(loop, &loop->wish, sentence);
+    const int exit_status = is_made ? live_fixed_read(&loop->base, &loop->scene, loop->hub) : CLI_DONE;
+    if (exit_status == CLI_DONE && loop->base.fixed) loop->wish.projection = loop->base.fixed->projection;
+    is_made = is_made && exit_status == CLI_DONE && make_frame(loop, sentence);
     cli_progress_end();
+    if (exit_status != CLI_DONE) return exit_status;
     if (!is_made) return cli_error(CLI_INPUT, "%s", sentence);
     if (!make_page(loop)) return CLI_DEVICE;
     tell_scene(loop, 0);
@@ -190,6 +196,28 @@ static void play(live_loop *loop) {
     live_scene_refine(&loop->scene, loop->scatter_s); /* the first step alone, until it stands */
 }
 
+static void end_registered(live_loop *loop) {
+    if (live_registering_is_over(loop->registering)) live_registering_end(&loop->registering);
+}
+
+/* Begins or ends a registration. */
+static void answer_register(live_loop *loop, int64_t part) {
+    char sentence[LIVE_SENTENCE] = "no registration is under way";
+    end_registered(loop);
+    if (part < 0 && loop->registering) {
+        live_registering_stop(loop->registering);
+        return;
+    }
+    if (part >= 0 && loop->registering)
+        snprintf(sentence, sizeof sentence, "a registration is under way; stop it first");
+    else if (part >= 0 &&
+             live_registering_begin(&loop->base, &loop->wish, part, loop->hub, &loop->registering, sentence))
+        return;
+    json_t *object = json_object();
+    json_object_set_new(object, "refused", cli_json_text(sentence));
+    live_hub_tell_json(loop->hub, object);
+}
+
 static void answer(live_loop *loop, const live_asked *asked) {
     char sentence[LIVE_SENTENCE];
     for (int i = 0; i < asked->take_count; i++) {
@@ -208,6 +236,7 @@ static void answer(live_loop *loop, const live_asked *asked) {
         else
             tell_error(loop, loop->wish.number, sentence);
     }
+    if (asked->has_register) answer_register(loop, asked->part);
     if (asked->has_measure) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
 }
 
@@ -247,6 +276,7 @@ void live_loop_run(live_loop *loop, double idle) {
     while (!cli_stop_asked()) {
         live_asked asked;
         if (cli_now_ms() - loop->looked_ms > LOOK) read_again(loop);
+        end_registered(loop);
         play(loop);
         const int is_ready = loop->is_wanted && live_hub_is_thirsty(loop->hub);
         const double until = loop->picture_ms - cli_now_ms(); /* the next picture */
@@ -263,7 +293,7 @@ void live_loop_run(live_loop *loop, double idle) {
             answer(loop, &asked);
         else if (!is_ready)
             rest(loop);
-        if (idle > 0 && live_hub_idle(loop->hub) > idle) {
+        if (idle > 0 && !loop->registering && live_hub_idle(loop->hub) > idle) {
             cli_note("live: nothing was asked for during %g s; this is the end (--idle)", idle);
             break;
         }
@@ -271,6 +301,7 @@ void live_loop_run(live_loop *loop, double idle) {
 }
 
 void live_loop_end(live_loop *loop) {
+    live_registering_end(&loop->registering);
     live_scene_free(&loop->scene);
     if (loop->wish.settings) live_wish_free(&loop->wish);
     live_base_free(&loop->base);

@@ -3,6 +3,7 @@
 #define CLI_LIVE_LOOP_H
 
 #include "live/hub.h"
+#include "live/registering.h"
 #include "live/scene.h"
 
 typedef struct {
@@ -10,6 +11,7 @@ typedef struct {
     live_scene scene; /* the last one that could be made */
     live_wish wish;   /* which it shows */
     live_hub *hub;
+    live_registering *registering; /* NULL: none is under way */
     const char *nonce;
     int64_t number;    /* of the last frame */
     int64_t geometry;  /* of the page */

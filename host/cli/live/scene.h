@@ -3,6 +3,7 @@
 #define CLI_LIVE_SCENE_H
 
 #include "live/wish.h"
+#include "register/work.h"
 #include "session/session.h"
 
 /* The scene file and what the command line changes in it. */
@@ -11,9 +12,10 @@ typedef struct {
     skg_context *context;
     skg_device_info device;
     const char *path;
-    int32_t precision; /* -1: the scene's */
-    char *text;        /* the scene file after the settings of the command line, as JSON */
-    json_t *warnings;  /* [sentence] of the library about the last scene that was made */
+    int32_t precision;     /* -1: the scene's */
+    char *text;            /* the scene file after the settings of the command line, as JSON */
+    register_image *fixed; /* the radiograph of --fixed; NULL: there is none */
+    json_t *warnings;      /* [sentence] of the library about the last scene that was made */
     int64_t file_count;
     char **files;    /* [file_count] that were read, the scene's own first */
     int64_t *stamps; /* [file_count] when they were changed, in ns */

@@ -200,11 +200,12 @@ static int read_probe(json_t *value, live_message *message, char *sentence) {
 }
 
 static int read_object(json_t *object, live_message *message, char *sentence) {
-    static const char *const names[] = {"wish", "ack", "probe", "take", "measure", "look"};
+    static const char *const names[] = {"wish", "ack", "probe", "take", "measure", "look", "register"};
     json_t *value = NULL;
     for (message->kind = 0; message->kind < LIVE_KINDS; message->kind++)
         if ((value = json_object_get(object, names[message->kind]))) break;
-    if (!value) return refuse(sentence, "a message has the key wish, ack, probe, take, measure or look");
+    if (!value)
+        return refuse(sentence, "a message has the key wish, ack, probe, take, measure, look or register");
     if (message->kind == LIVE_WISH) return read_wish(object, &message->wish, sentence);
     if (message->kind == LIVE_PROBE) return read_probe(value, message, sentence);
     if (message->kind == LIVE_ACK) {
@@ -213,6 +214,12 @@ static int read_object(json_t *object, live_message *message, char *sentence) {
     }
     if (message->kind == LIVE_MEASURE) return 1;
     if (message->kind == LIVE_LOOK) return live_look_read(value, &message->look, sentence);
+    if (message->kind == LIVE_REGISTER) {
+        message->part = json_is_null(value) ? -1 : json_integer_value(value);
+        return json_is_null(value) || (json_is_integer(value) && message->part >= 0)
+                   ? 1
+                   : refuse(sentence, "\"register\" is neither the number of a part nor null");
+    }
     const char *take = json_string_value(value);
     if (!take || (strcmp(take, "png") != 0 && strcmp(take, "tif") != 0 && strcmp(take, "mha") != 0))
         return refuse(sentence, "\"take\" is not png, tif or mha");

@@ -21,7 +21,7 @@ typedef struct {
     int dragging, plays;                   /* plays: the phase goes on by itself */
 } live_wish;
 
-enum { LIVE_WISH, LIVE_ACK, LIVE_PROBE, LIVE_TAKE, LIVE_MEASURE, LIVE_LOOK, LIVE_KINDS };
+enum { LIVE_WISH, LIVE_ACK, LIVE_PROBE, LIVE_TAKE, LIVE_MEASURE, LIVE_LOOK, LIVE_REGISTER, LIVE_KINDS };
 
 /* A message. */
 typedef struct {
@@ -31,6 +31,7 @@ typedef struct {
     int64_t ack;     /* LIVE_ACK: number of a frame */
     double probe[2]; /* LIVE_PROBE: column and row */
     char take[8];    /* LIVE_TAKE: "png", "tif" or "mha" */
+    int64_t part;    /* LIVE_REGISTER; -1: what is under way ends */
 } live_message;
 
 /* Reads a message. Returns 1; or 0 with a sentence that says what is wrong. The caller frees the wish of a LIVE_WISH

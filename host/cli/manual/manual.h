@@ -109,7 +109,8 @@ extern const cli_flag cli_flag_breathe_output, cli_flag_breathe_seconds, cli_fla
 extern const cli_flag cli_flag_view_output, cli_flag_view_from, cli_flag_view_size,
     cli_flag_view_orthographic, cli_flag_view_phase, cli_flag_view_at, cli_flag_view_seconds,
     cli_flag_view_sensitivity, cli_flag_view_zoom;
-extern const cli_flag cli_flag_live_port, cli_flag_live_no_open, cli_flag_live_bind, cli_flag_live_idle;
+extern const cli_flag cli_flag_live_port, cli_flag_live_no_open, cli_flag_live_bind, cli_flag_live_idle,
+    cli_flag_live_fixed;
 extern const cli_flag cli_flag_schema_output, cli_flag_schema_paths;
 extern const cli_flag cli_flag_reconstruct_output, cli_flag_reconstruct_size, cli_flag_reconstruct_voxel,
     cli_flag_reconstruct_filter, cli_flag_reconstruct_truncation, cli_flag_reconstruct_geometry;

@@ -28,14 +28,8 @@ static int add_parts(register_work *work, const char *label, char *chosen) {
 
 static int add_images(register_work *work) {
     for (int64_t i = 0; i < work->image_count; i++) {
-        const register_image *from = &work->images[i];
         skg_radiograph image;
-        skg_radiograph_init(&image);
-        image.view = &from->view;
-        image.values = from->values, image.flat = from->flat, image.mask = from->mask;
-        image.flat_field = from->flat_field;
-        image.quantity = from->quantity;
-        image.name = from->path;
+        register_radiograph(&work->images[i], &image);
         const skg_status status = skg_registration_image_add(work->last, &image);
         if (status == SKG_ERR_ARGUMENT) return cli_fail(status), CLI_INPUT; /* of a file, not of a flag */
         if (status != SKG_OK) return cli_fail(status);
@@ -43,18 +37,17 @@ static int add_images(register_work *work) {
     return CLI_DONE;
 }
 
-/* Keeps what was found: results of this body, and poses from which the next one starts. */
-static skg_status keep(register_work *work, register_body *body, const char *chosen) {
+skg_status register_result_get(const skg_registration *registration, register_body *body) {
     const char *verdict = "";
     skg_registration_result_init(&body->result);
-    skg_status status = skg_registration_result_get(work->last, &body->result);
-    if (status == SKG_OK) status = skg_registration_verdict_get(work->last, &verdict);
+    skg_status status = skg_registration_result_get(registration, &body->result);
+    if (status == SKG_OK) status = skg_registration_verdict_get(registration, &verdict);
     snprintf(body->verdict, sizeof body->verdict, "%s", verdict);
     body->directions = json_array();
     for (int64_t d = 0; d < body->result.directions && status == SKG_OK; d++) {
         skg_registration_direction one;
         skg_registration_direction_init(&one);
-        status = skg_registration_direction_get(work->last, d, &one);
+        status = skg_registration_direction_get(registration, d, &one);
         json_t *object = json_object();
         json_object_set_new(object, "name", cli_json_text(one.name));
         json_object_set_new(object, "sigma_mm", cli_json_number(one.sigma_mm));
@@ -62,6 +55,12 @@ static skg_status keep(register_work *work, register_body *body, const char *cho
         json_object_set_new(object, "determined", json_boolean(one.determined));
         json_array_append_new(body->directions, object);
     }
+    return status;
+}
+
+/* Keeps what was found: results of this body, and poses from which the next one starts. */
+static skg_status keep(register_work *work, register_body *body, const char *chosen) {
+    skg_status status = register_result_get(work->last, body);
     if (work->options.free != SKG_REGISTRATION_FREE_POSE) return status;
     for (int64_t p = 0; p < work->part_count && status == SKG_OK; p++) {
         double pose[16], *motion = work->motions + 16 * p, product[16];

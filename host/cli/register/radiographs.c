@@ -39,16 +39,15 @@ static int find_view(const register_work *work, register_image *image) {
     skg_status status = skg_setup_scan_get(work->session.setup, &scan);
     if (status != SKG_OK)
         return cli_error(CLI_INPUT,
-                         "--image %s@%" PRId64
+                         "%s %s@%" PRId64
                          ": the scene has no Scan that gives the view of a projection; leave @%" PRId64
                          " out, or add the key Scan",
-                         image->path, image->projection, image->projection);
+                         work->named_by->name, image->path, image->projection, image->projection);
     status = skg_scan_projection_count(scan, &count);
     if (status != SKG_OK) return cli_fail(status);
     if (image->projection >= count)
-        return cli_error(CLI_INPUT,
-                         "--image %s@%" PRId64 ": the Scan has %" PRId64 " projections, counted from 0",
-                         image->path, image->projection, count);
+        return cli_error(CLI_INPUT, "%s %s@%" PRId64 ": the Scan has %" PRId64 " projections, counted from 0",
+                         work->named_by->name, image->path, image->projection, count);
     status = skg_scan_view_get(scan, image->projection, &image->view);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -155,24 +154,33 @@ static int read_image(const register_work *work, int64_t index, const char *valu
 }
 
 int register_read_images(register_work *work) {
-    const int count = count_values(work->arguments, &cli_flag_register_image);
+    const int count = count_values(work->arguments, work->named_by);
     int exit_status = CLI_DONE;
     if (count == 0) return cli_error(CLI_USAGE, "register: give at least one radiograph: --image FILE.mha");
     work->images = calloc((size_t)count, sizeof *work->images);
     if (!work->images) return cli_error(CLI_DEVICE, "out of host memory");
     work->image_count = count;
     for (int i = 0; i < count && exit_status == CLI_DONE; i++)
-        exit_status = read_image(work, i, cli_nth_value(work->arguments, &cli_flag_register_image, i),
-                                 &work->images[i]);
+        exit_status =
+            read_image(work, i, cli_nth_value(work->arguments, work->named_by, i), &work->images[i]);
     return exit_status;
 }
 
-void register_free_images(register_work *work) {
-    for (int64_t i = 0; i < work->image_count && work->images; i++) {
-        free(work->images[i].path);
-        free(work->images[i].values);
-        free(work->images[i].flat);
-        free(work->images[i].mask);
+void register_free_images(int64_t count, register_image *images) {
+    for (int64_t i = 0; i < count && images; i++) {
+        free(images[i].path);
+        free(images[i].values);
+        free(images[i].flat);
+        free(images[i].mask);
     }
-    free(work->images);
+    free(images);
+}
+
+void register_radiograph(const register_image *from, skg_radiograph *image) {
+    skg_radiograph_init(image);
+    image->view = &from->view;
+    image->values = from->values, image->flat = from->flat, image->mask = from->mask;
+    image->flat_field = from->flat_field;
+    image->quantity = from->quantity;
+    image->name = from->path;
 }

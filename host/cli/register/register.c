@@ -71,7 +71,7 @@ static int write_outputs(const register_work *work) {
 static void close_work(register_work *work) {
     for (int64_t b = 0; b < work->body_count; b++) json_decref(work->bodies[b].directions);
     skg_registration_release(&work->last);
-    register_free_images(work);
+    register_free_images(work->image_count, work->images);
     free(work->bodies);
     free(work->motions);
     free(work->moved);
@@ -79,7 +79,7 @@ static void close_work(register_work *work) {
 }
 
 int cli_register(const cli_arguments *arguments) {
-    register_work work = {.arguments = arguments};
+    register_work work = {.arguments = arguments, .named_by = &cli_flag_register_image};
     int exit_status = check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = register_read_options(&work);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &work.session);

@@ -15,12 +15,12 @@ const char *register_status(const register_body *body) {
     return names[body->result.verdict];
 }
 
-static json_t *body_json(const register_work *work, const register_body *body) {
+json_t *register_body_json(const register_body *body, int32_t free) {
     const skg_registration_result *r = &body->result;
     json_t *object = json_object(), *determined = json_array();
     for (int k = 0; k < 6; k++) json_array_append_new(determined, json_boolean(r->determined[k]));
     json_object_set_new(object, "label", cli_json_text(body->label));
-    if (work->options.free == SKG_REGISTRATION_FREE_POSE) {
+    if (free == SKG_REGISTRATION_FREE_POSE) {
         json_object_set_new(object, "twist", cli_json_numbers(r->twist, 6));
         json_object_set_new(object, "sigma", cli_json_numbers(r->sigma, 6));
         json_object_set_new(object, "sigma_structure", cli_json_numbers(r->sigma_structure, 6));
@@ -65,7 +65,7 @@ json_t *register_json(const register_work *work) {
     double seconds = 0;
     for (int64_t b = 0; b < work->body_count; b++) {
         const register_body *body = &work->bodies[b];
-        json_array_append_new(parts, body_json(work, body));
+        json_array_append_new(parts, register_body_json(body, work->options.free));
         evaluations += body->result.images, jacobians += body->result.jacobians;
         seconds += body->result.seconds;
     }

@@ -26,6 +26,7 @@ typedef struct {
 
 typedef struct {
     const cli_arguments *arguments;
+    const cli_flag *named_by; /* the flag that names radiographs */
     cli_session session;
     skg_registration_options options;
     int64_t image_count, body_count, part_count;
@@ -42,14 +43,22 @@ int register_read_options(register_work *work);
 
 /* Reads the radiographs, with their views, flat fields and masks. */
 int register_read_images(register_work *work);
-void register_free_images(register_work *work);
+void register_free_images(int64_t count, register_image *images);
+
+/* The radiograph as the library takes it; nothing is copied. */
+void register_radiograph(const register_image *from, skg_radiograph *image);
 
 /* Registers body after body. */
 int register_run(register_work *work);
 
+/* Asks for what was found of a body; the caller releases its directions. */
+skg_status register_result_get(const skg_registration *registration, register_body *body);
+
 /* "agrees", "structure", "not determined", "failed", "stopped" */
 const char *register_status(const register_body *body);
 
+/* What was found of a body; free: enum skg_registration_free. */
+json_t *register_body_json(const register_body *body, int32_t free);
 json_t *register_json(const register_work *work);
 void register_print(const register_work *work);
 

@@ -27,7 +27,7 @@ def scene(subject: Subject, plan: Any, facts: dict[str, Any]) -> dict[str, Any]:
         "period": subject.period if subject.breathes else None, "load_ms": subject.load_ms,
         "channel": channel["name"], "unit": channel["unit"], "plan": _plan(plan), "beam": beam(state, subject.view()),
         "spot": _spot(state, options), "jaws": _jaws(options),
-        "angles": [] if scan is None else scan.angles.tolist(), **facts}}
+        "angles": [] if scan is None else scan.angles.tolist(), "fixed": None, **facts}}
 
 
 def _plan(plan: Any) -> dict[str, Any]:

@@ -105,6 +105,7 @@ function choose(kind, part = -1) {
   shot.chosen = part;
   showRows();
   describe();
+  showRegister();
   change();
 }
 

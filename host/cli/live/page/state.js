@@ -3,8 +3,10 @@
 const byId = id => document.getElementById(id);
 const make = (kind, text = '', name = '') => Object.assign(document.createElement(kind), {textContent: text, className: name});
 const number = (x, digits = 4) => x === null || !Number.isFinite(x) ? '-' : String(Number(x.toPrecision(digits)));
-const fresh = () => ({settings: {}, poses: {}, phase: null, projection: null, quantity: 'attenuation', bands: [], channel: 0, play: false});
-let state = fresh(), live = null; // live: what the server says of the scene
+let live = null; // what the server says of the scene
+// As the file has it; with a radiograph, the projection that it was taken from.
+const fresh = () => ({settings: {}, poses: {}, phase: null, projection: live?.fixed?.projection ?? null, quantity: 'attenuation', bands: [], channel: 0, play: false});
+let state = fresh();
 const trail = {past: [], future: []}, watchers = []; // watchers: called when the state has changed
 
 const plain = name => name.toLowerCase().replace(/[\s_-]/g, '');

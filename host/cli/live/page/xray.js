@@ -27,32 +27,32 @@ function countNumbers(frame) {
 const total = bins => bins.reduce((sum, count) => sum + count, 0);
 
 // The numbers below and above which a share of 0.5 % lies.
-function autoWindow(frame) {
+function windowOf(frame) {
   const {bins, first, width} = countNumbers(frame), cut = 0.005 * total(bins);
   let from = 0, to = 255;
   for (let sum = bins[0]; sum < cut && from < 255; sum += bins[++from]);
   for (let sum = bins[255]; sum < cut && to > 0; sum += bins[--to]);
   const ends = [shownOf(frame, first + from * width), shownOf(frame, first + (to + 1) * width - 1)].sort((a, b) => a - b);
-  xray.low = ends[0], xray.high = Math.max(ends[1], ends[0] + 1e-6);
+  return [ends[0], Math.max(ends[1], ends[0] + 1e-6)];
 }
 
 // Greys of all numbers.
-function greys(frame) {
-  const table = new Uint8ClampedArray(65536), scale = 255 / (xray.high - xray.low);
+function greys(frame, low, high) {
+  const table = new Uint8ClampedArray(65536), scale = 255 / (high - low);
   if (!(frame.flat > 0)) { // without a logarithm, which is most of the time
-    const [from, by] = [(frame.low - xray.low) * scale, frame.step * scale];
+    const [from, by] = [(frame.low - low) * scale, frame.step * scale];
     for (let n = 0; n < 65536; n++) table[n] = xray.inverted ? 255 - (from + by * n) : from + by * n;
     return table;
   }
   for (let n = 0; n < 65536; n++) {
-    const grey = clamp((shownOf(frame, n) - xray.low) * scale, 0, 255);
+    const grey = clamp((shownOf(frame, n) - low) * scale, 0, 255);
     table[n] = xray.inverted ? 255 - grey : grey;
   }
   return table;
 }
 
-function paintFrame(frame) {
-  const picture = new ImageData(frame.columns, frame.rows), pixels = new Uint32Array(picture.data.buffer), table = greys(frame);
+function paintFrame(frame, low = xray.low, high = xray.high) {
+  const picture = new ImageData(frame.columns, frame.rows), pixels = new Uint32Array(picture.data.buffer), table = greys(frame, low, high);
   const small = new Uint8Array(frame.columns * frame.rows);
   for (let i = 0; i < small.length; i++) {
     const g = small[i] = table[frame.numbers[i]];
@@ -80,6 +80,7 @@ function paint() {
     pen.fillStyle = '#f5a623';
     pen.fillRect(width - 1, 0, Math.max(1, film.width / 400), film.height);
   }
+  paintRadiograph(frame);
   showOnDetector(small, frame.columns, frame.rows);
   drawSinogramSoon();
   xray.stamp++;
@@ -89,12 +90,13 @@ function showFrame(frame) {
   xray.frame = frame;
   noteGood(frame.wish);
   byId('waiting').hidden = true;
-  if (xray.auto) autoWindow(frame);
+  if (xray.auto) [xray.low, xray.high] = windowOf(frame);
   paint();
   drawHistogramSoon();
   drawProfile();
   if (xray.at) moveCursor(xray.at);
   showCost(frame);
+  if (fixed.frame) showRadiograph();
   pairShot();
 }
 
@@ -149,6 +151,7 @@ function showValue(parts = null) {
   const [columns, rows] = [frame.columns * frame.factor, frame.rows * frame.factor];
   const lines = [`column ${Math.floor(at[0] * columns)}, row ${Math.floor(at[1] * rows)}`, `-ln(I/I0) ${number(shown, 5)}, I/I0 ${number(Math.exp(-shown), 4)}`];
   if (frame.flat > 0) lines.push(`${number(value, 6)} ${live ? live.unit : ''}`);
+  if (isCompared(frame)) lines.push(`radiograph ${number(shownOf(fixed.frame, numberAt(fixed.frame, at)), 5)}`);
   for (const [label, mm] of parts || []) lines.push(`${label}: ${number(mm, 4)} mm`);
   box.replaceChildren(...lines.map(line => make('div', line)));
 }
