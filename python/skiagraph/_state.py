@@ -2,6 +2,7 @@
 from __future__ import annotations
 
 import copy
+import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ContextManager
@@ -58,6 +59,8 @@ class State:
     meshes: dict[int, Mesh] = field(default_factory=dict)
     #: Warnings that were given already.
     said: set[str] = field(default_factory=set)
+    #: What images of the scene hold that are still in use, by their address: each with a weak reference to it.
+    shown: dict[int, tuple[Any, str]] = field(default_factory=dict)
     #: Of a scene that was pickled: its files.
     kept: Kept | None = None
 
@@ -76,6 +79,20 @@ class State:
             state.read_view = copy.deepcopy(state.view)
             state.read_poses = [part.pose for part in state.parts()]
         return state
+
+    def show(self, image: Any, quantity: str) -> Any:
+        """Remembers what an image holds, for save()."""
+        shown, key = self.shown, id(image)
+        shown[key] = (weakref.ref(image, lambda _gone: shown.pop(key, None)), quantity)
+        return image
+
+    def shows(self, image: Any) -> str | None:
+        """What an image of the scene holds, or the batch that it was taken from; None: it is another array."""
+        for array in (image, getattr(image, "base", None)):
+            known = self.shown.get(id(array))
+            if known is not None and known[0]() is array:
+                return known[1]
+        return None
 
     def calls(self) -> ContextManager[None]:
         """What calls of the library stand in."""

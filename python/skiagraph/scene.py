@@ -202,8 +202,9 @@ class Scene(_gradient.Differentiable):
         scatter=0.01 (scattered photons, to this error of their mean; {"histories": 1e6}; False for none).
         """
         batch = Batch(1, index=_images.number_frames(self._state, 1, index, options))
-        return _images.render(self._state, batch, out, False, True, unit, quantity=quantity, precision=precision,
+        made = _images.render(self._state, batch, out, False, True, unit, quantity=quantity, precision=precision,
                               tolerance=tolerance, **options)
+        return self._state.show(made, quantity or "energy")
 
     def images(self, quantity: str | None = None, *, poses: Mapping[str, Any] | None = None,
                views: Sequence[View] | None = None, unit: str | None = None, precision: str | None = None,
@@ -219,8 +220,9 @@ class Scene(_gradient.Differentiable):
         batch.index = _images.number_frames(self._state, batch.count, index, options)
         if batch.views and tolerance and "views" not in options:
             options["views"] = batch.views
-        return _images.render(self._state, batch, out, progress, False, unit, quantity=quantity, precision=precision,
+        made = _images.render(self._state, batch, out, progress, False, unit, quantity=quantity, precision=precision,
                               tolerance=tolerance, **options)
+        return self._state.show(made, quantity or "energy")
 
     def noise(self, quantity: str | None = None, *, poses: Mapping[str, Any] | None = None, views: Sequence[View] | None = None,
               precision: str | None = None, tolerance: float | None = None, progress: Progress = False,
@@ -261,6 +263,8 @@ class Scene(_gradient.Differentiable):
                 raise ArgumentError("out= takes the lengths of one part; give one label")
         wanted = [part.label for part in self] if label is None else [label] if isinstance(label, str) else list(label)
         found = _images.lengths(self._state, wanted, kind, poses, views, out, progress, {"precision": precision, **options})
+        for one in found:
+            self._state.show(one, "lengths")
         return found[0] if isinstance(label, str) else dict(zip(wanted, found))
 
     def scatter(self, tolerance: float | None = None, *, histories: float | None = None, components: bool = False,
@@ -374,14 +378,15 @@ class Scene(_gradient.Differentiable):
         """The JSON Schema (draft 2020-12) of scene files, made of the tables by which they are read: `jsonschema.validate(text, Scene.schema())`."""
         return _source.schema()
 
-    def save(self, path: str | os.PathLike[str], image: Any = None, quantity: str = "energy", *, display: str = "radiograph",
+    def save(self, path: str | os.PathLike[str], image: Any = None, quantity: str | None = None, *, display: str = "radiograph",
              range: tuple[float, float] | None = None, **options: Any) -> None:
         """Writes the scene as a scene file, .json, whose images have the same bits; or an image of it, .png, .tif, .mha or .dcm.
 
         (Where vertices were moved, images of floats agree to their rounding, those of doubles bit for bit.) Meshes that were added or changed are written as PLY into a folder beside the file, NAME-parts. Other files that
         the scene names stay where they are. A scene that breathe() posed is written in this pose, without its breath.
 
-        quantity: what it holds, or "lengths" for path lengths. display: "radiograph" or "transmission", and range: the
+        quantity: what it holds, or "lengths" for path lengths; by default what it was computed as, and "energy" for an array that no
+        call of the scene made. display: "radiograph" or "transmission", and range: the
         values of black and white, of a .png. A .dcm (pydicom) holds 65536 steps between the least and the largest value. options: those that the image was computed with.
         """
         if image is None:
@@ -390,6 +395,7 @@ class Scene(_gradient.Differentiable):
             return
         with self._state.calls():
             view = self.view
+            quantity = quantity or self._state.shows(image) or "energy"
             if quantity == "lengths":
                 write_picture(path, image, names=["path length"], unit="mm", view=view, display=display, range=range)
                 return

@@ -286,6 +286,18 @@ def test_pictures_are_written(scene, tmp_path):
         scene.save(tmp_path / "nowhere" / "ball.png", scene.image())
 
 
+def test_save_remembers_what_an_image_holds(scene, tmp_path):
+    """Without a quantity, -ln was once taken of an attenuation: the picture was inverted."""
+    batch = scene.images("attenuation", views=[scene.view] * 2)
+    for name, image, quantity in (("a", scene.image("attenuation"), "attenuation"), ("b", batch[1], "attenuation"),
+                                  ("l", scene.lengths("ball"), "lengths"), ("e", scene.image(), "energy")):
+        scene.save(tmp_path / f"{name}.png", image)
+        scene.save(tmp_path / f"{name}-said.png", image, quantity)
+        assert (tmp_path / f"{name}.png").read_bytes() == (tmp_path / f"{name}-said.png").read_bytes(), name
+    scene.save(tmp_path / "other.png", scene.image() * 1)  # an array of the caller's: energies
+    assert (tmp_path / "other.png").read_bytes() == (tmp_path / "e.png").read_bytes()
+
+
 def test_jaws_limit_the_beam(scene):
     jaws = {"kind": "rectangle", "distance_mm": 400, "low": [-10.1, -4.1], "high": [7.3, 9.2]}
     image, limited = scene.image(), scene.image(collimation=jaws)

@@ -184,6 +184,9 @@ static skg_status read_kind(skg_setup_reader *reader, const skg_json_node *node,
     return skg_json_at(&value, status);
 }
 
+/* g/cm3, rounded up: of osmium, the densest element. */
+static const double DENSEST = 22.7;
+
 skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node *node,
                                    const skg_json_node *density, const char *label, skg_material **material) {
     double g_cm3 = 0, known = 0;
@@ -193,6 +196,8 @@ skg_status skg_setup_read_material(skg_setup_reader *reader, const skg_json_node
     if (density->value) SKG_TRY(skg_json_number(density, &g_cm3));
     if (density->value && !(g_cm3 > 0))
         return skg_json_fail(density, SKG_ERR_MATERIAL, "is %g; a density in g/cm3 is above 0", g_cm3);
+    if (g_cm3 > DENSEST)
+        SKG_TRY(skg_json_remark(density, "is more than anything has (osmium: 22.6 g/cm3); is it in kg/m3?"));
     SKG_TRY(read_kind(reader, node, label, &made));
     SKG_TRY_CLEANUP(skg_material_element_count(made, &elements));
     SKG_TRY_CLEANUP(skg_material_density_get(made, &known));
