@@ -245,13 +245,13 @@ void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_
     if (loaded->trailing > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " bytes behind the last triangle are not read",
                 name_of(path), loaded->trailing);
-    if (loaded->unused > 0)
-        skg_log(context, SKG_LOG_NOTE, "%s: %" PRId64 " %s of no triangle left out", name_of(path),
-                loaded->unused, skg_plural(loaded->unused, "vertex", "vertices"));
     if (loaded->not_printed > 0)
         skg_log(context, SKG_LOG_WARNING, "%s: %" PRId64 " objects of the type support or other left out",
                 name_of(path), loaded->not_printed);
     if (!loaded->mesh) return;
+    if (loaded->unused > 0)
+        skg_log(context, SKG_LOG_NOTE, "%s: %" PRId64 " %s of no triangle left out", name_of(path),
+                loaded->unused, skg_plural(loaded->unused, "vertex", "vertices"));
     skg_mesh_warn_turned(context, loaded->mesh);
     note_unit(context, loaded->mesh);
 }
