@@ -59,10 +59,63 @@ START_TEST(gltf_that_moves_vertices) {
 }
 END_TEST
 
+/* A tetrahedron of 1 x 2 x 3 units: its unit, its indices, what moves its node, and what its node places. */
+static const char *collada_of(const char *unit, const char *indices, const char *moves, const char *places) {
+    static char text[4096];
+    snprintf(
+        text, sizeof text,
+        "<?xml version=\"1.0\"?><COLLADA xmlns=\"http://www.collada.org/2005/11/COLLADASchema\" version=\"1.4.1\">"
+        "<asset>%s<extra><p>one</p></extra></asset><library_geometries><geometry id=\"g\"><mesh><source id=\"p\">"
+        "<float_array id=\"a\" count=\"12\">0 0 0 1 0 0 0 2 0 0 0 3</float_array><technique_common>"
+        "<accessor source=\"#a\" count=\"4\" stride=\"3\"><param name=\"X\" type=\"float\"/><param name=\"Y\" "
+        "type=\"float\"/><param name=\"Z\" type=\"float\"/></accessor></technique_common></source>"
+        "<vertices id=\"v\"><input semantic=\"POSITION\" source=\"#p\"/></vertices><triangles count=\"4\">"
+        "<input semantic=\"VERTEX\" source=\"#v\" offset=\"0\"/><p>%s</p></triangles></mesh></geometry>"
+        "</library_geometries><library_visual_scenes><visual_scene id=\"s\"><node id=\"n\">%s%s</node></visual_scene>"
+        "</library_visual_scenes><scene><instance_visual_scene url=\"#s\"/></scene></COLLADA>",
+        unit, indices, moves, places);
+    return file_of("a.dae", text);
+}
+
+#define INDICES "0 2 1 0 1 3\n1 2 3 0 3 2"
+#define PLACED "<instance_geometry url=\"#g\"/>"
+
+START_TEST(collada_that_is_not_read) {
+    static const struct {
+        const char *indices, *moves, *places, *sentence;
+    } files[] = {{INDICES, "<skew>45 1 0 0 0 1 0</skew>", PLACED, "<skew> shears a node"},
+                 {"0 2 1 0 1 x 1 2 3 0 3 2", "", PLACED, "<p> holds what is no whole number"},
+                 {"0 2 1 0 1 0.5 1 2 3 0 3 2", "", PLACED, "<p> holds"},
+                 {"0 2 1 0 1 -3 1 2 3 0 3 2", "", PLACED, "<p> holds"},
+                 {INDICES, "", "<instance_controller url=\"#c\"/>", "<instance_controller> places a skin"},
+                 {INDICES, "", "", "its scene places no geometry"}};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++)
+        refuse(collada_of("", files[f].indices, files[f].moves, files[f].places), SKG_ERR_FORMAT,
+               files[f].sentence);
+}
+END_TEST
+
+/* A unit that is none is refused, unless the caller names one. */
+START_TEST(units_that_are_none) {
+    static const char *const units[] = {"<unit meter=\"0\"/>", "<unit meter=\"0,001\"/>",
+                                        "<unit meter=\"-1\"/>", "<unit meter=\"\"/>"};
+    for (size_t u = 0; u < sizeof units / sizeof *units; u++) {
+        skg_mesh *mesh = NULL;
+        const char *file = collada_of(units[u], INDICES, "", PLACED);
+        ck_skg_fails(skg_mesh_load(NULL, file, 0, &mesh), SKG_ERR_FORMAT, "a.dae: the meter of its <unit>");
+        mesh = load(file);
+        ck_assert_double_eq_tol(health_of(mesh).volume, 1, 4 * DBL_EPSILON);
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, gltf_that_moves_nothing);
     tcase_add_test(tests, gltf_that_moves_vertices);
+    tcase_add_test(tests, collada_that_is_not_read);
+    tcase_add_test(tests, units_that_are_none);
 }
 
 SKG_SUITE_MAIN("mesh unread", add_tests)
