@@ -110,12 +110,43 @@ START_TEST(units_that_are_none) {
 }
 END_TEST
 
+/* The tetrahedron of 1, placed by a constellation. */
+static const char *amf_of(const char *placed) {
+    static char text[2048];
+    snprintf(
+        text, sizeof text,
+        "<?xml version=\"1.0\"?>\n<amf unit=\"millimeter\"><object id=\"1\"><mesh><vertices>"
+        "<vertex><coordinates><x>0</x><y>0</y><z>0</z></coordinates></vertex>"
+        "<vertex><coordinates><x>1</x><y>0</y><z>0</z></coordinates></vertex>"
+        "<vertex><coordinates><x>0</x><y>2</y><z>0</z></coordinates></vertex>"
+        "<vertex><coordinates><x>0</x><y>0</y><z>3</z></coordinates></vertex></vertices><volume>"
+        "<triangle><v1>0</v1><v2>2</v2><v3>1</v3></triangle><triangle><v1>0</v1><v2>1</v2><v3>3</v3></triangle>"
+        "<triangle><v1>1</v1><v2>2</v2><v3>3</v3></triangle><triangle><v1>0</v1><v2>3</v2><v3>2</v3></triangle>"
+        "</volume></mesh></object><constellation id=\"2\"><instance objectid=\"1\">%s</instance></constellation></amf>",
+        placed);
+    return file_of("a.amf", text);
+}
+
+/* Turns of 0 are read, but for those that would replace a shift; others are not. */
+START_TEST(turns_of_amf) {
+    skg_mesh *mesh = load(amf_of("<rx>0</rx><deltax>5</deltax><ry> 0.0 </ry><rz/>"));
+    ck_assert_int_eq(health_of(mesh).closed, 1);
+    ck_assert_double_eq(health_of(mesh).bounds[3], 6);
+    skg_mesh_release(&mesh);
+    refuse(amf_of("<rx>90</rx>"), SKG_ERR_FORMAT, "<rx> of an instance");
+    refuse(amf_of("<deltaz>5</deltaz><rz>0</rz>"), SKG_ERR_FORMAT, "<rz> of an instance");
+    refuse(amf_of("<deltax>5</deltax><ry>-1e-3</ry>"), SKG_ERR_FORMAT, "<ry> of an instance");
+    refuse(amf_of("<rz>x</rz>"), SKG_ERR_FORMAT, "<rz> of an instance");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, gltf_that_moves_nothing);
     tcase_add_test(tests, gltf_that_moves_vertices);
     tcase_add_test(tests, collada_that_is_not_read);
     tcase_add_test(tests, units_that_are_none);
+    tcase_add_test(tests, turns_of_amf);
 }
 
 SKG_SUITE_MAIN("mesh unread", add_tests)
