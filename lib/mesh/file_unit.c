@@ -79,7 +79,7 @@ int skg_mesh_is_collada(const char *path) {
 }
 
 skg_status skg_mesh_file_unit(const char *path, FILE *stream, int64_t size, int is_named, double *mm) {
-    static const char *const metres[] = {".gltf", ".glb", ".vrm", ".wrl", ".x3dv", ".x3db", NULL};
+    static const char *const metres[] = {".gltf", ".glb", ".vrm", ".x3db", NULL};
     static const char *const x3d[] = {".x3d", ".x3dz", NULL}, *const amf[] = {".amf", NULL};
     const char *dot = strrchr(path, '.');
     char *head = NULL;

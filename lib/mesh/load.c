@@ -169,6 +169,12 @@ static skg_status refuse_kind(const char *path, FILE *stream) {
     char start[14] = "";
     const size_t length = fread(start, 1, sizeof start - 1, stream);
     rewind(stream);
+    if (strncmp(start, "#VRML", 5) == 0 || strncmp(start, "#X3D V", 6) == 0)
+        return skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: is text of VRML, which is not read; convert it to .x3d (XML), .ply or .stl, for instance with "
+            "MeshLab",
+            path);
     int is_solid = length > 12 && memcmp(start, "ISO-10303-21;", 13) == 0 && !has_extension(path, ".ifc");
     for (size_t k = 0; k < sizeof solids / sizeof *solids; k++) is_solid |= has_extension(path, solids[k]);
     if (is_solid)

@@ -140,6 +140,60 @@ START_TEST(turns_of_amf) {
 }
 END_TEST
 
+#define FACES(more)                                                                                          \
+    "<Shape><IndexedFaceSet " more                                                                           \
+    "coordIndex='0 2 1 -1 0 1 3 -1 1 2 3 -1 0 3 2 -1'><Coordinate point='0 0 0 1 0 0 0 2 0 0 0 3'/>"         \
+    "</IndexedFaceSet></Shape>"
+#define FAR(shape) "<Transform translation='5 0 0'>" shape "</Transform>"
+
+static const char *x3d_of(const char *scene) {
+    static char text[4096];
+    snprintf(
+        text, sizeof text,
+        "<?xml version=\"1.0\"?><X3D profile='Interchange' version='3.3'><head></head><Scene>%s</Scene></X3D>",
+        scene);
+    return file_of("a.x3d", text);
+}
+
+/* Groups are followed; a prototype that nobody places, and clockwise faces alone, are as before. */
+START_TEST(x3d_that_is_read) {
+    static const struct {
+        const char *scene;
+        double volume;
+    } files[] = {{FACES("") "<Group>" FAR(FACES("")) "</Group>", 2},
+                 {FACES("") "<Viewpoint/><Anchor/>", 1},
+                 {"<Switch whichChoice='0'>" FACES("") "</Switch>", 1},
+                 {FACES("ccw='false' ") FAR(FACES("ccw='false' ")), 2},
+                 {FACES("") "<ProtoDeclare name='P'><ProtoBody>" FACES("") "</ProtoBody></ProtoDeclare>", 1}};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
+        skg_mesh *mesh = load(x3d_of(files[f].scene));
+        ck_assert_double_eq_tol(health_of(mesh).volume, files[f].volume, 1e-6); /* floats */
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(x3d_that_is_not_read) {
+    static const struct {
+        const char *scene, *sentence;
+    } files[] = {
+        {FACES("") "<LOD range='10'>" FAR(FACES("")) "</LOD>", "LOD holds shapes"},
+        {FACES("") "<Group><Anchor><Group>" FACES("") "</Group></Anchor></Group>", "Anchor holds shapes"},
+        {"<Transform DEF='T'>" FACES("") "</Transform><Billboard><Transform USE='T'/></Billboard>",
+         "Billboard holds shapes"},
+        {FACES("") "<ProtoDeclare name='P'><ProtoBody>" FACES(
+             "") "</ProtoBody></ProtoDeclare><ProtoInstance name='P'/>",
+         "ProtoInstance places"},
+        {FACES("") FAR(FACES("ccw='false' ")), "ccw=\"false\" of some geometry"},
+        {"<Shape><Cylinder/></Shape>", "Cylinder is not read"},
+        {"<Shape><Cone/></Shape>", "Cone is not read"}};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++)
+        refuse(x3d_of(files[f].scene), SKG_ERR_FORMAT, files[f].sentence);
+    refuse(file_of("a.wrl", "#VRML V2.0 utf8\nShape { geometry Box { } }\n"), SKG_ERR_FORMAT,
+           "convert it to .x3d");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, gltf_that_moves_nothing);
@@ -147,6 +201,8 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, collada_that_is_not_read);
     tcase_add_test(tests, units_that_are_none);
     tcase_add_test(tests, turns_of_amf);
+    tcase_add_test(tests, x3d_that_is_read);
+    tcase_add_test(tests, x3d_that_is_not_read);
 }
 
 SKG_SUITE_MAIN("mesh unread", add_tests)

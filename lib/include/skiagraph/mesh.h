@@ -319,7 +319,7 @@ SKG_API skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh
 enum skg_unit_from {
     /** Nobody named one: mm. */
     SKG_UNIT_ASSUMED = 0,
-    /** The file or its format: 3MF and AMF (`unit`), COLLADA (`<unit meter>`), X3D and VRML (metres unless they say otherwise), glTF
+    /** The file or its format: 3MF and AMF (`unit`), COLLADA (`<unit meter>`), X3D (metres unless it says otherwise), glTF
      * (metres), FBX (its scale factor). */
     SKG_UNIT_FILE = 1,
     /** The caller. */
