@@ -345,6 +345,15 @@ SKG_INIT(skg_mesh_unit)
 /** Gets the unit of a mesh. */
 SKG_API skg_status skg_mesh_unit_get(const skg_mesh *mesh, skg_mesh_unit *unit);
 
+/** Gets the millimetres in a unit of length.
+ *
+ * @param name  "mm", "inch", "metre", ..., as `Unit` of scene files spells it, without regard to case
+ * @param mm    result
+ * @return SKG_ERR_FORMAT for another word
+ * @since 0.1.0
+ */
+SKG_API skg_status skg_length_unit_get(const char *name, double *mm);
+
 /** Gets the number of named pieces of the mesh's file: groups and objects of OBJ, objects of 3MF, nodes of other formats. */
 SKG_API skg_status skg_mesh_group_count(const skg_mesh *mesh, int64_t *count);
 
