@@ -212,7 +212,8 @@ typedef struct {
     double first_open_position[3];
     /** Number of triangles with two corners at the same vertex, or without area. */
     int64_t degenerate_triangles;
-    /** Number of triangles with three different vertices that repeat an earlier one, rotated or inverted. */
+    /** Number of triangles with area that repeat an earlier one, rotated or inverted. The common wall of two bodies of a closed mesh,
+     * where two triangles face each other, is none. */
     int64_t duplicate_triangles;
     /** Number of edges that more than two triangles share. */
     int64_t nonmanifold_edges;
