@@ -289,7 +289,8 @@ static skg_status create_oriented(skg_context *context, const skg_mesh *mesh, sk
         corners[3 * t + 1] = corners[3 * t + 2];
         corners[3 * t + 2] = second;
     }
-    status = skg_mesh_create(context, mesh->name,
+    /* What is said of the given mesh was said when it was made, unless its winding was left as it was. */
+    status = skg_mesh_create(mesh->as_wound ? context : NULL, mesh->name,
                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
                                                 .vertices = mesh->vertices,
                                                 .positions = positions,

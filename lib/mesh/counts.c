@@ -5,7 +5,9 @@
 #include "mesh/archive.h"
 #include "mesh/collada_lengths.h"
 #include "mesh/gltf_counts.h"
+#include "mesh/x3d_unread.h"
 #include "mesh/xml_counts.h"
+#include "mesh/xml_unread.h"
 
 #include <errno.h>
 #include <string.h>
@@ -93,7 +95,10 @@ skg_status skg_mesh_check_counts(const char *path, FILE *stream, int64_t size) {
     if (kind == SKG_XML_KINDS && !is_gltf) return SKG_OK;
     SKG_TRY(read_text(path, stream, size, kind < SKG_XML_KINDS ? kinds[kind].extensions[0] : ".gltf", &text));
     skg_status status = SKG_OK;
+    if (text && kind == SKG_XML_X3D) status = skg_mesh_check_x3d_unread(path, text);
     if (text && kind == SKG_XML_COLLADA) status = skg_mesh_check_collada_lengths(path, text);
+    if (text && status == SKG_OK && kind < SKG_XML_KINDS)
+        status = skg_mesh_check_xml_unread(path, text, kind);
     if (text && status == SKG_OK)
         status = kind < SKG_XML_KINDS ? skg_mesh_count_xml(path, size, text, kind)
                                       : skg_mesh_count_gltf(path, size, text, (size_t)size, -1);

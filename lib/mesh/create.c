@@ -375,6 +375,13 @@ skg_status skg_mesh_unit_get(const skg_mesh *mesh, skg_mesh_unit *unit) {
     return skg_struct_write(&ours, sizeof ours, "skg_mesh_unit", unit);
 }
 
+skg_status skg_length_unit_get(const char *name, double *mm) {
+    SKG_NEEDS(name);
+    SKG_NEEDS(mm);
+    *mm = 0;
+    return skg_unit_of_length(name, mm);
+}
+
 skg_status skg_mesh_group_count(const skg_mesh *mesh, int64_t *count) {
     SKG_NEEDS(mesh);
     SKG_NEEDS(count);

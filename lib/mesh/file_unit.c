@@ -19,20 +19,19 @@ static int is_one_of(const char *dot, const char *const *extensions) {
     return 0;
 }
 
-static double number_of(const skg_xml *xml, const char *name) {
+/* A length in metres, in mm; none: a metre; -1: it is no length. */
+static double mm_of(const skg_xml *xml, const char *name) {
     char text[64], *end;
-    if (skg_xml_attribute(xml, name, text, sizeof text) <= 0) return 0;
-    const double number = strtod(text, &end);
-    return end != text && *end == '\0' && number > 0 && number < 1e12 ? number : 0;
+    const int found = skg_xml_attribute(xml, name, text, sizeof text);
+    if (found == 0) return 1000;
+    const double number = found > 0 ? strtod(text, &end) : 0;
+    return number > 0 && end != text && *end == '\0' && number < 1e12 ? 1000 * number : -1;
 }
 
 /* <unit meter="0.001"/> in the first <asset>; without it, a metre (COLLADA 1.4.1, "asset"). */
 static double of_collada(skg_xml *xml) {
     while (skg_xml_next(xml) > 0 && !(xml->closes && skg_xml_is(xml, "asset")))
-        if (xml->opens && skg_xml_is(xml, "unit")) {
-            const double metres = number_of(xml, "meter");
-            return metres > 0 ? 1000 * metres : 1000;
-        }
+        if (xml->opens && skg_xml_is(xml, "unit")) return mm_of(xml, "meter");
     return 1000;
 }
 
@@ -42,10 +41,8 @@ static double of_x3d(skg_xml *xml) {
     while (skg_xml_next(xml) > 0 && !(xml->opens && skg_xml_is(xml, "Scene")))
         if (xml->opens && skg_xml_is(xml, "unit") &&
             skg_xml_attribute(xml, "category", category, sizeof category) > 0 &&
-            strcmp(category, "length") == 0) {
-            const double metres = number_of(xml, "conversionFactor");
-            return metres > 0 ? 1000 * metres : 1000;
-        }
+            strcmp(category, "length") == 0)
+            return mm_of(xml, "conversionFactor");
     return 1000;
 }
 
@@ -81,8 +78,8 @@ int skg_mesh_is_collada(const char *path) {
     return dot && is_one_of(dot, collada);
 }
 
-skg_status skg_mesh_file_unit(const char *path, FILE *stream, int64_t size, double *mm) {
-    static const char *const metres[] = {".gltf", ".glb", ".vrm", ".wrl", ".x3dv", ".x3db", NULL};
+skg_status skg_mesh_file_unit(const char *path, FILE *stream, int64_t size, int is_named, double *mm) {
+    static const char *const metres[] = {".gltf", ".glb", ".vrm", ".x3db", NULL};
     static const char *const x3d[] = {".x3d", ".x3dz", NULL}, *const amf[] = {".amf", NULL};
     const char *dot = strrchr(path, '.');
     char *head = NULL;
@@ -95,7 +92,14 @@ skg_status skg_mesh_file_unit(const char *path, FILE *stream, int64_t size, doub
     skg_xml xml = {.at = head ? head : ""};
     *mm = is_collada ? of_collada(&xml) : is_x3d ? of_x3d(&xml) : of_amf(&xml);
     skg_free(&head);
-    return SKG_OK;
+    if (*mm > 0) return SKG_OK;
+    *mm = 0;
+    if (is_named) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_FORMAT,
+        "%s: the %s of its <unit> is no length above 0; correct it, with a point for decimals, or name the "
+        "unit (Unit in a scene file, --unit, unit_mm)",
+        path, is_collada ? "meter" : "conversionFactor");
 }
 
 /* FBX: centimetres per unit. */

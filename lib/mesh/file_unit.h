@@ -9,8 +9,10 @@
 
 struct aiScene;
 
-/* mm per unit as the file or its format says; 0: neither does. */
-skg_status skg_mesh_file_unit(const char *path, FILE *stream, int64_t size, double *mm);
+/* mm per unit as the file or its format says; 0: neither does.
+ *
+ * is_named  the caller names the unit: a length in the file that is none is passed over, and otherwise fails with SKG_ERR_FORMAT */
+skg_status skg_mesh_file_unit(const char *path, FILE *stream, int64_t size, int is_named, double *mm);
 
 /* The same of a file that Assimp has read and says the unit of (FBX); 0: it does not. */
 double skg_mesh_scene_unit(const struct aiScene *scene);

@@ -1,6 +1,7 @@
 /* Counts what the nodes of a glTF file (1 or 2) place, and holds the lengths that it announces against the bytes that it has. */
 #include "mesh/gltf_counts.h"
 
+#include "mesh/gltf_unread.h"
 #include "mesh/instances.h"
 
 #include <jansson.h>
@@ -23,14 +24,6 @@ typedef struct {
     json_t *root;
     skg_instances parts;
 } gltf;
-
-/* What stands under `name` in version 2 by its number, in version 1 by its name. NULL: nothing */
-static json_t *find(const gltf *g, const char *list, const json_t *name) {
-    json_t *all = json_object_get(g->root, list);
-    if (json_is_string(name)) return json_object_get(all, json_string_value(name));
-    const json_int_t index = json_integer_value(name);
-    return json_is_integer(name) && index >= 0 ? json_array_get(all, (size_t)index) : NULL;
-}
 
 /* A length; what is not there counts as 0. */
 static double length_of(const json_t *owner, const char *name) {
@@ -67,7 +60,7 @@ static skg_status check_buffer(gltf *g, const char *name, const json_t *buffer) 
 }
 
 static skg_status check_view(gltf *g, const char *name, const json_t *view) {
-    const json_t *buffer = find(g, "buffers", json_object_get(view, "buffer"));
+    const json_t *buffer = skg_gltf_find(g->root, "buffers", json_object_get(view, "buffer"));
     const double says = length_of(view, "byteOffset") + length_of(view, "byteLength");
     const double has = length_of(buffer, "byteLength");
     return buffer && says > has ? fail_lengths(g, "bufferView", name, says, has) : SKG_OK;
@@ -89,7 +82,7 @@ static double value_bytes(const json_t *accessor) {
 
 /* What has no bytes of its own is zeros, which a file may announce up to a multiple of its length. */
 static skg_status check_accessor(gltf *g, const char *name, const json_t *accessor) {
-    const json_t *view = find(g, "bufferViews", json_object_get(accessor, "bufferView"));
+    const json_t *view = skg_gltf_find(g->root, "bufferViews", json_object_get(accessor, "bufferView"));
     const double says = length_of(accessor, "count") * value_bytes(accessor);
     const double zeros = SKG_MESH_BYTES_TIMES * (double)g->size;
     const double has = view ? length_of(view, "byteLength") : zeros > FREE_LENGTH ? zeros : FREE_LENGTH;
@@ -97,7 +90,7 @@ static skg_status check_accessor(gltf *g, const char *name, const json_t *access
 }
 
 static double count_of(const gltf *g, const json_t *accessor) {
-    return length_of(find(g, "accessors", accessor), "count");
+    return length_of(skg_gltf_find(g->root, "accessors", accessor), "count");
 }
 
 /* What a mesh takes in Assimp's memory. */
@@ -162,6 +155,7 @@ static skg_status count(gltf *g) {
     SKG_TRY(each(g, "buffers", check_buffer));
     SKG_TRY(each(g, "bufferViews", check_view));
     SKG_TRY(each(g, "accessors", check_accessor));
+    SKG_TRY(skg_mesh_check_gltf_unread(g->path, g->root));
     SKG_TRY(skg_instances_add(&g->parts, "file", 0, &file));
     SKG_TRY(each(g, "nodes", add_node));
     SKG_TRY(each(g, "meshes", add_mesh));

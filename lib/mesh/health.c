@@ -55,108 +55,13 @@ static skg_status weld(skg_mesh *mesh) {
     return SKG_OK;
 }
 
-/* The welded corners of a triangle. Returns 0 if two of them are the same vertex. */
-static int welded(const skg_mesh *mesh, int64_t triangle, uint32_t corner[3]) {
-    for (int k = 0; k < 3; k++) {
-        const int32_t given = mesh->corners[3 * triangle + k];
-        corner[k] = (uint32_t)(mesh->weld ? mesh->weld[given] : given);
-    }
-    return corner[0] != corner[1] && corner[1] != corner[2] && corner[2] != corner[0];
-}
-
-/* Lists the items (at most 3) of a triangle with the vertex of each, and returns their number. */
-typedef int (*items_of)(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]);
-
-/* The edges of a triangle, each listed at the lower of its vertices. The key is the other vertex, then the triangle
- * (fewer than 2^30), then the direction in the lowest bit. */
-static int edges_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
-    for (int k = 0; k < 3; k++) {
-        uint32_t a = corner[k], b = corner[(k + 1) % 3];
-        vertex[k] = a < b ? a : b;
-        key[k] = (uint64_t)(a < b ? b : a) << 32 | (uint64_t)triangle << 1 | (a < b);
-    }
-    return 3;
-}
-
-/* The triangle itself, listed at the lowest of its vertices. The key is the two others in order. */
-static int triangle_of(int64_t triangle, const uint32_t corner[3], uint32_t vertex[3], uint64_t key[3]) {
-    uint32_t a = corner[0], b = corner[1], c = corner[2], swap;
-    (void)triangle;
-    if (a > b) swap = a, a = b, b = swap;
-    if (b > c) swap = b, b = c, c = swap;
-    if (a > b) swap = a, a = b, b = swap;
-    vertex[0] = a;
-    key[0] = (uint64_t)b << 32 | c;
-    return 1;
-}
-
-static int compare_keys(const void *a, const void *b) {
-    uint64_t x, y;
-    memcpy(&x, a, sizeof x);
-    memcpy(&y, b, sizeof y);
-    return (x > y) - (x < y);
-}
-
-static void sort_keys(uint64_t *key, int64_t count) {
-    if (count > 32) { /* below, a call of qsort takes longer than an insertion sort */
-        qsort(key, (size_t)count, sizeof *key, compare_keys);
-        return;
-    }
-    for (int64_t i = 1; i < count; i++) {
-        uint64_t moving = key[i];
-        int64_t j = i;
-        for (; j > 0 && key[j - 1] > moving; j--) key[j] = key[j - 1];
-        key[j] = moving;
-    }
-}
-
-static void groups_free(skg_mesh_groups *found) {
-    skg_free(&found->start);
-    skg_free(&found->key);
-}
-
-/* A counting sort by vertex, then a sort of each group by key. Degenerate triangles have no items: their edges
- * cancel. */
-static skg_status group(const skg_mesh *mesh, items_of items, skg_mesh_groups *found) {
-    uint32_t corner[3], vertex[3];
-    uint64_t key[3];
-    skg_status status = SKG_OK;
-    *found = (skg_mesh_groups){0};
-    SKG_TRY_CLEANUP(skg_alloc(mesh->vertices + 2, sizeof *found->start, mesh->name, &found->start));
-    /* Counts are stored two places on, so that start[v] is where group v begins when the groups are filled. */
-    for (int64_t t = 0; t < mesh->triangles; t++)
-        for (int k = welded(mesh, t, corner) ? items(t, corner, vertex, key) : 0; k-- > 0;)
-            found->start[vertex[k] + 2]++;
-    for (int64_t v = 0; v < mesh->vertices; v++) found->start[v + 2] += found->start[v + 1];
-    SKG_TRY_CLEANUP(skg_alloc(found->start[mesh->vertices + 1], sizeof *found->key, mesh->name, &found->key));
-    for (int64_t t = 0; t < mesh->triangles; t++)
-        for (int k = welded(mesh, t, corner) ? items(t, corner, vertex, key) : 0; k-- > 0;)
-            found->key[found->start[vertex[k] + 1]++] = key[k];
-    for (int64_t v = 0; v < mesh->vertices; v++)
-        sort_keys(found->key + found->start[v], found->start[v + 1] - found->start[v]);
-    return SKG_OK;
-cleanup:
-    groups_free(found);
-    return status;
-}
-
-static int32_t root_of(int32_t *parent, int32_t v) {
-    while (parent[v] != v) v = parent[v] = parent[parent[v]];
-    return v;
-}
-
-static void join(int32_t *parent, int32_t a, int32_t b) {
-    a = root_of(parent, a), b = root_of(parent, b);
-    parent[a > b ? a : b] = a > b ? b : a;
-}
-
 /* Counts how often one edge runs in each direction, and joins the components of its triangles. */
 static void examine_edge(skg_mesh_health *health, const uint64_t *key, int64_t count, int64_t vertex,
                          int32_t *parent, int32_t *multiplicity) {
     int64_t up = 0;
     for (int64_t i = 0; i < count; i++) {
         up += (int64_t)(key[i] & 1);
-        if (i > 0) join(parent, (int32_t)(key[0] >> 1 & 0x3fffffff), (int32_t)(key[i] >> 1 & 0x3fffffff));
+        if (i > 0) skg_join(parent, (int32_t)(key[0] >> 1 & 0x3fffffff), (int32_t)(key[i] >> 1 & 0x3fffffff));
     }
     const int64_t down = count - up, most = up > down ? up : down;
     if (most > 1) health->consistent = 0;
@@ -189,33 +94,23 @@ static skg_status examine_edges(skg_mesh *mesh) {
     int32_t *parent = NULL; /* of the triangles, which edges join to components */
     int32_t multiplicity = 1;
     skg_status status = SKG_OK;
-    SKG_TRY(group(mesh, edges_of, &edges));
+    SKG_TRY(skg_mesh_group_edges(mesh, &edges));
     SKG_TRY_CLEANUP(skg_alloc(mesh->triangles, sizeof *parent, mesh->name, &parent));
     walk_edges(mesh, &edges, parent, &multiplicity);
     if (health->same_way_edges > 0 && !mesh->as_wound) {
         const int64_t same_way = health->same_way_edges;
         SKG_TRY_CLEANUP(skg_mesh_wind(mesh, &edges));
-        groups_free(&edges);
-        SKG_TRY_CLEANUP(group(mesh, edges_of, &edges));
+        skg_mesh_groups_free(&edges);
+        SKG_TRY_CLEANUP(skg_mesh_group_edges(mesh, &edges));
         walk_edges(mesh, &edges, parent, &multiplicity);
         health->same_way_edges = same_way; /* as the caller wound them */
     }
-    for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = root_of(parent, t);
+    for (int32_t t = 0; t < mesh->triangles; t++) parent[t] = skg_root_of(parent, t);
     status = skg_mesh_set_pieces(mesh, parent, multiplicity);
 cleanup:
-    groups_free(&edges);
+    skg_mesh_groups_free(&edges);
     skg_free(&parent);
     return status;
-}
-
-static skg_status count_duplicates(skg_mesh *mesh) {
-    skg_mesh_groups triangles;
-    SKG_TRY(group(mesh, triangle_of, &triangles));
-    for (int64_t v = 0; v < mesh->vertices; v++)
-        for (int64_t i = triangles.start[v] + 1; i < triangles.start[v + 1]; i++)
-            mesh->health.duplicate_triangles += triangles.key[i] == triangles.key[i - 1];
-    groups_free(&triangles);
-    return SKG_OK;
 }
 
 /* Union-find over the welded vertices that triangles use. */
@@ -227,23 +122,23 @@ skg_status skg_mesh_components(const skg_mesh *mesh, int32_t *number, int64_t *c
     for (int64_t t = 0; t < mesh->triangles; t++) {
         uint32_t corner[3];
         int32_t root[3];
-        welded(mesh, t, corner);
+        skg_mesh_welded(mesh, t, corner);
         for (int k = 0; k < 3; k++) {
             int32_t v = (int32_t)corner[k];
             if (parent[v] < 0) parent[v] = v, ++*count;
-            root[k] = root_of(parent, v);
+            root[k] = skg_root_of(parent, v);
         }
         for (int k = 1; k < 3; k++) {
-            *count -= root_of(parent, root[0]) != root_of(parent, root[k]);
-            join(parent, root[0], root[k]);
+            *count -= skg_root_of(parent, root[0]) != skg_root_of(parent, root[k]);
+            skg_join(parent, root[0], root[k]);
         }
     }
     if (number) { /* roots are replaced by -2 - number, in the order of their first triangles */
         int32_t next = 0;
         for (int64_t t = 0; t < mesh->triangles; t++) {
             uint32_t corner[3];
-            welded(mesh, t, corner);
-            number[t] = root_of(parent, (int32_t)corner[0]);
+            skg_mesh_welded(mesh, t, corner);
+            number[t] = skg_root_of(parent, (int32_t)corner[0]);
         }
         for (int64_t t = 0; t < mesh->triangles; t++) {
             if (parent[number[t]] >= 0) parent[number[t]] = -2 - next++;
@@ -252,12 +147,6 @@ skg_status skg_mesh_components(const skg_mesh *mesh, int32_t *number, int64_t *c
     }
     skg_free(&parent);
     return SKG_OK;
-}
-
-/* Rounding leaves the cross product of parallel edges at a few |u| |v| epsilon. Eight leave a margin. */
-static int no_area(const double cross[3], const double u[3], const double v[3]) {
-    const double bar = 8 * DBL_EPSILON;
-    return skg_dot(cross, cross) <= bar * bar * skg_dot(u, u) * skg_dot(v, v);
 }
 
 void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
@@ -278,7 +167,7 @@ void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
         skg_mesh_vertex(mesh, mesh->corners[3 * t + 2], c);
         for (int k = 0; k < 3; k++) u[k] = b[k] - a[k], v[k] = c[k] - a[k], a[k] -= mesh->origin[k];
         skg_cross(u, v, cross);
-        degenerate += no_area(cross, u, v);
+        degenerate += skg_mesh_no_area(cross, u, v);
         area += 0.5 * skg_length(cross);
         /* Divergence theorem: the signed volume of the tetrahedron with the mesh's origin. */
         volume += skg_dot(a, cross) / 6;
@@ -297,7 +186,7 @@ skg_status skg_mesh_examine(skg_mesh *mesh) {
     health->triangles = mesh->triangles;
     SKG_TRY(weld(mesh));
     SKG_TRY(examine_edges(mesh));
-    SKG_TRY(count_duplicates(mesh));
+    SKG_TRY(skg_mesh_count_duplicates(mesh));
     SKG_TRY(skg_mesh_components(mesh, NULL, &health->components));
     mesh->orientation = 1;
     skg_mesh_measure(mesh, health);

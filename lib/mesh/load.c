@@ -112,6 +112,12 @@ static void count_node(const struct aiScene *scene, const struct aiNode *node, d
 /* The last net, of formats that are not counted before they are opened. */
 static skg_status check_scene(const char *path, int64_t size, const struct aiScene *scene) {
     double times = 0, bytes = 0;
+    /* Assimp makes a mesh of bones where COLLADA has none */
+    if (scene->mFlags & AI_SCENE_FLAGS_INCOMPLETE && skg_mesh_is_collada(path))
+        return skg_fail(SKG_ERR_FORMAT,
+                        "%s: no triangles: its scene places no geometry; place the geometry in the program "
+                        "that made it, and export again",
+                        path);
     if (scene->mRootNode) count_node(scene, scene->mRootNode, &times, &bytes);
     SKG_TRY(skg_mesh_check_times(path, times, "node", scene->mRootNode ? scene->mRootNode->mName.data : "",
                                  times));
@@ -124,7 +130,7 @@ static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, s
     struct aiFileIO files;
     SKG_TRY(skg_archive_check(path, stream, size));
     SKG_TRY(skg_mesh_check_counts(path, stream, size));
-    SKG_TRY(skg_mesh_file_unit(path, stream, size, &arrays->file_unit_mm));
+    SKG_TRY(skg_mesh_file_unit(path, stream, size, arrays->unit_mm > 0, &arrays->file_unit_mm));
     skg_assimp_files(&files);
     const struct aiScene *scene = aiImportFileEx(path, 0, &files);
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
@@ -163,6 +169,12 @@ static skg_status refuse_kind(const char *path, FILE *stream) {
     char start[14] = "";
     const size_t length = fread(start, 1, sizeof start - 1, stream);
     rewind(stream);
+    if (strncmp(start, "#VRML", 5) == 0 || strncmp(start, "#X3D V", 6) == 0)
+        return skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: is text of VRML, which is not read; convert it to .x3d (XML), .ply or .stl, for instance with "
+            "MeshLab",
+            path);
     int is_solid = length > 12 && memcmp(start, "ISO-10303-21;", 13) == 0 && !has_extension(path, ".ifc");
     for (size_t k = 0; k < sizeof solids / sizeof *solids; k++) is_solid |= has_extension(path, solids[k]);
     if (is_solid)
@@ -205,7 +217,7 @@ int skg_mesh_is_shareable(const char *path) {
 }
 
 skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded) {
-    skg_mesh_arrays arrays = {.as_wound = reading->as_wound};
+    skg_mesh_arrays arrays = {.as_wound = reading->as_wound, .unit_mm = reading->unit_mm};
     *loaded = (skg_loaded){0};
     skg_status status = read_file(path, &arrays);
     if (status == SKG_OK && reading->group) status = skg_mesh_keep_group(&arrays, path, reading->group);

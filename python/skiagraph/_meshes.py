@@ -1,6 +1,7 @@
 """Vertices and triangles of the objects of other packages. Private."""
 from __future__ import annotations
 
+from itertools import combinations
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,8 @@ from numpy.typing import NDArray
 
 from . import _arrays
 from ._device import warn
-from ._interface import ArgumentError
+from ._interface import ArgumentError, FormatError
+from ._library import call, encode, ffi
 
 #: Corners of a cell of VTK, and the faces of a volume cell in the order in which they face outward.
 _FACES: dict[str, list[tuple[int, ...]]] = {
@@ -32,7 +34,7 @@ def parts_of(value: Any) -> tuple[Any, Any]:
         return np.asarray(value.vertices), np.asarray(value.triangles)
     if hasattr(value, "points") and hasattr(value, "cells_dict"):  # meshio, and grids of PyVista have both
         if not hasattr(value, "extract_surface"):
-            return np.asarray(value.points), triangles_of(value.cells_dict)
+            return _used(np.asarray(value.points), triangles_of(value.cells_dict))
     if hasattr(value, "points") and hasattr(value, "extract_surface"):  # PyVista
         surface = value if hasattr(value, "faces") and not hasattr(value, "cells") else value.extract_surface()
         if hasattr(surface, "triangulate") and not _is_triangles(surface.faces):
@@ -44,8 +46,24 @@ def parts_of(value: Any) -> tuple[Any, Any]:
                         "or the path of a file")
 
 
+def unit_of(value: Any) -> float:
+    """The mm in the unit that an object of trimesh names in its plural ("meters", "inches"); 1 without one."""
+    units = getattr(value, "units", None)
+    if not isinstance(units, str) or not units.strip():
+        return 1
+    mm = ffi.new("double *")
+    for name in (units.strip(), units.strip().removesuffix("s")):
+        try:
+            call("skg_length_unit_get", encode(name, "units"), mm)
+            return float(mm[0])
+        except FormatError:
+            continue
+    warn(f"the units {units!r} of the mesh are no unit of length; its numbers are taken for mm; unit_mm says what they are")
+    return 1
+
+
 def triangles_of(cells: Any) -> NDArray[Any]:
-    """Triangles of the cells of meshio: the skin of volume cells where there are some, otherwise triangles and halved quads."""
+    """Triangles of the cells of meshio: the skin of volume cells, and triangles and halved quads that are no face of one."""
     plain: dict[str, NDArray[Any]] = {}
     for kind, rows in cells.items():
         if kind in _NO_FACES:
@@ -58,10 +76,33 @@ def triangles_of(cells: Any) -> NDArray[Any]:
             warn(f"cells of the type {kind} are taken with straight edges, by their corners")
         plain[name] = np.concatenate([plain[name], corners]) if name in plain else corners
     volumes = {name: rows for name, rows in plain.items() if name in _FACES}
-    faces = _skin(volumes) if volumes else [plain[name] for name in ("triangle", "quad") if name in plain]
+    flat = [plain[name] for name in ("triangle", "quad") if name in plain]
+    faces = _skin(volumes) + [_apart(rows, volumes) for rows in flat] if volumes else flat
     if not faces:
         raise ArgumentError("the mesh has no triangles, quads or volume cells")
     return np.concatenate([part for rows in faces for part in _halves(rows)])
+
+
+def _used(points: NDArray[Any], faces: NDArray[Any]) -> tuple[NDArray[Any], NDArray[Any]]:
+    """Without the points that no triangle has, such as those inside volume cells: they would widen the bounds."""
+    used, numbers = np.unique(faces, return_inverse=True)
+    if used.size == len(points) or used[0] < 0 or used[-1] >= len(points):
+        return points, faces
+    return points[used], numbers.reshape(faces.shape)
+
+
+def _apart(rows: NDArray[Any], volumes: dict[str, NDArray[Any]]) -> NDArray[Any]:
+    """Of triangles or quads those that are no face of a volume cell, nor half of one."""
+    corners = rows.shape[1]
+    found = [rows[:0]]
+    for name, cells in volumes.items():
+        for face in _FACES[name]:
+            found += [cells[:, list(part)] for part in combinations(face, corners)]
+    faces = np.sort(np.concatenate(found), axis=1)
+    every = np.concatenate([np.unique(faces, axis=0), np.sort(rows, axis=1)])
+    _, first, inverse = np.unique(every, axis=0, return_index=True, return_inverse=True)
+    own = len(every) - len(rows)
+    return rows[first[inverse.ravel()[own:]] >= own]
 
 
 def _halves(rows: NDArray[Any]) -> list[NDArray[Any]]:

@@ -11,7 +11,7 @@ from . import _arrays
 from ._device import warn
 from ._interface import ArgumentError
 from ._library import call, doubles, encode, ffi, fill, filled, integer, make, owned, string, struct
-from ._meshes import parts_of
+from ._meshes import parts_of, unit_of
 
 
 class Mesh:
@@ -85,16 +85,18 @@ class Mesh:
         return made
 
     @classmethod
-    def from_object(cls, value: Any, *, unit_mm: float = 1, name: str = "mesh") -> Mesh:
+    def from_object(cls, value: Any, *, unit_mm: float | None = None, name: str = "mesh") -> Mesh:
         """A mesh of an object of trimesh (also a Scene), Open3D, PyVista or meshio, in units of unit_mm.
 
-        Quads are halved; of volume cells the skin is taken.
+        unit_mm: mm per unit of its numbers; None: what the `units` of an object of trimesh name, otherwise mm. Quads are halved; of
+        volume cells the skin is taken, beside triangles and quads that are no face of one. Points of meshio that no triangle has
+        are left out.
         """
         vertices, faces = parts_of(value)
-        return cls(vertices, faces, unit_mm=unit_mm, name=name)
+        return cls(vertices, faces, unit_mm=unit_of(value) if unit_mm is None else unit_mm, name=name)
 
     @classmethod
-    def from_meshio(cls, mesh: Any, *, unit_mm: float = 1, name: str | None = None) -> Mesh:
+    def from_meshio(cls, mesh: Any, *, unit_mm: float | None = None, name: str | None = None) -> Mesh:
         """A mesh of a file that meshio reads (.vtk, .vtu, .msh, .inp, ...), or of its meshio.Mesh, as from_object()."""
         if isinstance(mesh, (str, os.PathLike)):
             try:
@@ -354,4 +356,4 @@ def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None
     if isinstance(value, (str, os.PathLike)):
         return Mesh.load(value, unit_mm=unit_mm, _context=_context)
     vertices, faces = parts_of(value)
-    return Mesh(vertices, faces, unit_mm=1 if unit_mm is None else unit_mm, name=name or "mesh", _context=_context)
+    return Mesh(vertices, faces, unit_mm=unit_of(value) if unit_mm is None else unit_mm, name=name or "mesh", _context=_context)

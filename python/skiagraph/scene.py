@@ -92,7 +92,7 @@ class Scene(_gradient.Differentiable):
         """Adds a part.
 
         mesh: a Mesh, (vertices, faces), an object of trimesh, meshio or PyVista, or the path of a file, in units of
-        unit_mm (None: the file's own, otherwise mm). material: a Material or a name. inside: the part that it displaces. pose: 4 x 4, mm.
+        unit_mm (None: the file's or trimesh's own, otherwise mm). material: a Material or a name. inside: the part that it displaces. pose: 4 x 4, mm.
         """
         parent = inside.label if isinstance(inside, Part) else inside
         state = self._state

@@ -128,6 +128,22 @@ START_TEST(inverted_components_are_turned) {
 }
 END_TEST
 
+/* The larger box faces inward: the mesh is inverted as a whole, which is said once although the smaller box is turned, too. */
+START_TEST(what_is_inverted_is_said_once) {
+    static const char two[] =
+        "v -5 0 -15\nv 15 0 -15\nv -5 10 -15\nv 15 10 -15\nv -5 0 25\nv 15 0 25\nv -5 10 25\nv 15 10 25\n"
+        "f 2 4 3 1\nf 7 8 6 5\nf 5 6 2 1\nf 4 8 7 3\nf 3 7 5 1\nf 6 8 4 2\n"
+        "v 28 3 3\nv 32 3 3\nv 28 7 3\nv 32 7 3\nv 28 3 7\nv 32 3 7\nv 28 7 7\nv 32 7 7\n"
+        "f 9 11 12 10\nf 13 14 16 15\nf 9 10 14 13\nf 11 15 16 12\nf 9 13 15 11\nf 10 12 16 14\n";
+    write_text("two.obj", two);
+    ck_run(0, "lbuffer two.obj --material Al -o l.mha --json --set Repair=orientation");
+    const char *first = strstr(complained, "inverted as a whole");
+    ck_assert_ptr_nonnull(first);
+    ck_assert_ptr_null(strstr(first + 1, "inverted as a whole"));
+    ck_assert_ptr_nonnull(strstr(complained, "1 of 2 components turned"));
+}
+END_TEST
+
 /* A COLLADA file in centimetres is a scene graph, without a unit; beside it, a part that somebody made in metres is named; groups
  * become parts. */
 static const char collada[] =
@@ -328,6 +344,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_mesh_is_seen_from_any_side);
     tcase_add_test(tests, several_meshes);
     tcase_add_test(tests, inverted_components_are_turned);
+    tcase_add_test(tests, what_is_inverted_is_said_once);
     tcase_add_test(tests, overlaps_within_a_mesh);
     tcase_add_test(tests, volumes_are_parts);
     tcase_add_loop_test(tests, bad_volumes_are_refused, 0, sizeof bad_volumes / sizeof *bad_volumes);

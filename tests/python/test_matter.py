@@ -116,6 +116,29 @@ def test_volume_cells_give_their_skin():
     assert sk.Mesh.from_meshio(wedge).health["volume"] == pytest.approx(1 / 2 + 1 / 6)
 
 
+@pytest.mark.parametrize("units, mm", [("meters", 1000), ("inches", 25.4), ("millimeters", 1), ("mm", 1), (None, 1), ("", 1)])
+def test_units_of_trimesh(units, mm):
+    mesh = types.SimpleNamespace(vertices=VERTICES, faces=FACES, units=units)
+    assert sk.Mesh.from_object(mesh).health["volume"] == pytest.approx(mm**3 / 6)
+    assert volume_of(mesh) == pytest.approx(mm**3 / 6)
+    assert sk.Mesh.from_object(mesh, unit_mm=2).health["volume"] == pytest.approx(8 / 6)  # a named unit wins
+
+
+def test_units_that_are_none_are_said():
+    mesh = types.SimpleNamespace(vertices=VERTICES, faces=FACES, units="parsnips")
+    with pytest.warns(UserWarning, match="'parsnips' of the mesh are no unit"):
+        assert volume_of(mesh) == pytest.approx(1 / 6)
+
+
+def test_cells_beside_triangles_of_another_body():
+    points = np.concatenate([VERTICES, VERTICES + 10, [[99, 99, 99]]])
+    faces = np.concatenate([FACES[:1], FACES + 4])  # the first is a face of the volume cell
+    both = types.SimpleNamespace(points=points, cells_dict={"tetra": np.array([[0, 1, 2, 3]]), "triangle": faces})
+    health = sk.Mesh.from_meshio(both).health
+    assert health["closed"] and health["triangles"] == 8 and health["vertices"] == 8
+    assert health["volume"] == pytest.approx(2 / 6) and max(health["bounds"]) == 11
+
+
 def test_trimesh_itself():
     trimesh = pytest.importorskip("trimesh")
     ball = trimesh.creation.icosphere(radius=10)

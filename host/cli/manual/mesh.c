@@ -9,7 +9,7 @@ static const cli_item units[] = {{"nm", "nanometre"},  {"um", "micrometre"}, {"m
 const cli_flag cli_flag_mesh_unit = {
     "--unit", "UNIT",
     "The unit of the numbers in the files. Without it, the one that a file or its format names "
-    "(3MF, AMF, COLLADA, X3D, VRML, glTF, FBX, MetaImage, NRRD, NIfTI), otherwise mm.",
+    "(3MF, AMF, COLLADA, X3D, glTF, FBX, MetaImage, NRRD, NIfTI), otherwise mm.",
     units, CLI_NAMES_NOTHING};
 
 const cli_flag cli_flag_mesh_fix = {

@@ -212,7 +212,8 @@ typedef struct {
     double first_open_position[3];
     /** Number of triangles with two corners at the same vertex, or without area. */
     int64_t degenerate_triangles;
-    /** Number of triangles with three different vertices that repeat an earlier one, rotated or inverted. */
+    /** Number of triangles with area that repeat an earlier one, rotated or inverted. The common wall of two bodies of a closed mesh,
+     * where two triangles face each other, is none. */
     int64_t duplicate_triangles;
     /** Number of edges that more than two triangles share. */
     int64_t nonmanifold_edges;
@@ -319,7 +320,7 @@ SKG_API skg_status skg_mesh_create_oriented(skg_context *context, const skg_mesh
 enum skg_unit_from {
     /** Nobody named one: mm. */
     SKG_UNIT_ASSUMED = 0,
-    /** The file or its format: 3MF and AMF (`unit`), COLLADA (`<unit meter>`), X3D and VRML (metres unless they say otherwise), glTF
+    /** The file or its format: 3MF and AMF (`unit`), COLLADA (`<unit meter>`), X3D (metres unless it says otherwise), glTF
      * (metres), FBX (its scale factor). */
     SKG_UNIT_FILE = 1,
     /** The caller. */
@@ -344,6 +345,15 @@ SKG_INIT(skg_mesh_unit)
 
 /** Gets the unit of a mesh. */
 SKG_API skg_status skg_mesh_unit_get(const skg_mesh *mesh, skg_mesh_unit *unit);
+
+/** Gets the millimetres in a unit of length.
+ *
+ * @param name  "mm", "inch", "metre", ..., as `Unit` of scene files spells it, without regard to case
+ * @param mm    result
+ * @return SKG_ERR_FORMAT for another word
+ * @since 0.1.0
+ */
+SKG_API skg_status skg_length_unit_get(const char *name, double *mm);
 
 /** Gets the number of named pieces of the mesh's file: groups and objects of OBJ, objects of 3MF, nodes of other formats. */
 SKG_API skg_status skg_mesh_group_count(const skg_mesh *mesh, int64_t *count);
