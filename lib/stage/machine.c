@@ -20,7 +20,7 @@ skg_status skg_machine_slot_take(skg_machine *machine, int64_t frames, skg_toget
 }
 
 void skg_machine_slots_settle(skg_machine *machine) {
-    for (int i = 0; i < SKG_TABLE_SLOTS; i++) {
+    for (int i = 0; i < SKG_TABLE_SLOTS && i < machine->together_next; i++) {
         skg_together_slot *slot = &machine->together[i];
         cl_int stage = CL_COMPLETE;
         if (slot->read && clGetEventInfo(slot->read, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof stage, &stage,
