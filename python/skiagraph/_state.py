@@ -7,6 +7,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ContextManager
 
+from numpy.typing import NDArray
+
 from . import _edit
 from ._device import Device, device_of
 from ._interface import ArgumentError, SceneError
@@ -80,7 +82,7 @@ class State:
             state.read_poses = [part.pose for part in state.parts()]
         return state
 
-    def show(self, image: Any, quantity: str) -> Any:
+    def show(self, image: NDArray[Any], quantity: str) -> NDArray[Any]:
         """Remembers what an image holds, for save()."""
         shown, key = self.shown, id(image)
         shown[key] = (weakref.ref(image, lambda _gone: shown.pop(key, None)), quantity)

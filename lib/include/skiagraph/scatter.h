@@ -5,7 +5,7 @@
 #ifndef SKIAGRAPH_SCATTER_H
 #define SKIAGRAPH_SCATTER_H
 
-#include <skiagraph/types.h>
+#include <skiagraph/material.h>
 
 #ifdef __cplusplus
 extern "C" {

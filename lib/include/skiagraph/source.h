@@ -5,7 +5,7 @@
 #ifndef SKIAGRAPH_SOURCE_H
 #define SKIAGRAPH_SOURCE_H
 
-#include <skiagraph/types.h>
+#include <skiagraph/material.h>
 
 #ifdef __cplusplus
 extern "C" {
