@@ -74,9 +74,12 @@ static skg_status list_components(const skg_mesh *mesh, const int32_t *number, i
         for (int64_t t = 0; t < mesh->triangles; t++) first[number[t] + 1]++;
         for (int64_t c = 0; c < count; c++) {
             first[c + 1] += first[c];
-            (*components)[c] = (component){
-                .number = c,
-                .solid = {mesh->vertices, first[c + 1] - first[c], positions, corners + 3 * first[c], -1}};
+            (*components)[c] = (component){.number = c,
+                                           .solid = {.vertices = mesh->vertices,
+                                                     .triangles = first[c + 1] - first[c],
+                                                     .positions = positions,
+                                                     .corners = corners + 3 * first[c],
+                                                     .inside = -1}};
         }
         for (int64_t t = 0; t < mesh->triangles; t++)
             memcpy(corners + 3 * first[number[t]]++, mesh->corners + 3 * t, 3 * sizeof *corners);

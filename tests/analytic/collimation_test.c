@@ -367,11 +367,11 @@ START_TEST(unusable_jaws_are_refused) {
     check_refused(SKG_ERR_SCENE, "behind the detector at 1200 mm");
     jaws = good, jaws.low[1] = 6;
     check_refused(SKG_ERR_SCENE, "6 to 5.1 mm open along the row step");
-    jaws = good, jaws.high[0] = NAN;
+    jaws = good, jaws.high[0] = (double)NAN;
     check_refused(SKG_ERR_SCENE, "along the column step");
     jaws = good, jaws.kind = SKG_COLLIMATION_DETECTOR, jaws.margin_mm = -24;
     check_refused(SKG_ERR_SCENE, "leaves nothing of the detector, which is 48 mm wide");
-    jaws.margin_mm = INFINITY;
+    jaws.margin_mm = (double)INFINITY;
     check_refused(SKG_ERR_SCENE, "not finite");
     skg_spot_init(&spot);
     spot.shape = SKG_SPOT_CUBE, spot.extent[2] = 20, spot.samples = 64;

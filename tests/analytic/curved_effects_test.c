@@ -224,7 +224,7 @@ START_TEST(refusals) {
     skg_view view = view_of(&geometries[0], 0), other = view;
     view.radius = -5;
     ck_skg_fails(skg_view_check(&view), SKG_ERR_SCENE, "radius");
-    view.radius = NAN;
+    view.radius = (double)NAN;
     ck_skg_fails(skg_view_check(&view), SKG_ERR_SCENE, "radius");
     view.radius = 100;
     ck_skg_fails(skg_view_check(&view), SKG_ERR_SCENE, "degrees");

@@ -168,12 +168,13 @@ typedef struct {
 } truth;
 
 static long double attenuation_of(const truth *t, int row, int column) {
-    static const double nowhere[2] = {1, 0}, middle[3] = {0, 0, 0};
+    static const double middle[3] = {0, 0, 0};
     const line ray = ray_of(row, column);
     double whole[16];
     line own;
-    long double sum = 0, block[2] = {nowhere[0], nowhere[1]}, outer[2] = {nowhere[0], nowhere[1]}, cells = 0,
-                inside = 0;
+    long double sum = 0, block[2] = {1, 0}, outer[2] = {1, 0},
+                cells = 0, /* an interval from 1 to 0: nowhere */
+        inside = 0;
     const double *const boxes[2] = {t->block, t->outer};
     for (int b = 0; b < 2; b++) {
         if (!boxes[b]) continue;

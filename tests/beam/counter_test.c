@@ -213,7 +213,7 @@ START_TEST(bad_detectors_get_a_sentence) {
     fails(&c, SKG_ERR_BEAM, "a thickness of 0 mm");
     c = plain(good, 1), c.pixel_mm[1] = -1;
     fails(&c, SKG_ERR_BEAM, "a pixel of -1 mm");
-    c = plain(good, 1), c.bias_v = NAN;
+    c = plain(good, 1), c.bias_v = (double)NAN;
     fails(&c, SKG_ERR_BEAM, "a bias of nan V");
     c = plain(good, 1), c.pile_up = SKG_PILE_UP_PARALYSABLE;
     fails(&c, SKG_ERR_BEAM, "a dead time of 0 ns");

@@ -51,9 +51,9 @@ static void fill_block(double bulge) {
                 double p[3];
                 p[axis] = side * (half[axis] + bulge * (1 - a * a) * (1 - b * b));
                 p[u] = a * half[u], p[v] = b * half[v];
-                positions[3 * vertex] = (float)(p[0] * cos(0.3) - p[1] * sin(0.3));
-                positions[3 * vertex + 1] = (float)(p[0] * sin(0.3) + p[1] * cos(0.3));
-                positions[3 * vertex++ + 2] = (float)p[2];
+                positions[3 * vertex] = (double)(float)(p[0] * cos(0.3) - p[1] * sin(0.3));
+                positions[3 * vertex + 1] = (double)(float)(p[0] * sin(0.3) + p[1] * cos(0.3));
+                positions[3 * vertex++ + 2] = (double)(float)p[2];
             }
         for (int r = 0; r < SIDE; r++)
             for (int c = 0; c < SIDE; c++) {

@@ -149,7 +149,7 @@ void matter_anywhere(double way[3], uint64_t *seed) {
 
 void matter_turn(double way[3], double cosine, double azimuth) {
     const double sine = sqrt(fmax(1 - cosine * cosine, 0)), axis = way[2] * way[2] < 0.8;
-    double a[3] = {way[1] * axis, axis ? -way[0] : way[2], axis ? 0 : -way[1]}, b[3], length = 0;
+    double a[3] = {way[1] * axis, axis != 0 ? -way[0] : way[2], axis != 0 ? 0 : -way[1]}, b[3], length = 0;
     for (int k = 0; k < 3; k++) length += a[k] * a[k];
     for (int k = 0; k < 3; k++) a[k] /= sqrt(length);
     for (int k = 0; k < 3; k++) b[k] = way[(k + 1) % 3] * a[(k + 2) % 3] - way[(k + 2) % 3] * a[(k + 1) % 3];

@@ -382,7 +382,7 @@ START_TEST(refusals_name_the_mend) {
     ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 0.5, 120, &physics), SKG_ERR_MATERIAL, "outside");
     ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 120, 120, &physics), SKG_ERR_ARGUMENT,
                  "the range is empty");
-    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 20, NAN, &physics), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_scatter_physics_make(1, list, NULL, 20, (double)NAN, &physics), SKG_ERR_ARGUMENT,
                  "the range is empty");
     ck_assert_ptr_null(physics.total);
     skg_material_release(&water);

@@ -61,7 +61,7 @@ START_TEST(bad_volumes_are_refused) {
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_MATERIAL, "need no material");
     good.material = water;
     source = good;
-    values[7] = NAN;
+    values[7] = (double)NAN;
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "column 1, row 0, slice 1 is nan");
     values[7] = -5;
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT,
@@ -70,7 +70,7 @@ START_TEST(bad_volumes_are_refused) {
     values[7] = 1;
     source.affine[0] = 0;
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_SCENE, "singular");
-    source = good, source.affine[5] = NAN;
+    source = good, source.affine[5] = (double)NAN;
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_SCENE, "not finite");
     source = good, source.slices = 0;
     ck_skg_fails(skg_volume_create(&source, &volume), SKG_ERR_ARGUMENT, "3 x 2 x 0 cells");
@@ -298,11 +298,11 @@ START_TEST(nifti_files_are_read) {
     ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "begin at byte 100");
     h = nifti_of(1, 0, 1), put_int(&h, 72, 8, 2);
     ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "8 bits a value and type 4, which has 16");
-    h = nifti_of(2, 1, 1), put_reals(&h, 184, (const double[]){INFINITY}, 1);
+    h = nifti_of(2, 1, 1), put_reals(&h, 184, (const double[]){(double)INFINITY}, 1);
     ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "shifted by inf; correct scl_slope");
-    h = nifti_of(1, 0, 1), put_reals(&h, 112, (const double[]){-INFINITY}, 1);
+    h = nifti_of(1, 0, 1), put_reals(&h, 112, (const double[]){-(double)INFINITY}, 1);
     ck_skg_fails(load_nifti(&h, CELLS, &volume), SKG_ERR_FORMAT, "multiplied by -inf");
-    h = nifti_of(1, 0, 1), put_reals(&h, 112, (const double[]){NAN, NAN}, 2);
+    h = nifti_of(1, 0, 1), put_reals(&h, 112, (const double[]){(double)NAN, (double)NAN}, 2);
     ck_skg(load_nifti(&h, CELLS, &volume));
     skg_volume_release(&volume);
     h = nifti_of(1, 0, 1), memset(h.bytes + 344, 0, 4);

@@ -59,8 +59,8 @@ END_TEST
 /* What a program writes of a scene it changed: the text, steps of the detector and bins as they are. */
 START_TEST(a_text_goes_around) {
     const char *const settings[] = {
-        "Detector={\"Position\": [1, 2, 30, \"cm\"], \"NumberOfPixels\": [8, 4], \"ColumnStep\": [0.1, 0.30000000000000004, "
-        "0, \"mm\"], \"RowStep\": [0, 0, -0.7, \"mm\"]}",
+        ("Detector={\"Position\": [1, 2, 30, \"cm\"], \"NumberOfPixels\": [8, 4], \"ColumnStep\": [0.1, 0.30000000000000004, "
+         "0, \"mm\"], \"RowStep\": [0, 0, -0.7, \"mm\"]}"),
         "Source.Beam={\"Bins\": [[30, 0.1], [60.5, 7]], \"At1m\": true}", "Source.Shape=null"};
     const char *text = NULL;
     char copy[8192];

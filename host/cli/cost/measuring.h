@@ -17,7 +17,8 @@ skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *im
 
 /* The image, [pixels], of the scene's own setting with another scene, and the price of it in an empty shot. batch: [frames][pixels], to
  * work with */
-skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, double *image, cost_shot *shot);
+skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, double *image,
+                            cost_shot *shot);
 
 /* Finds a shot; negative: the setting was not measured. */
 int cost_find_shot(const cost_study *study, const cost_setting *setting);

@@ -16,8 +16,8 @@
 #define SKIAGRAPH_H
 
 #include <skiagraph/beam.h>
-#include <skiagraph/bodies.h>
 #include <skiagraph/blur.h>
+#include <skiagraph/bodies.h>
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
 #include <skiagraph/collimation.h>
