@@ -171,7 +171,8 @@ static skg_status look(const making *m, int *whole) {
     if (v->low < -NOISE_MAX * v->high)
         return fail_at(
             m, lowest,
-            "densities and attenuation coefficients are at least 0, but for noise of a quarter of the largest");
+            "densities and attenuation coefficients are at least 0, but for noise of a quarter of the largest; "
+            "set what is below 0 to 0, or say by Values what the numbers are");
     skg_volume_say(v, SKG_LOG_WARNING, "%" PRId64 " of its values are below 0, down to %g, and count as 0",
                    below, v->low);
     v->low = 0;

@@ -122,10 +122,8 @@ static skg_status read_projection(reconstruction *r, int64_t k) {
     return stack_attenuation(r->stack, k, r->image) == CLI_DONE ? SKG_OK : SKG_ERR_FILE;
 }
 
-/* Where a millionth of the flat field or less arrives, the readers give -ln of that. */
 static void count_dark(reconstruction *r) {
-    static const double LEAST = 1e-6;
-    const float most = (float)-log(LEAST);
+    const float most = (float)-log(STACK_LEAST);
     for (int64_t i = 0; i < r->pixels; i++) r->dark += r->image[i] == most;
 }
 

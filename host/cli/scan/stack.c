@@ -224,7 +224,6 @@ void stack_scan(stack_reader *r, skg_scan **scan, double axis[3], double centre[
 }
 
 int stack_attenuation(stack_reader *r, int64_t index, float *image) {
-    static const double LEAST = 1e-6; /* of the flat field, as of an .h5 */
     const int64_t pixels = r->images.columns * r->images.rows;
     const int exit_status = pages_read(&r->images, index, r->values);
     for (int64_t i = 0; i < pixels && exit_status == CLI_DONE; i++) {
@@ -232,7 +231,7 @@ int stack_attenuation(stack_reader *r, int64_t index, float *image) {
         const double white = (r->white ? r->white[i] : r->flat_field) - dark;
         const double share = (value - dark) / white;
         /* what is no number stays so, and is refused where it stands */
-        image[i] = (float)(is_attenuation(r) ? value : -log(share < LEAST ? LEAST : share));
+        image[i] = (float)(is_attenuation(r) ? value : -log(share < STACK_LEAST ? STACK_LEAST : share));
     }
     return exit_status;
 }

@@ -26,9 +26,11 @@ typedef struct skg_material skg_material;
  *
  *     "Fe", "Iron"           an element by symbol or name
  *     "bone cortical icru44" a name of the tables, without regard to case, blanks and punctuation, or words
- *                            that only one name contains
+ *                            that only one name contains; four letters or more may be the beginning of a word
  *     "H2O", "Ca5(PO4)3OH"   a chemical formula by atoms; refused if its numbers add up to 100 +- 1, because
- *                            fractions by mass were probably meant
+ *                            fractions by mass were probably meant. Refused, too, because they hardly ever mean the formula:
+ *                            one element that is no molecule ("SS409", "C45"), "PC", "PS", "PU" and other plastics, and a
+ *                            dopant in brackets without a number ("NaI(Tl)"). Digits below the line count as digits
  *     "weight:Ti90Al6V4"     fractions by mass, in parts of 100
  *     "HU:52"                tissue by Hounsfield number, see skg_material_create_hounsfield
  *     "solution:Iodine:300"  300 mg/ml in water, see skg_material_create_solution

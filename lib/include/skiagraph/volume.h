@@ -23,9 +23,9 @@ enum skg_volume_values {
      * skg_material_create_hounsfield; they are rounded to whole numbers. Below -1000 is air; above 3000 bone of rising density
      * goes on, of which a note says how many cells there are. */
     SKG_VOLUME_HU = 0,
-    /** Densities, g/cm3, at least 0. They need a material or classes. */
+    /** Densities, g/cm3, at least 0 but for noise, which counts as 0. They need a material or classes. */
     SKG_VOLUME_DENSITY = 1,
-    /** Linear attenuation coefficients at every energy, 1/cm, at least 0. */
+    /** Linear attenuation coefficients at every energy, 1/cm, at least 0 but for noise, which counts as 0. */
     SKG_VOLUME_MU = 2
 };
 
@@ -89,7 +89,7 @@ SKG_INIT(skg_volume_source)
 /** Makes a volume.
  *
  *     volume    result; the caller releases it
- *     errors    SKG_ERR_ARGUMENT: sizes, types, a singular affine, a value that is not finite or below 0, with its place;
+ *     errors    SKG_ERR_ARGUMENT: sizes, types, a singular affine, a value that is not finite, or below 0 by more than noise (a quarter of the largest), with its place;
  *               SKG_ERR_MATERIAL: no material, or one without elements; SKG_ERR_MEMORY
  *     method    whole numbers of at most 65,536 different values take 16 bits a cell. Other densities and
  *               coefficients take 32 bits, in 2^-30 of the largest; with classes, 65,536 levels */
@@ -142,7 +142,7 @@ typedef struct {
     double mass;
     /** Cells whose Hounsfield number is above 3000. */
     int64_t beyond;
-    /** Sentences about its file (skg_volume_remark_get). */
+    /** Sentences about it and its file (skg_volume_remark_get). */
     int64_t remarks;
 } skg_volume_contents;
 
@@ -158,8 +158,8 @@ SKG_API skg_status skg_volume_contents_get(const skg_volume *volume, skg_volume_
 SKG_API skg_status skg_volume_class_get(const skg_volume *volume, int64_t index, const char **name,
                                         double *share);
 
-/** Gets sentence 0 <= index < remarks about the file of a volume: that it names another unit than the caller, or does not say
- * the size of cells or the order of bytes, and what was taken.
+/** Gets sentence 0 <= index < remarks about a volume: how many of its values count as 0 because noise has taken them below it; that its
+ * file names another unit than the caller, or does not say the size of cells or the order of bytes, and what was taken.
  *
  *     level      result: SKG_LOG_WARNING or SKG_LOG_NOTE (context.h)
  *     sentence   result: what follows the name of the volume and a colon, valid as long as the volume
