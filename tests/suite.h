@@ -32,6 +32,17 @@ static inline int suite_notes(void) {
         return;                                                                                              \
     } while (0)
 
+/* Whether the tests run that take long and whose subject others prove, too: ./check --full sets SKG_FULL. Beside each use stands which
+ * others. */
+static inline int suite_full(void) {
+    return getenv("SKG_FULL") != NULL;
+}
+
+/* How many turns of a loop run: all, or the first few. */
+static inline int suite_turns(size_t all, int few) {
+    return suite_full() ? (int)all : few;
+}
+
 #define SKG_SUITE_MAIN(name, add_tests)                                                                      \
     int main(void) {                                                                                         \
         suite_notes();                                                                                       \

@@ -285,10 +285,10 @@ static void check_round(const char *what, const solid *s, form *of, double sagit
 }
 
 START_TEST(sphere_shell_and_torus) {
-    enum { AROUND = 200 };
-    const double bend = 2 * (1 - cos(pi / AROUND));
-    solid sphere = solid_sphere(50, AROUND, AROUND / 2), shell = solid_shell(50, 45, AROUND, AROUND / 2),
-          torus = solid_torus(35, 15, AROUND, AROUND / 2);
+    const int around = suite_full() ? 200 : 80; /* the caster takes its square; bars follow the bend */
+    const double bend = 2 * (1 - cos(pi / around));
+    solid sphere = solid_sphere(50, around, around / 2), shell = solid_shell(50, 45, around, around / 2),
+          torus = solid_torus(35, 15, around, around / 2);
     check_round("sphere", &sphere, sphere_form, 50 * bend);
     check_round("shell", &shell, shell_form, 50 * bend);
     check_round("torus", &torus, torus_form,

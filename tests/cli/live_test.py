@@ -380,16 +380,16 @@ def scatter(path):
 
 
 def interrupted(path):
-    """A wish ends the last step of scatter, which takes long; so does Ctrl-C."""
+    """A wish ends a step of scatter; so does Ctrl-C."""
     beam = {"Source.Beam": {"kVp": 80, "mAs": 1}, "Samples.tissue.Material": "Water", "Samples.bone.Material": "Aluminium"}
     with Server(command, path) as server:
         page = Page(server)
         for i in range(2):
             wish = page.wish(settings=beam | {"Scatter": 1e-4, "Detector.Position": [0, 10 + i, 0, "cm"]})
-            shot = page.find(lambda m: isinstance(m, dict) and m.get("wish") == wish and (m.get("scatter") or {}).get("histories", 0) > 2**21)
+            shot = page.find(lambda m: isinstance(m, dict) and m.get("wish") == wish and (m.get("scatter") or {}).get("histories", 0) > 2**19)
             page.send({"ack": shot["shot"]})
             worked, end = server.processor_seconds(), time.monotonic() + LIMIT
-            while server.processor_seconds() < worked + 0.5 and time.monotonic() < end:  # of the last step, which takes minutes
+            while server.processor_seconds() < worked + 0.5 and time.monotonic() < end:  # of a step that takes longer
                 time.sleep(0.01)
             if i == 0:
                 newer = page.wish()

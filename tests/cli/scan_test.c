@@ -247,7 +247,6 @@ END_TEST
 /* Killed by SIGKILL at 20 random moments, and each time continued: the bytes are those of a scan without an
  * interruption. */
 START_TEST(kills_leave_no_trace) {
-    enum { KILLS = 20 };
     static const char scan[] =
         "\"Scan={\\\"NumberOfProjections\\\":400,\\\"FinalAngle\\\":360}\" --set \"Detector.NumberOfPixels=[130,98]\"";
     static const char *const names[] = {"scan.mha", "scan.raw", "scan.tif", "scan.h5"};
@@ -262,7 +261,7 @@ START_TEST(kills_leave_no_trace) {
     clock_gettime(CLOCK_MONOTONIC, &ended);
     const double span =
         (double)(ended.tv_sec - begun.tv_sec) + 1e-9 * (double)(ended.tv_nsec - begun.tv_nsec);
-    for (int kills = 0; kills < KILLS; kills++) {
+    for (int kills = 0; kills < suite_turns(20, 5); kills++) {
         /* The shell is replaced by the command, so that the signal meets the command. */
         char line[1024];
         snprintf(line, sizeof line, "cd %s && exec %s scan scene.json --quiet -o %s --set %s 2>.complained",

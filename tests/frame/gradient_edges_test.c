@@ -114,6 +114,7 @@ static skg_plan *plan_boxes(const skg_view *view, int is_double) {
 START_TEST(sides_count_where_their_part_wins) {
     static double adjoint[PIXELS], found[PIXELS];
     const edge_case *c = &cases[_i / 2];
+    if (!suite_full() && _i % 2 == 0) return; /* gradient_closed.c has cones in single */
     double poses[BOXES][6], twists[BOXES][6] = {{0}}, sum = 0;
     const double expected = c->change / (pitch * pitch);
     skg_gradient gradient;
@@ -189,7 +190,7 @@ START_TEST(sides_in_a_cone_beam) {
     view.source[0] = c->boxes[c->moving].size[0] / 2 + c->boxes[c->moving].at[0];
     const double expected = change_in_cone(c);
     make_boxes(c->boxes);
-    skg_plan *plan = plan_boxes(&view, 1);
+    skg_plan *plan = plan_boxes(&view, suite_full()); /* single: the same bar */
     for (int p = 0; p < PIXELS; p++) adjoint[p] = p % SIDE >= SIDE / 2;
     const skg_adjoint given = adjoint_of(adjoint);
     skg_gradient_init(&gradient);

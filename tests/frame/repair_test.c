@@ -165,7 +165,9 @@ START_TEST(in_through_one_hole_and_out_through_another) {
         ck_assert_double_eq(left_out.mm[SIDE / 2][SIDE / 2], 0);
         ck_assert_double_eq(neighbours.mm[SIDE / 2][SIDE / 2], 0);
         ck_assert_double_le(worst(&exact, &truth), DOUBLE_TOLERANCE);
-        for (int32_t strategy = SKG_STRATEGY_COPIES; strategy <= SKG_STRATEGY_ATOMICS; strategy++) {
+        /* bits_test has all of them in parallel beams. */
+        for (int32_t strategy = SKG_STRATEGY_COPIES;
+             strategy <= SKG_STRATEGY_ATOMICS && (!projection || suite_full()); strategy++) {
             w.strategy = strategy;
             take(&broken, NULL, &w, &left_out);
             ck_assert_mem_eq(left_out.mm, exact.mm, sizeof exact.mm);

@@ -1,4 +1,6 @@
-"""What the tests of Python share."""
+"""What the tests of Python share. Those marked `full` run where SKG_FULL is set, as ./check --full does: each says what else proves it."""
+import os
+
 import numpy as np
 import pytest
 
@@ -7,6 +9,17 @@ from skiagraph import _command
 
 SIDE = 48
 MU = 0.2
+
+
+def pytest_configure(config):
+    config.addinivalue_line("markers", "full: takes long, and another test proves the same")
+
+
+def pytest_collection_modifyitems(config, items):
+    if "SKG_FULL" not in os.environ:
+        late = [item for item in items if item.get_closest_marker("full")]
+        config.hook.pytest_deselected(items=late)
+        items[:] = [item for item in items if item not in late]
 
 
 @pytest.fixture

@@ -102,6 +102,7 @@ def test_a_scene_file(tmp_path, fan):
             sk.Scene(path)
 
 
+@pytest.mark.full  # reconstruct_test: an_equiangular_fan
 def test_third_generation(tmp_path, fan):
     """A scanner whose detector turns with the source: a uniform cylinder has its coefficient, to 1 %, also beside the middle plane."""
     fan = sk.View(source=fan.source, detector=fan.detector, column_step=(-1.2, 0, 0), row_step=fan.row_step, pixels=(384, 8),

@@ -327,6 +327,7 @@ def test_foam_of_120_spheres_at_half_the_box(seed):
     assert found["closed"] and 110 < found["components"] < 130 and 0.44 * side ** 3 < found["volume"] < 0.5 * side ** 3
 
 
+@pytest.mark.full  # test_dense_foam
 def test_foam_that_is_too_dense():
     with pytest.raises(sk.ArgumentError, match="fill 80.* % of the box; give a smaller percentage"):
         gvxr.makeFoamInCuboid("pores", "", 10, 10, 10, 2, 80, 0, 0.5, "mm")

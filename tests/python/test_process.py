@@ -48,6 +48,7 @@ def test_changes_are_pickled(scene):
     assert (pickle.loads(pickle.dumps(scene)).image() == scene.image()).all()
 
 
+@pytest.mark.full  # test_spawned_processes, test_breath
 def test_a_breath_is_pickled(tmp_path):
     scene = sk.Scene(sk.thorax(tmp_path / "a" / "folder", 10000), settings={"Detector.NumberOfPixels": [16, 16]})
     scene.breathe(phase=0.3)

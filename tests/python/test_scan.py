@@ -370,6 +370,7 @@ def test_cost_sees_every_change(path):
     assert state_of(moved).is_changed()
 
 
+@pytest.mark.full  # test_a_breathing_scan, reconstruct_test
 @pytest.mark.skipif(not shutil.which("skiagraph"), reason="the command is not on the PATH")
 def test_a_dome_in_four_dimensions(tmp_path):
     """A scan while the thorax breathes, reconstructed at two phases: the dome is where the meshes have it."""

@@ -105,6 +105,7 @@ def test_a_run(server):
     assert refused(server, "tick", REST) == 400
 
 
+@pytest.mark.full  # test_a_run
 def test_the_replay_has_the_same_images(server, modules):
     """After test_a_run: by the server, by the program, and image by image."""
     folder = server.trainer.folder
