@@ -58,6 +58,12 @@ static skg_box skg_between_winners(const skg_box *box, __global const int *span,
     return seen;
 }
 
+/* Whether nothing is listed of a row of a triangle. */
+static int skg_is_apart(const skg_box *box, __global const int *spans, const skg_range *range, int row, int background) {
+    const skg_box seen = skg_between_winners(box, spans + 2 * (range->pixel_j + row), range->pixel_i, background);
+    return seen.i0 >= seen.i1;
+}
+
 /* Clears what a frame counts; a work-item takes a row of the window. */
 __kernel void skg_hits_clear(skg_hits_args args, __global int2 *spans, __global int *counts, __global uint *starts,
                              __global skg_hit_count *total) {
@@ -91,9 +97,12 @@ __kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __g
     skg_box box;
     skg_corners(corners, projected, &range, range.first + item - runs[3 * run], &a, &b, &c);
     if (!skg_bounds(&range, a, b, c, skg_window(&range, args.window[0], args.window[1], args.window[2], args.window[3]), &box)) return;
+    int row = box.j0 + (int)get_global_id(1);
+    while (row < box.j1 && skg_is_apart(&box, spans, &range, row, background)) row += (int)get_global_size(1);
+    if (row >= box.j1) return; /* most, before their face is worked out */
     skg_face f;
     skg_face_of(&range, a, b, c, &f);
-    for (int row = box.j0 + (int)get_global_id(1); row < box.j1; row += (int)get_global_size(1)) {
+    for (; row < box.j1; row += (int)get_global_size(1)) {
         __global int *span = spans + 2 * (range.pixel_j + row);
         const skg_box seen = skg_between_winners(&box, span, range.pixel_i, background);
         if (seen.i0 >= seen.i1) continue;
