@@ -27,13 +27,13 @@ static void warn_of_bands(const skg_recipe *recipe, const skg_context *context) 
                 beam->energy_kev[beam->count - 1]);
 }
 
-/* A position of the mesh in the world, from the source. */
-static void place(const double *pose, const double *source, const double *at, double *from_source) {
-    for (int r = 0; r < 3; r++) from_source[r] = skg_dot(pose + 4 * r, at) + pose[4 * r + 3] - source[r];
+/* A position of the mesh in the world, from a point. */
+static void place(const double *pose, const double *point, const double *at, double *from_point) {
+    for (int r = 0; r < 3; r++) from_point[r] = skg_dot(pose + 4 * r, at) + pose[4 * r + 3] - point[r];
 }
 
-/* Whether the box about the mesh holds the source, in the world's axes. */
-static int box_holds(const skg_mesh *mesh, const double *pose, const double *source) {
+/* Whether the box about the mesh holds a point, in the world's axes. */
+static int box_holds(const skg_mesh *mesh, const double *pose, const double *point) {
     float lowest[3], highest[3];
     double low[3] = {HUGE_VAL, HUGE_VAL, HUGE_VAL}, high[3] = {-HUGE_VAL, -HUGE_VAL, -HUGE_VAL};
     int64_t bad = 0;
@@ -42,33 +42,32 @@ static int box_holds(const skg_mesh *mesh, const double *pose, const double *sou
         double at[3], way[3];
         for (int k = 0; k < 3; k++)
             at[k] = mesh->origin[k] + (double)(corner >> k & 1 ? highest[k] : lowest[k]);
-        place(pose, source, at, way);
+        place(pose, point, at, way);
         for (int k = 0; k < 3; k++) low[k] = fmin(low[k], way[k]), high[k] = fmax(high[k], way[k]);
     }
     return low[0] < 0 && low[1] < 0 && low[2] < 0 && high[0] > 0 && high[1] > 0 && high[2] > 0;
 }
 
-/* How many times the surface of the mesh winds about the source: the solid angles of its triangles over 4 pi. */
-static double winding(const skg_mesh *mesh, const double *pose, const double *source) {
+/* How many times the surface of the mesh winds about a point: the solid angles of its triangles over 4 pi. */
+static double winding(const skg_mesh *mesh, const double *pose, const double *point) {
     double sum = 0;
     for (int64_t t = 0; t < mesh->triangles; t++) {
         double corner[3][3];
         for (int c = 0; c < 3; c++) {
             double at[3];
             skg_mesh_vertex(mesh, mesh->corners[3 * t + c], at);
-            place(pose, source, at, corner[c]);
+            place(pose, point, at, corner[c]);
         }
         sum += skg_solid_angle(corner[0], corner[1], corner[2]);
     }
     return sum / (4 * SKG_PI);
 }
 
-static int holds_source(const skg_recipe *recipe, int64_t part) {
+static int holds(const skg_recipe *recipe, int64_t part, const double *point) {
     /* 1 inside, 0 outside, 1/2 on a face. A leaky mesh lacks the angles of its holes. */
     static const double INSIDE = 0.75;
     const skg_scene_part_data *p = &recipe->scene->parts[part];
-    const double *source = recipe->view.source;
-    return box_holds(p->mesh, p->pose, source) && fabs(winding(p->mesh, p->pose, source)) > INSIDE;
+    return box_holds(p->mesh, p->pose, point) && fabs(winding(p->mesh, p->pose, point)) > INSIDE;
 }
 
 static int64_t depth_of(const skg_scene *scene, int64_t part) {
@@ -77,13 +76,19 @@ static int64_t depth_of(const skg_scene *scene, int64_t part) {
     return depth;
 }
 
-/* Of nested parts, the innermost is named. */
-static void warn_of_source(const skg_recipe *recipe, const skg_context *context) {
+/* The innermost part that holds a point; -1: none. */
+static int64_t innermost(const skg_recipe *recipe, const double *point) {
     const skg_scene *scene = recipe->scene;
     int64_t found = -1;
-    if (recipe->view.projection != SKG_PROJECTION_POINT) return;
     for (int64_t p = 0; p < scene->count; p++)
-        if (holds_source(recipe, p) && (found < 0 || depth_of(scene, p) > depth_of(scene, found))) found = p;
+        if (holds(recipe, p, point) && (found < 0 || depth_of(scene, p) > depth_of(scene, found))) found = p;
+    return found;
+}
+
+static void warn_of_source(const skg_recipe *recipe, const skg_context *context) {
+    const skg_scene *scene = recipe->scene;
+    if (recipe->view.projection != SKG_PROJECTION_POINT) return;
+    const int64_t found = innermost(recipe, recipe->view.source);
     if (found < 0) return;
     skg_log(
         context, SKG_LOG_WARNING,
@@ -92,8 +97,21 @@ static void warn_of_source(const skg_recipe *recipe, const skg_context *context)
         scene->parts[found].label);
 }
 
-/* The larger side of the detector, seen from the source at the depth of a part, mm; 0: the part is not between the two. */
-static double field_at(const skg_view *view, const double *centre) {
+/* A room about source and detector is meant, and of it the source is told. */
+static void warn_of_detector(const skg_recipe *recipe, const skg_context *context) {
+    const skg_view *view = &recipe->view;
+    const int64_t found = innermost(recipe, view->centre);
+    if (found < 0 || holds(recipe, found, view->source)) return;
+    skg_log(
+        context, SKG_LOG_WARNING,
+        "the middle of the detector lies inside %s: rays end there, and what of it lies behind the detector is not seen; if that "
+        "is not meant, move the detector or the part",
+        recipe->scene->parts[found].label);
+}
+
+/* The larger side of the detector, seen from the source at the depth of a part, mm; 0: the part is behind the source. Of a part that
+ * reaches further than the detector, or from behind the source, that at the detector. reach: from its middle */
+static double field_at(const skg_view *view, const double *centre, double reach) {
     const double columns = (double)view->columns * skg_length(view->column_step),
                  rows = (double)view->rows * skg_length(view->row_step), side = fmax(columns, rows);
     double normal[3], to_detector[3], to_part[3];
@@ -102,7 +120,8 @@ static double field_at(const skg_view *view, const double *centre) {
     skg_add_scaled(view->centre, -1, view->source, to_detector);
     skg_add_scaled(centre, -1, view->source, to_part);
     const double whole = skg_dot(normal, to_detector), part = skg_dot(normal, to_part);
-    return whole != 0 && part / whole > 0 ? side * part / whole : 0;
+    if (whole == 0 || part / whole <= -reach * skg_length(normal) / fabs(whole)) return 0;
+    return part / whole > 0 && part / whole < 1 ? side * part / whole : side;
 }
 
 /* Warns of the part whose size fits the field of view least: a unit may be wrong, and the picture of a wrong size looks alike. */
@@ -123,7 +142,7 @@ static void warn_of_sizes(const skg_recipe *recipe, const skg_context *context) 
         }
         skg_pose_point(part->pose, middle, middle);
         side *= cbrt(fabs(skg_pose_determinant(part->pose)));
-        const double field = field_at(&recipe->view, middle);
+        const double field = field_at(&recipe->view, middle, 0.5 * side);
         const double factor = side > 0 && field > 0 ? fmax(side / field, field / side) : 1;
         count += factor > MOST;
         if (factor <= worst) continue;
@@ -147,5 +166,6 @@ static void warn_of_sizes(const skg_recipe *recipe, const skg_context *context) 
 void skg_plan_warn_doubts(const skg_recipe *recipe, const skg_context *context) {
     warn_of_bands(recipe, context);
     warn_of_source(recipe, context);
+    warn_of_detector(recipe, context);
     warn_of_sizes(recipe, context);
 }

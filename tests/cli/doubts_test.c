@@ -49,6 +49,35 @@ START_TEST(source_inside_a_part) {
 END_TEST
 
 /* A weight without bands would weigh nothing. */
+/* A part about the middle of the detector, and none about source and detector, of which the source is told. */
+START_TEST(detector_inside_a_part) {
+    ck_run(0, "image scene.json" POINT "--set 'Detector.Position=[0,3,0,\"mm\"]' -o a.mha");
+    ck_assert_ptr_nonnull(strstr(complained, "the middle of the detector lies inside bone: rays end there"));
+    ck_run(0, "image scene.json" POINT "-o a.mha");
+    ck_assert_ptr_null(strstr(complained, "the middle of the detector"));
+    ck_run(0, "image scene.json" POINT
+              "--set 'Source.Position=[0,-15,0,\"mm\"]' --set 'Detector.Position=[0,15,0,\"mm\"]' -o a.mha");
+    ck_assert_ptr_nonnull(strstr(complained, "the source lies inside skin:"));
+    ck_assert_ptr_null(strstr(complained, "the middle of the detector"));
+}
+END_TEST
+
+/* In metres instead of mm, with a corner at the origin or the middle behind the source or the detector: the box is as large. */
+START_TEST(boxes_of_another_unit) {
+    static const int middles[] = {0, 20000, -20000};
+    for (int k = 0; k < 3; k++) {
+        ck_run(
+            0,
+            "image scene.json" POINT
+            "--set 'Samples.skin.Cube=[300,\"m\"]' --set 'Samples.skin.Transform=[[\"Translation\",%d,%d,0,\"mm\"]]' -o a.mha",
+            middles[k], middles[k]);
+        ck_assert_msg(strstr(complained, "skin: its box is 3e+05 mm long, over 500 times of the field") !=
+                          NULL,
+                      "%d: %s", middles[k], complained);
+    }
+}
+END_TEST
+
 START_TEST(flags_without_effect) {
     ck_run_fails(2, "--band-weight weighs the photons of bands; add --bands",
                  "image scene.json --quantity transmission --band-weight energy -o a.mha");
@@ -152,6 +181,8 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scene, tear_down);
     tcase_add_test(tests, empty_bands);
     tcase_add_test(tests, source_inside_a_part);
+    tcase_add_test(tests, detector_inside_a_part);
+    tcase_add_test(tests, boxes_of_another_unit);
     tcase_add_test(tests, flags_without_effect);
     tcase_add_test(tests, noise_without_a_load);
     tcase_add_test(tests, phases_end_below_one);

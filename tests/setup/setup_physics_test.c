@@ -373,6 +373,8 @@ static const struct {
     {"Source.Beam={\"kVp\": 85, \"Filter\": [[\"Cu\"]]}", SKG_ERR_FORMAT, "Filter[0]: has 1 elements"},
     {"Source.Beam={\"kVp\": 85, \"Filter\": [[\"Cu\", -1]]}", SKG_ERR_BEAM, "filter 1 is -1 mm"},
     {"Source.Beam={\"kVp\": 85, \"Exposure time\": [1, \"s\"]}", SKG_ERR_FORMAT, "go together"},
+    {"Source.Beam={\"kVp\": 85, \"mAs\": 10, \"Exposure time\": [100, \"ms\"], \"Current\": [50, \"mA\"]}",
+     SKG_ERR_FORMAT, "10 mAs, but exposure time and tube current make 5"},
     {"Source.Beam={\"kVp\": 85, \"Exposure time\": [1, \"h\"], \"Current\": 1}", SKG_ERR_FORMAT,
      "unit of time"},
     {"Source.Beam={\"kVp\": 85, \"TextFile\": \"a\"}", SKG_ERR_FORMAT, "several beams"},

@@ -84,14 +84,19 @@ static skg_status read_mas(const skg_json_object *beam, double *mas, int32_t *gi
     skg_json_node current = skg_json_member(beam, "X-ray tube current");
     double t = 0, i = 0;
     *given = node.value || (time.value && current.value);
-    if (node.value) return skg_json_number(&node, mas);
-    if (!time.value && !current.value) return SKG_OK;
-    if (!*given)
+    if (node.value) SKG_TRY(skg_json_number(&node, mas));
+    if (!time.value || !current.value) {
+        if (node.value || (!time.value && !current.value)) return SKG_OK;
         return skg_json_fail(time.value ? &time : &current, SKG_ERR_FORMAT,
                              "exposure time and tube current go together; give both, or mAs");
+    }
     SKG_TRY(read_quantity(&time, "unit of time", times, seconds, 7, &t));
     SKG_TRY(read_quantity(&current, "unit of tube current", currents, milliamperes, 6, &i));
-    *mas = t * i;
+    if (node.value && fabs(*mas - t * i) > 1e-3 * fabs(*mas)) /* numbers of files are rounded */
+        return skg_json_fail(&node, SKG_ERR_FORMAT,
+                             "%g mAs, but exposure time and tube current make %g; leave out what is wrong",
+                             *mas, t * i);
+    if (!node.value) *mas = t * i;
     return SKG_OK;
 }
 

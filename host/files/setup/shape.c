@@ -191,5 +191,12 @@ skg_status skg_setup_read_shape(skg_setup_reader *reader, const skg_json_object 
         return skg_json_fail(sample->node, SKG_ERR_FORMAT,
                              "has no shape; give a Path, or a Cube, Cuboid, Cylinder, Sphere or StepWedge");
     skg_json_node node = skg_json_member(sample, shapes[found]);
+    static const char *const of_files[] = {"Unit", "Group"};
+    for (int k = 0; k < 2 && found != PATH; k++) {
+        const skg_json_node other = skg_json_member(sample, of_files[k]);
+        if (other.value)
+            return skg_json_fail(&other, SKG_ERR_FORMAT, "%s is for files, and a %s has none%s; leave it out",
+                                 of_files[k], shapes[found], k ? "" : ": its unit stands with its lengths");
+    }
     return found == PATH ? load(reader, sample, &node, flip, cache, mesh) : make(&node, found, mesh, own);
 }
