@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Union
 import numpy as np
 from numpy.typing import ArrayLike
 
-from . import _command
+from . import _arrays, _command
 from ._interface import ArgumentError, SceneError
 
 if TYPE_CHECKING:
@@ -25,7 +25,7 @@ def write(path: pathlib.Path, image: Any, name: str) -> str:
     """An array as a MetaImage of doubles; a file as it stands."""
     if isinstance(image, (str, os.PathLike)):
         return str(os.fspath(image))
-    values = np.ascontiguousarray(image, dtype="<f8")
+    values = np.ascontiguousarray(_arrays.numbers(image, name), dtype="<f8")
     if values.ndim != 2:
         raise ArgumentError(f"{name}: an array of shape {values.shape}; give [row, column], or a file")
     rows, columns = values.shape

@@ -105,7 +105,9 @@ def test_what_cannot_be_is_refused(tmp_path):
         scene.add_volume("ct", cells, np.diag([1, 1, 0, 1]))
     with pytest.raises(sk.Error, match="column 1, row 2, slice 0 is nan"):
         scene.add_volume("ct", np.where(np.arange(24).reshape(2, 3, 4) == 9, np.nan, 0), AFFINE)
-    scene.add_volume("ct", cells, AFFINE)
+    with pytest.raises(sk.ArgumentError, match="array has 3 masked values of 24"):
+        scene.add_volume("ct", np.ma.masked_less(np.arange(24.0).reshape(2, 3, 4), 3), AFFINE)
+    scene.add_volume("ct", np.ma.masked_less(cells, 0), AFFINE)  # none is
     with pytest.raises(sk.Error, match="whose cells say"):
         scene["ct"].material = "Water"
     with pytest.raises(sk.Error, match="not pickled"):

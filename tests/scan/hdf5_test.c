@@ -216,6 +216,26 @@ START_TEST(a_packed_copy_is_the_same_scan) {
 }
 END_TEST
 
+/* Where the flat field is not above the dark field a pixel sees nothing of the beam: it is dark, and not open. */
+START_TEST(a_pixel_without_a_flat_field_is_dark) {
+    static float white[FLATS][PIXELS], line[PIXELS];
+    skg_scan_reader *reader = NULL;
+    make_file(0);
+    const hid_t root = H5Fopen(path, H5F_ACC_RDWR, H5P_DEFAULT);
+    read_set(root, "exchange/data_white", H5T_NATIVE_FLOAT, (hsize_t)FLATS * PIXELS, white);
+    for (int k = 0; k < FLATS; k++) white[k][7] = 0;
+    const hid_t set = H5Dopen2(root, "exchange/data_white", H5P_DEFAULT);
+    ck_assert(H5Dwrite(set, H5T_NATIVE_FLOAT, H5S_ALL, H5S_ALL, H5P_DEFAULT, white) >= 0);
+    H5Dclose(set);
+    H5Fclose(root);
+    ck_skg(skg_scan_reader_open(path, &reader));
+    ck_skg(skg_scan_reader_attenuation_get(reader, 3, line));
+    skg_scan_reader_release(&reader);
+    ck_assert_double_eq_tol((double)line[7], -log(1e-6), 1e-6); /* float, of 13.8 */
+    ck_assert_double_lt((double)line[8], 10);
+}
+END_TEST
+
 /* 60000 where the mean of both flat fields is strongest, which is 100 + 100 (PIXELS - 1) / (2 PIXELS). */
 START_TEST(a_packed_copy_in_grey_values) {
     static float images[COUNT][PIXELS], copies[COUNT][PIXELS];
@@ -320,6 +340,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, what_hdf5_reads);
     tcase_add_test(tests, nexus_shows_all_images);
     tcase_add_test(tests, a_packed_copy_is_the_same_scan);
+    tcase_add_test(tests, a_pixel_without_a_flat_field_is_dark);
     tcase_add_test(tests, a_packed_copy_in_grey_values);
 }
 

@@ -35,7 +35,7 @@ SKG_API skg_status skg_scan_reader_scan_get(const skg_scan_reader *reader, skg_s
 SKG_API skg_status skg_scan_reader_axis_get(const skg_scan_reader *reader, double *axis, double *centre);
 
 /** Reads a projection as -ln(I / I0). I0 is the mean flat field; the mean dark field is subtracted from both. Where
- * less than a millionth of I0 arrives, that is assumed.
+ * less than a millionth of I0 arrives, that is assumed, and where the flat field is not above the dark field, too.
  *
  *     image    result: [row][column]
  *     errors   SKG_ERR_ARGUMENT (index), SKG_ERR_FILE */

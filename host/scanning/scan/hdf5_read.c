@@ -212,11 +212,11 @@ skg_status skg_scan_reader_axis_get(const skg_scan_reader *reader, double *axis,
     return SKG_OK;
 }
 
-/* -ln(I / I0), where at least a millionth of I0 arrives. */
+/* -ln(I / I0), where at least a millionth of I0 arrives. A pixel that does not see the beam counts as one that nothing reaches. */
 static float attenuation(const skg_scan_reader *reader, int64_t i, float value) {
     const double flat = (double)reader->white[i] - (double)reader->dark[i];
-    const double share = ((double)value - (double)reader->dark[i]) / flat;
-    return flat > 0 ? (float)-log(share < 1e-6 ? 1e-6 : share) : 0; /* NaN stays */
+    const double share = flat > 0 ? ((double)value - (double)reader->dark[i]) / flat : 0;
+    return (float)-log(share < 1e-6 ? 1e-6 : share); /* NaN stays */
 }
 
 skg_status skg_scan_reader_attenuation_get(skg_scan_reader *reader, int64_t index, float *image) {
