@@ -11,6 +11,14 @@
 /* pi to the precision of a double. C11 does not define M_PI. An angle in degrees times SKG_PI / 180 is in radians. */
 #define SKG_PI 3.14159265358979323846
 
+/* The smaller and the larger of two numbers that are numbers: fmin and fmax are calls. */
+static inline double skg_lesser(double a, double b) {
+    return a < b ? a : b;
+}
+static inline double skg_greater(double a, double b) {
+    return a > b ? a : b;
+}
+
 /* The number of pieces of `size` that hold `count` items: the quotient rounded up. */
 static inline int64_t skg_divide_up(int64_t count, int64_t size) {
     return (count + size - 1) / size;

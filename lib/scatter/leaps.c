@@ -8,13 +8,17 @@
  * in digital images, Computer Vision, Graphics, and Image Processing 34 (1986) 344-371). */
 static int64_t nearest(const skg_cells *cells, const uint8_t *leap, int64_t x, int64_t y, int64_t z,
                        int64_t sweep) {
+    const int64_t across = cells->count[0], plane = across * cells->count[1], at = z * plane + y * across + x;
+    const int inside =
+        x > 0 && y > 0 && z > 0 && x + 1 < across && y + 1 < cells->count[1] && z + 1 < cells->count[2];
     int64_t least = SKG_CELL_LEAP_MAX;
     for (int64_t n = 0; n < 13; n++) {
-        const int64_t i = x + sweep * (n % 3 - 1), j = y + sweep * (n / 3 % 3 - 1),
-                      k = z + sweep * (n / 9 - 1);
-        if (i < 0 || j < 0 || k < 0 || i >= cells->count[0] || j >= cells->count[1] || k >= cells->count[2])
+        const int64_t i = n % 3 - 1, j = n / 3 % 3 - 1, k = n / 9 - 1;
+        if (!inside &&
+            (x + sweep * i < 0 || y + sweep * j < 0 || z + sweep * k < 0 || x + sweep * i >= across ||
+             y + sweep * j >= cells->count[1] || z + sweep * k >= cells->count[2]))
             continue;
-        const int64_t own = leap[(k * cells->count[1] + j) * cells->count[0] + i] + 1;
+        const int64_t own = leap[at + sweep * (k * plane + j * across + i)] + 1;
         least = own < least ? own : least;
     }
     return least;

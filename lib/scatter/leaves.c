@@ -43,14 +43,16 @@ static skg_status find_faces(skg_planting *p) {
 static skg_status visit(skg_planting *p, int64_t face, skg_words *pairs) {
     const int64_t *count = p->cells->count;
     const double margin = -(double)SKG_CELL_MARGIN;
+    skg_face_axes axes;
     int64_t first[3], last[3], place = 0;
     skg_face_cells(p->corners[face], count, margin, first, last);
     const int alone = first[0] == last[0] && first[1] == last[1] && first[2] == last[2];
+    if (!alone) skg_face_axes_find(p->corners[face], &axes);
     for (int64_t z = first[2]; z <= last[2]; z++)
         for (int64_t y = first[1]; y <= last[1]; y++)
             for (int64_t x = first[0]; x <= last[0]; x++) {
-                const double low[3] = {(double)x, (double)y, (double)z};
-                if (!alone && !skg_face_in_cell(p->corners[face], low, margin)) continue;
+                const double low[3] = {(double)x, (double)y, (double)z}, half = 0.5 + margin;
+                if (!alone && skg_face_distance(&axes, low, half) >= half) continue;
                 SKG_TRY(skg_words_grow(pairs, 2, &place));
                 pairs->of[place] = (uint32_t)((z * count[1] + y) * count[0] + x);
                 pairs->of[place + 1] = (uint32_t)face;
@@ -118,20 +120,23 @@ static double contrast_of(skg_planting *p, int64_t cell) {
     return sum;
 }
 
-static skg_status make_word(skg_planting *p, int64_t cell, uint32_t *word) {
+/* Whether the faces of a cell make no difference, so that its mean mixture stands for it. */
+static int is_mixed(skg_planting *p, int64_t cell) {
+    return p->first[cell + 1] > p->first[cell] && (p->settled[cell] || !(contrast_of(p, cell) > p->limit));
+}
+
+static skg_status write_mixed(skg_planting *p, int64_t cell, uint32_t *word) {
+    uint32_t medium = 0;
+    SKG_TRY(skg_media_add(&p->media, p->cells->mixtures[cell], &medium));
+    *word = skg_cell_word(SKG_CELL_MEDIUM, medium);
+    if (!p->settled[cell]) p->cells->smeared++;
+    return SKG_OK;
+}
+
+static skg_status write_cell(skg_planting *p, int64_t cell, uint32_t *word) {
     const int64_t count = p->first[cell + 1] - p->first[cell];
     const uint32_t *faces = p->faces_of + p->first[cell];
     uint32_t medium = 0;
-    if (count && (p->settled[cell] || !(contrast_of(p, cell) > p->limit))) {
-        SKG_TRY(skg_media_add(&p->media, p->cells->mixtures[cell], &medium));
-        *word = skg_cell_word(SKG_CELL_MEDIUM, medium);
-        if (!p->settled[cell]) p->cells->smeared++;
-        return SKG_OK;
-    }
-    if (count > FACES) {
-        p->cells->traced++;
-        return skg_plant_brick(p, cell, count, faces, word);
-    }
     skg_cell_amount all;
     skg_cell_all(p->cells, cell, p->cells->known[cell], all);
     SKG_TRY(skg_media_find(&p->media, (const int64_t *)all, &medium));
@@ -170,15 +175,61 @@ static skg_status prepare(skg_planting *p) {
     return p->parts->volume ? skg_plant_copies(p) : SKG_OK;
 }
 
+/* Cells that are planted together: the bricks among them are made by several threads, and written in their order. */
+enum { TOGETHER = 4096, MIXED = -1, PLAIN = -2 };
+typedef struct {
+    skg_planting *p;
+    int64_t count;           /* bricks */
+    skg_brick *bricks;       /* [TOGETHER] */
+    int64_t which[TOGETHER]; /* the brick of a cell, or MIXED or PLAIN */
+} planted;
+
+static skg_status make_brick(void *user, int64_t item) {
+    planted *g = user;
+    return skg_brick_make(g->p, g->bricks[item].cell, &g->bricks[item]);
+}
+
+static skg_status write_word(planted *g, int64_t cell, int64_t which, uint32_t *word) {
+    if (which == MIXED) return write_mixed(g->p, cell, word);
+    if (which == PLAIN) return write_cell(g->p, cell, word);
+    g->p->cells->traced++;
+    return skg_brick_write(g->p, &g->bricks[which], word);
+}
+
+static skg_status plant_some(planted *g, int64_t first, int64_t count) {
+    skg_planting *p = g->p;
+    g->count = 0;
+    for (int64_t c = 0; c < count; c++) {
+        const int64_t cell = first + c, faces = p->first[cell + 1] - p->first[cell];
+        g->which[c] = is_mixed(p, cell) ? MIXED : faces > FACES ? g->count : PLAIN;
+        if (g->which[c] >= 0) g->bricks[g->count++] = (skg_brick){.cell = cell};
+    }
+    skg_status status = g->count ? skg_parallel(g->count, make_brick, g) : SKG_OK;
+    for (int64_t c = 0; c < count && status == SKG_OK; c++) {
+        uint32_t word = 0;
+        status = write_word(g, first + c, g->which[c], &word);
+        if (status == SKG_OK) p->tree.of[first + c] = word;
+    }
+    for (int64_t b = 0; b < g->count; b++) skg_brick_free(&g->bricks[b]);
+    return status;
+}
+
 static skg_status plant(skg_planting *p) {
     const int64_t total = cells_of(p->cells);
     int64_t first = 0;
+    planted *g = NULL;
+    skg_brick *bricks = NULL;
+    skg_status status = SKG_OK;
     SKG_TRY(skg_words_grow(&p->tree, total, &first));
-    for (int64_t c = 0; c < total; c++) {
-        uint32_t word = 0;
-        SKG_TRY(make_word(p, c, &word));
-        p->tree.of[c] = word;
-    }
+    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *g, "cells", &g));
+    SKG_TRY_CLEANUP(skg_alloc(TOGETHER, sizeof *bricks, "cells", &bricks));
+    g->p = p, g->bricks = bricks;
+    for (int64_t c = 0; c < total; c += TOGETHER)
+        SKG_TRY_CLEANUP(plant_some(g, c, total - c < TOGETHER ? total - c : TOGETHER));
+cleanup:
+    skg_free(&bricks);
+    skg_free(&g);
+    SKG_TRY(status);
     SKG_TRY(skg_plant_rough(p));
     return skg_cells_leap(p->cells, p->tree.of);
 }

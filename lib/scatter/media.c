@@ -81,44 +81,52 @@ void skg_media_free(skg_media *m) {
 void skg_face_cells(const double corners[9], const int64_t count[3], double margin, int64_t first[3],
                     int64_t last[3]) {
     for (int k = 0; k < 3; k++) {
-        const double low = fmin(corners[k], fmin(corners[3 + k], corners[6 + k])),
-                     high = fmax(corners[k], fmax(corners[3 + k], corners[6 + k])),
+        const double low = skg_lesser(corners[k], skg_lesser(corners[3 + k], corners[6 + k])),
+                     high = skg_greater(corners[k], skg_greater(corners[3 + k], corners[6 + k])),
                      end = (double)(count[k] - 1);
-        first[k] = (int64_t)fmin(fmax(floor(low - margin), 0), end + 1);
-        last[k] = (int64_t)fmax(fmin(ceil(high + margin) - 1, end), -1);
+        first[k] = (int64_t)skg_lesser(skg_greater(floor(low - margin), 0), end + 1);
+        last[k] = (int64_t)skg_greater(skg_lesser(ceil(high + margin) - 1, end), -1);
     }
 }
 
-/* Whether an axis separates three corners from a cube around 0 with these half sides. */
-static int separates(const double axis[3], double corners[3][3], double half) {
-    const double a = skg_dot(axis, corners[0]), b = skg_dot(axis, corners[1]), c = skg_dot(axis, corners[2]);
-    const double reach = half * (fabs(axis[0]) + fabs(axis[1]) + fabs(axis[2]));
-    return fmin(a, fmin(b, c)) >= reach || fmax(a, fmax(b, c)) <= -reach;
+/* The shadow of the corners on an axis, over the shadow of a cube of half side 1. An axis without length shows nothing. */
+static void add_axis(const double corners[9], const double axis[3], skg_face_axes *f) {
+    const double reach = fabs(axis[0]) + fabs(axis[1]) + fabs(axis[2]);
+    if (!(reach > 0)) return;
+    double *own = f->axis[f->count];
+    for (int k = 0; k < 3; k++) own[k] = axis[k] / reach;
+    const double a = skg_dot(own, corners), b = skg_dot(own, corners + 3), c = skg_dot(own, corners + 6);
+    f->low[f->count] = skg_lesser(a, skg_lesser(b, c));
+    f->high[f->count++] = skg_greater(a, skg_greater(b, c));
 }
 
-/* By the axes that may separate convex bodies (T. Akenine-Moeller, Fast 3D triangle-box overlap testing, Journal of Graphics Tools 6 (2001)
- * 29-33). */
-int skg_face_in_cell(const double corners[9], const double low[3], double margin) {
-    double at[3][3], edge[3][3], normal[3], axis[3];
-    const double half = 0.5 + margin;
-    for (int c = 0; c < 3; c++)
-        for (int k = 0; k < 3; k++) at[c][k] = corners[3 * c + k] - low[k] - 0.5;
-    for (int k = 0; k < 3; k++)
-        if (fmin(at[0][k], fmin(at[1][k], at[2][k])) >= half ||
-            fmax(at[0][k], fmax(at[1][k], at[2][k])) <= -half)
-            return 0;
+void skg_face_axes_find(const double corners[9], skg_face_axes *f) {
+    double edge[3][3], axis[3];
+    f->count = 0;
+    for (int k = 0; k < 3; k++) {
+        const double along[3] = {k == 0, k == 1, k == 2};
+        add_axis(corners, along, f);
+    }
     for (int e = 0; e < 3; e++)
-        for (int k = 0; k < 3; k++) edge[e][k] = at[(e + 1) % 3][k] - at[e][k];
-    skg_cross(edge[0], edge[1], normal);
-    if (fabs(skg_dot(normal, at[0])) >= half * (fabs(normal[0]) + fabs(normal[1]) + fabs(normal[2])))
-        return 0;
+        for (int k = 0; k < 3; k++) edge[e][k] = corners[3 * ((e + 1) % 3) + k] - corners[3 * e + k];
+    skg_cross(edge[0], edge[1], axis);
+    add_axis(corners, axis, f);
     for (int e = 0; e < 3; e++)
         for (int k = 0; k < 3; k++) {
             const double along[3] = {k == 0, k == 1, k == 2};
             skg_cross(along, edge[e], axis);
-            if (separates(axis, at, half) && skg_dot(axis, axis) > 0) return 0;
+            add_axis(corners, axis, f);
         }
-    return 1;
+}
+
+double skg_face_distance(const skg_face_axes *f, const double low[3], double enough) {
+    const double middle[3] = {low[0] + 0.5, low[1] + 0.5, low[2] + 0.5};
+    double distance = -HUGE_VAL;
+    for (int n = 0; n < f->count && distance < enough; n++) {
+        const double at = skg_dot(f->axis[n], middle);
+        distance = skg_greater(distance, skg_greater(f->low[n] - at, at - f->high[n]));
+    }
+    return distance;
 }
 
 int skg_face_crossed(const double corners[9], const double from[3], const double to[3], double *share) {

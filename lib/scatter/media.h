@@ -23,8 +23,18 @@ void skg_media_free(skg_media *media);
 
 /* --- Faces of parts in cells. Coordinates are in cells. */
 
-/* Whether a triangle has a piece within a margin around the cell whose lowest corner is at `low`; a margin below 0 is within it. */
-int skg_face_in_cell(const double corners[9], const double low[3], double margin);
+/* The axes that may separate a triangle from a cube (T. Akenine-Moeller, Fast 3D triangle-box overlap testing, Journal of Graphics Tools 6
+ * (2001) 29-33), with its shadow on each. They are found once for all cells. */
+enum { SKG_FACE_AXES = 3 + 1 + 9 };
+typedef struct {
+    int count;
+    double axis[SKG_FACE_AXES][3], low[SKG_FACE_AXES], high[SKG_FACE_AXES];
+} skg_face_axes;
+void skg_face_axes_find(const double corners[9], skg_face_axes *axes);
+
+/* How large half the side of a cube may be, about the middle of the cell whose lowest corner is at `low`, in which the triangle has no
+ * piece. The cell's is 1/2. From `enough` on it may be larger. */
+double skg_face_distance(const skg_face_axes *axes, const double low[3], double enough);
 
 /* The range of cells that hold a triangle's box: first to last along each side, from 0 to count - 1. */
 void skg_face_cells(const double corners[9], const int64_t count[3], double margin, int64_t first[3],

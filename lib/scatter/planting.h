@@ -52,9 +52,25 @@ skg_status skg_plant_copies(skg_planting *p);
 skg_status skg_plant_list(skg_planting *p, uint32_t medium, const double at[3], int64_t count,
                           const uint32_t *faces, uint32_t *word);
 
-/* A brick of the faces of a cell, and its word. */
-skg_status skg_plant_brick(skg_planting *p, int64_t cell, int64_t count, const uint32_t *faces,
-                           uint32_t *word);
+/* A brick of finer cells in the place of a cell with many faces. Coordinates are in finer cells. */
+typedef struct {
+    const skg_planting *p;
+    int64_t n, cell, count; /* finer cells along a side; the coarse cell; its faces */
+    const uint32_t *faces;  /* [count] */
+    double low[3];          /* of the coarse cell, in coarse cells */
+    double (*corners)[9];   /* [count] while it is made */
+    int64_t *first;         /* [n^3 + 1] */
+    uint32_t *
+        list; /* of each finer cell: 2 * the place of a face in the list of the coarse cell, + 1 if it is within */
+    skg_cell_amount *state; /* [n^3] */
+} skg_brick;
+
+/* Makes a brick, in any thread. Freed by the caller, whatever comes of it. */
+skg_status skg_brick_make(const skg_planting *p, int64_t cell, skg_brick *brick);
+
+/* Writes it behind the others; *word: its place. */
+skg_status skg_brick_write(skg_planting *p, const skg_brick *brick, uint32_t *word);
+void skg_brick_free(skg_brick *brick);
 
 /* Adds the media of rough cells, of SKG_CELL_ROUGH^3 others each; none are needed if each of them has one medium. The tree has the words of the coarse cells. */
 skg_status skg_plant_rough(skg_planting *p);

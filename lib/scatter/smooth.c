@@ -1,10 +1,10 @@
 /* Smooths what has arrived, by as much as its noise says. */
 #include "scatter/smoothing.h"
 
+#include "core/maths.h"
+
 #include <math.h>
 #include <string.h>
-
-static const double PI = 3.14159265358979323846;
 
 /* Order of the cosines that show how the variance changes over the detector, and the least share of its mean. */
 enum { BROAD = 12 };
@@ -16,13 +16,13 @@ static skg_status make_cosines(int64_t count, double **table) {
     for (int64_t k = 0; k < count; k++)
         for (int64_t i = 0; i < count; i++)
             (*table)[k * count + i] = sqrt((k ? 2.0 : 1.0) / (double)count) *
-                                      cos(PI * (double)k * ((double)i + 0.5) / (double)count);
+                                      cos(SKG_PI * (double)k * ((double)i + 0.5) / (double)count);
     return SKG_OK;
 }
 
 /* A place of the grid holds the mean of a cosine over it, which is this share of the value at its middle. */
 static double of_place(int64_t k, int64_t count) {
-    const double x = PI * (double)k / (2 * (double)count);
+    const double x = SKG_PI * (double)k / (2 * (double)count);
     return k ? sin(x) / x : 1;
 }
 
@@ -230,7 +230,7 @@ static skg_status make_shown(int64_t count, int64_t kept, int64_t pixels, double
     for (int64_t k = 0; k < kept; k++)
         for (int64_t i = 0; i < pixels; i++)
             (*table)[k * pixels + i] = sqrt((k ? 2.0 : 1.0) / (double)count) *
-                                       cos(PI * (double)k * ((double)i + 0.5) / (double)pixels);
+                                       cos(SKG_PI * (double)k * ((double)i + 0.5) / (double)pixels);
     return SKG_OK;
 }
 
@@ -249,12 +249,14 @@ skg_status skg_cosines_show(const skg_cosines *c, int squares, int64_t rows, int
         for (int64_t m = 0; m < across_kept; m++)
             for (int64_t i = 0; i < columns; i++)
                 half[n * columns + i] += from[n * c->columns + m] * across[m * columns + i];
-    for (int64_t r = 0; r < rows; r++)
-        for (int64_t i = 0; i < columns; i++) {
-            double sum = 0;
-            for (int64_t n = 0; n < down_kept; n++) sum += half[n * columns + i] * down[n * rows + r];
-            image[r * columns + i] = squares ? (fmax(sum, least) + c->bias) * share * share : sum * share;
-        }
+    for (int64_t r = 0; r < rows; r++) { /* a row at a time: its sums do not wait for one another */
+        double *row = image + r * columns;
+        memset(row, 0, (size_t)columns * sizeof *row);
+        for (int64_t n = 0; n < down_kept; n++)
+            for (int64_t i = 0; i < columns; i++) row[i] += half[n * columns + i] * down[n * rows + r];
+        for (int64_t i = 0; i < columns; i++)
+            row[i] = squares ? (skg_greater(row[i], least) + c->bias) * share * share : row[i] * share;
+    }
 cleanup:
     skg_free(&across);
     skg_free(&down);

@@ -57,7 +57,8 @@ static void across_faces(const skg_cells *cells, const uint32_t *list, const dou
 /* The word at a place, and how many cells there are along each side of a coarse one. */
 static uint32_t word_at(const skg_cells *cells, const double at[3], double *parts) {
     int64_t cell[3], fine[3];
-    for (int k = 0; k < 3; k++) cell[k] = (int64_t)fmin(fmax(at[k], 0), (double)(cells->count[k] - 1));
+    for (int k = 0; k < 3; k++)
+        cell[k] = (int64_t)skg_lesser(skg_greater(at[k], 0), (double)(cells->count[k] - 1));
     const uint32_t word = cells->tree[(cell[2] * cells->count[1] + cell[1]) * cells->count[0] + cell[0]];
     *parts = 1;
     if (SKG_CELL_KIND(word) != SKG_CELL_BRICK) return word;
@@ -65,7 +66,7 @@ static uint32_t word_at(const skg_cells *cells, const double at[3], double *part
     const int64_t n = brick[0];
     *parts = (double)n;
     for (int k = 0; k < 3; k++)
-        fine[k] = (int64_t)fmin(fmax((at[k] - (double)cell[k]) * (double)n, 0), (double)(n - 1));
+        fine[k] = (int64_t)skg_lesser(skg_greater((at[k] - (double)cell[k]) * (double)n, 0), (double)(n - 1));
     return brick[1 + (fine[2] * n + fine[1]) * n + fine[0]];
 }
 
@@ -78,10 +79,10 @@ static double step_on(const line *l, double t, uint32_t *word) {
     for (int k = 0; k < 3; k++) {
         const double cell = floor(at[k] * parts), face = l->step[k] > 0 ? cell + 1 + leap : cell - leap;
         if (l->step[k] == 0) continue;
-        next = fmin(next, (face / parts - l->start[k]) / l->step[k]);
-        least = fmin(least, fabs(0.5 * NUDGE / l->step[k]));
+        next = skg_lesser(next, (face / parts - l->start[k]) / l->step[k]);
+        least = skg_lesser(least, fabs(0.5 * NUDGE / l->step[k]));
     }
-    return fmin(fmax(next, t + least), 1);
+    return skg_lesser(skg_greater(next, t + least), 1);
 }
 
 void skg_cells_along(const skg_cells *cells, const double from[3], const double to[3],
@@ -119,8 +120,9 @@ void skg_cells_roughly(const skg_cells *cells, const double from[3], const doubl
         for (int k = 0; k < 3; k++) {
             const double at = from[k] + (i + 0.5) / SKG_ROUGH_STEPS * way[k];
             count[k] = (cells->count[k] + SKG_CELL_ROUGH - 1) / SKG_CELL_ROUGH;
-            cell[k] = (int64_t)fmin(fmax(at / cells->size[k] * (double)cells->count[k] / SKG_CELL_ROUGH, 0),
-                                    (double)(count[k] - 1));
+            cell[k] = (int64_t)skg_lesser(
+                skg_greater(at / cells->size[k] * (double)cells->count[k] / SKG_CELL_ROUGH, 0),
+                (double)(count[k] - 1));
         }
         add(cells->media[cells->rough + (uint32_t)((cell[2] * count[1] + cell[1]) * count[0] + cell[0])],
             step, mm);
