@@ -390,6 +390,7 @@ typedef struct {
     SKG_INT shells;       /* that emit fluorescence */
     SKG_INT rough;        /* the first medium of rough cells; 0: there are none */
     SKG_INT first, end, each; /* histories of a batch; of a work-item */
+    SKG_INT alone;            /* 1: a work-item has all of its batch, and nobody else adds to the sums */
     SKG_INT seed[2];          /* low word first */
 } skg_scatter_args;
 
@@ -460,7 +461,7 @@ _Static_assert(sizeof(skg_raster_layout) == 72, "layout of a raster");
 _Static_assert(sizeof(skg_place_args) == 40, "layout of a placement");
 _Static_assert(sizeof(skg_noise_args) == 24, "layout of a noise key");
 _Static_assert(sizeof(skg_hit_count) == 8, "layout of a count of hits");
-_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 26 * 4 && sizeof(skg_scattered_args) == 80,
+_Static_assert(sizeof(skg_scatter_args) == 65 * 4 + 27 * 4 && sizeof(skg_scattered_args) == 80,
                "layout of scatter");
 #endif
 #endif

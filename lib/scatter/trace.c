@@ -194,6 +194,9 @@ static skg_status get_program(skg_context *context, const skg_tracing *t, cl_pro
                            t->fours > 1 ? SKG_DEFINES(fours) : NULL, program);
 }
 
+/* Batches for each compute unit from which on units take whole ones: the last of them wait for an eighth of their time at most. */
+enum { ALONE_FROM = 4 };
+
 /* Enqueues histories args.first to args.end of all batches. */
 static skg_status launch(skg_context *context, cl_program program, skg_tracing *t) {
     const skg_device_info *device = &context->device->info;
@@ -201,6 +204,9 @@ static skg_status launch(skg_context *context, cl_program program, skg_tracing *
     const int64_t items = (int64_t)device->compute_units * (device->gpu ? 256 : 8);
     int64_t each = histories * SKG_SCATTER_BATCHES / items;
     each = each < 64 ? 64 : each > 1024 ? 1024 : each;
+    /* Where few processors share the batches, each takes whole ones, and adds without atomics. */
+    t->args.alone = !device->gpu && device->compute_units * ALONE_FROM <= SKG_SCATTER_BATCHES;
+    if (t->args.alone) each = histories;
     t->args.each = (SKG_INT)each;
     const skg_work_size work = {2, {(histories + each - 1) / each, SKG_SCATTER_BATCHES}, {group, 1}};
     const skg_argument arguments[] = {
