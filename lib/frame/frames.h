@@ -27,10 +27,10 @@ skg_status skg_frame_sums(skg_job *job, const skg_pass *pass, int32_t place, skg
 /* What the intensities of a pass are multiplied by. */
 double skg_frame_factor(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass *pass);
 
-/* Draws the path lengths through a part along every ray of a pass into a buffer, [rows][columns] of the pass's precision. The pass is
- * made for it alone; release it with skg_pass_release, also after a failure. */
+/* Draws the path lengths through a part along every ray of a pass into a buffer, [rows][columns] of the pass's precision; of a volume,
+ * what its cells add to a plane of the model. The pass is made for it alone; release it with skg_pass_release, also after a failure. */
 skg_status skg_frame_draw_lengths(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
-                                  skg_buffer *lengths, skg_pass *pass);
+                                  int32_t plane, skg_buffer *lengths, skg_pass *pass);
 
 /* The number of the first pass of an image; -1: its only one, which is averaged with none. */
 static inline int64_t skg_frame_first_pass(const skg_recipe *recipe) {

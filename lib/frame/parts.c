@@ -7,7 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. */
+/* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. The box of cells, which are
+ * added to the plane later, is listed with nothing. */
 static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *work, skg_pass *pass) {
     SKG_TRY(skg_alloc(scene->count, sizeof *pass->own_contributions, "parts of a frame",
                       &pass->own_contributions));
@@ -17,7 +18,10 @@ static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *wor
         const int is_child = work->kind == SKG_LENGTHS_NET && scene->parts[p].inside == work->part;
         pass->own_first[p] = count;
         if (p == work->part || is_child)
-            pass->own_contributions[count++] = (skg_contribution){.weight = is_child ? -1 : 1};
+            pass->own_contributions[count++] =
+                (skg_contribution){.weight = is_child                          ? -1
+                                             : work->kind == SKG_LENGTHS_CELLS ? 0
+                                                                               : 1};
     }
     pass->own_first[scene->count] = count;
     return SKG_OK;
@@ -94,7 +98,8 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                                 .contribution = pass->contributions + pass->first[p]};
         if (count == 0) continue;
         extent->scale.weight = largest_weight(pass, p);
-        if (work->shows != SKG_OUTPUT_LENGTHS) extent->scale.weight += skg_volumes_most(memory->volumes, p);
+        if (work->shows != SKG_OUTPUT_LENGTHS || work->kind == SKG_LENGTHS_CELLS)
+            extent->scale.weight += skg_volumes_most(memory->volumes, p);
         memory->scales[contributing++] = extent->scale;
         pass->kernels.source_plane |= extent->near_source && extent->on_detector;
     }

@@ -147,6 +147,9 @@ static skg_status draw_sums(skg_job *job, const skg_frame_work *work, const skg_
         SKG_TRY(skg_hits_settle(pass, &machine->geometry, &machine->hits, &job->staging));
     if (is_image && machine->volumes.count)
         SKG_TRY(skg_volumes_add(&machine->volumes, pass, &machine->hits, &job->staging));
+    if (!is_image && work->kind == SKG_LENGTHS_CELLS)
+        SKG_TRY(skg_volumes_add_alone(&machine->volumes, &recipe->model, work->part, work->plane, pass,
+                                      &machine->hits, &job->staging));
     if (leaky.count == 0) {
         if (is_image) skg_raster_keep(pass->main.raster, &machine->geometry);
         return SKG_OK;
@@ -279,12 +282,13 @@ skg_status skg_frame_draw_sums(skg_job *job, const skg_frame_work *work, int64_t
 }
 
 skg_status skg_frame_draw_lengths(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
-                                  skg_buffer *lengths, skg_pass *pass) {
+                                  int32_t plane, skg_buffer *lengths, skg_pass *pass) {
     skg_machine *machine = job->machine;
     skg_frame_work of_part = *work;
     of_part.shows = SKG_OUTPUT_LENGTHS;
     of_part.part = part;
-    of_part.kind = SKG_LENGTHS_NET;
+    of_part.plane = plane;
+    of_part.kind = job->recipe->scene->parts[part].volume ? SKG_LENGTHS_CELLS : SKG_LENGTHS_NET;
     SKG_TRY(skg_pass_fill(job->recipe, &of_part, number, &machine->pass, pass));
     SKG_TRY(pin_raster(job->recipe, machine, number, pass, 1, job->outcome));
     SKG_TRY(draw_sums(job, &of_part, pass));

@@ -9,6 +9,9 @@
 
 /* --- What a frame is to show */
 
+/* Beside SKG_LENGTHS_NET and SKG_LENGTHS_SURFACE: what the cells of a volume add to a plane of the model. */
+enum { SKG_LENGTHS_CELLS = 2 };
+
 typedef struct {
     const skg_view *view;
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
@@ -16,6 +19,7 @@ typedef struct {
     int32_t shows;              /* enum skg_output_kind */
     int32_t kind;               /* of lengths: SKG_LENGTHS_...; of a component of the scatter: which */
     int64_t part;               /* whose lengths are shown */
+    int32_t plane;              /* of SKG_LENGTHS_CELLS */
     /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
     int32_t reuses;
     int64_t step, each;   /* of an image: which step is made, of so many passes; each: 0: all its passes */

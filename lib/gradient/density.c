@@ -5,7 +5,8 @@
  * depth times what a mm of part p's material is worth, part p has A(p, p) less the sum of A(c, p) over the parts c inside it. A part
  * contributes what its material differs from that around it, so that the gather of the gradient gives A(c, c) - A(c, p); and its
  * fourth moments give the smaller one of the two, so that air in tissue is not the difference of sums a thousand times as large. A part of the material around it contributes nothing; it is drawn for its fourth moments. Where
- * priorities, a world or a frame's own densities change what a hit is worth, an image of path lengths is rendered instead. */
+ * priorities, a world or a frame's own densities change what a hit is worth, an image of path lengths is rendered instead. So is an image
+ * of what the cells of a volume add to each plane, which goes with its density. */
 #include "gradient/density.h"
 
 #include "gradient/direction_rates.h"
@@ -26,7 +27,8 @@ static void find_needs(const skg_job *job, const skg_frame_work *work, const skg
     const int overridden = work->frame && work->frame->override_count != 0;
     const int all = overridden || job->recipe->model.world_plane >= 0 ||
                     skg_gradient_of(job)->wanted.attenuations != NULL;
-    for (int64_t p = 0; p < pass->scene->count; p++) needs[p] = (uint8_t)all;
+    for (int64_t p = 0; p < pass->scene->count; p++)
+        needs[p] = (uint8_t)(all || pass->scene->parts[p].volume != NULL);
     for (int64_t s = 0; s < pass->priority.count; s++) {
         const int64_t part = pass->priority.parts[s], around = pass->scene->parts[part].inside;
         needs[part] = 1;
@@ -128,17 +130,22 @@ skg_status skg_gradient_keep_planes(skg_job *job, const skg_pass *pass) {
     return skg_gradient_read(pass, skg_gradient_of(job)->memory->weights.memory, 0, count, gradient->planes);
 }
 
-/* What a mm of a part's own material adds to the planes: the sum of what the part and all parts around it contribute. */
-static void find_own(const skg_recipe *recipe, int64_t part, double *own) {
+/* What a mm of a part's own material adds to the planes: the sum of what the part and all parts around it contribute. Of a volume the
+ * lengths are those of a plane themselves. */
+static void find_own(const skg_recipe *recipe, int64_t part, int32_t plane, double *own) {
     const skg_model *model = &recipe->model;
     memset(own, 0, (size_t)model->planes * sizeof *own);
+    if (recipe->scene->parts[part].volume) {
+        own[plane] = 1;
+        return;
+    }
     if (model->world_plane >= 0) own[model->world_plane] = model->world_weight;
     for (int64_t p = part; p >= 0; p = recipe->scene->parts[p].inside)
         for (int64_t c = model->first_contribution[p]; c < model->first_contribution[p + 1]; c++)
             own[model->contributions[c].plane] += model->contributions[c].weight;
 }
 
-skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t part) {
+skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t part, int32_t plane) {
     skg_gradient_work *gradient = skg_gradient_of(job);
     const skg_recipe *recipe = job->recipe;
     const int64_t columns = pass->camera.columns, rows = pass->camera.rows, planes = recipe->model.planes;
@@ -151,7 +158,7 @@ skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t 
     SKG_TRY_CLEANUP(skg_alloc(planes, sizeof *own, "gradient", &own));
     SKG_TRY_CLEANUP(
         skg_gradient_read(pass, skg_gradient_of(job)->memory->lengths.memory, 0, columns * rows, lengths));
-    find_own(recipe, part, own);
+    find_own(recipe, part, plane, own);
     if (gradient->direction_count) {
         status = skg_derivative_add_lengths(job, pass, part, own, lengths);
         goto cleanup;

@@ -22,8 +22,8 @@ int skg_gradient_needs_lengths(const skg_gradient_work *gradient, int64_t parts)
 /* Reads the derivatives by the mm of the planes, which skg_gradient_memory.weights holds. */
 skg_status skg_gradient_keep_planes(skg_job *job, const skg_pass *pass);
 
-/* Adds the share of a part's density in a pass, from its path lengths; waits for them. Along a direction: keeps how fast they change
- * planes and exponents (direction_rates.h). */
-skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t part);
+/* Adds the share of a part's density in a pass, from its path lengths; of a volume's, from what its cells add to a plane of the model.
+ * Waits for them. Along a direction: keeps how fast they change planes and exponents (direction_rates.h). */
+skg_status skg_gradient_add_density(skg_job *job, const skg_pass *pass, int64_t part, int32_t plane);
 
 #endif

@@ -89,8 +89,7 @@ static skg_status check_directions(skg_plan *plan, const skg_frame *frame, const
         const skg_direction *direction = &work->directions[d].direction;
         const skg_gradient wanted = wanted_of(direction, any);
         SKG_TRY(skg_gradient_check(work->call, plan, frame, &wanted));
-        SKG_TRY(skg_gradient_check_moving(work->call, plan->recipe->scene, direction->poses,
-                                          direction->vertices));
+        SKG_TRY(skg_gradient_check_cells(work->call, plan->recipe->scene, direction));
     }
     if (plan->recipe->model.layers > 1)
         return skg_effect_no_gradient(work->call, "a blur that depends on depth, along a direction,",

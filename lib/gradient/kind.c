@@ -10,6 +10,7 @@
 #include "gradient/direction_pass.h"
 #include "gradient/direction_rates.h"
 #include "gradient/pass.h"
+#include "stage/volumes.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -74,18 +75,28 @@ static skg_status take_first(skg_job *job) {
 
 /* --- a pass */
 
+/* The density of a part by its path lengths, or that of a volume by what its cells add to a plane. */
+static skg_status add_density(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
+                              int32_t plane) {
+    skg_pass pass;
+    skg_status status =
+        skg_frame_draw_lengths(job, work, number, part, plane, &skg_gradient_of(job)->memory->lengths, &pass);
+    if (status == SKG_OK) status = skg_gradient_add_density(job, &pass, part, plane);
+    skg_pass_release(&pass);
+    return status;
+}
+
 /* The densities of all parts that need path lengths. */
 static skg_status add_densities(skg_job *job, const skg_frame_work *work, int64_t number) {
-    skg_gradient_work *gradient = skg_gradient_of(job);
-    skg_status status = SKG_OK;
-    for (int64_t p = 0; p < job->recipe->scene->count && status == SKG_OK; p++) {
-        skg_pass pass;
+    const skg_gradient_work *gradient = skg_gradient_of(job);
+    for (int64_t p = 0; p < job->recipe->scene->count; p++) {
+        const skg_placed_volume *volume = skg_volumes_find(&job->machine->volumes, p);
         if (!gradient->needs_lengths[p]) continue;
-        status = skg_frame_draw_lengths(job, work, number, p, &gradient->memory->lengths, &pass);
-        if (status == SKG_OK) status = skg_gradient_add_density(job, &pass, p);
-        skg_pass_release(&pass);
+        if (!volume) SKG_TRY(add_density(job, work, number, p, 0));
+        for (int64_t k = 0; volume && k < volume->plane_count; k++)
+            SKG_TRY(add_density(job, work, number, p, volume->planes[k]));
     }
-    return status;
+    return SKG_OK;
 }
 
 /* The share of a pass in a gradient or in derivatives: skg_gradient_add_pass, skg_derivative_add_pass. */
@@ -150,7 +161,8 @@ static skg_status finish_gradient(skg_job *job) {
     if (wanted->densities)
         memcpy(wanted->densities, work->densities, (size_t)scene->count * sizeof *work->densities);
     for (int64_t i = 0; wanted->attenuations && i < scene->count * work->node_count; i++)
-        wanted->attenuations[i] = SKG_PER_MM * work->attenuations[i];
+        wanted->attenuations[i] =
+            scene->parts[i / work->node_count].volume ? (double)NAN : SKG_PER_MM * work->attenuations[i];
     if (wanted->source) memcpy(wanted->source, work->view, 3 * sizeof *work->view);
     if (wanted->detector) memcpy(wanted->detector, work->view + 3, 6 * sizeof *work->view);
     for (int64_t p = 0; wanted->vertices && p < scene->count; p++)

@@ -36,16 +36,10 @@ static skg_status check_wanted(const char *call, const skg_recipe *recipe, const
     return SKG_OK;
 }
 
-/* Cells have derivatives neither by their own places nor by their matter. */
+/* Cells have no derivatives by their own places. */
 static skg_status check_volumes(const char *call, const skg_scene *scene, const skg_gradient *wanted) {
     for (int64_t p = 0; p < scene->count && scene->volumes > 0; p++) {
         if (!scene->parts[p].volume) continue;
-        if (wanted->densities || wanted->attenuations)
-            return skg_fail(
-                SKG_ERR_UNSUPPORTED,
-                "%s: beside %s, a volume of cells, there are no derivatives by densities and attenuation "
-                "coefficients; leave them out, or give the part as a mesh",
-                call, scene->parts[p].label);
         if (wanted->vertices && wanted->vertices[p])
             return skg_fail(SKG_ERR_UNSUPPORTED,
                             "%s: %s is a volume of cells, and has no vertices of its own", call,
@@ -54,12 +48,22 @@ static skg_status check_volumes(const char *call, const skg_scene *scene, const 
     return SKG_OK;
 }
 
-skg_status skg_gradient_check_moving(const char *call, const skg_scene *scene, const double *poses,
-                                     const double *const *vertices) {
+skg_status skg_gradient_check_cells(const char *call, const skg_scene *scene,
+                                    const skg_direction *direction) {
+    const double *poses = direction->poses, *attenuations = direction->attenuations;
     for (int64_t p = 0; p < scene->count && scene->volumes > 0; p++) {
-        int moves = vertices && vertices[p];
+        int moves = direction->vertices && direction->vertices[p], changes = 0;
+        if (!scene->parts[p].volume) continue;
         for (int k = 0; k < 6 && poses; k++) moves |= poses[6 * p + k] != 0;
-        if (scene->parts[p].volume && moves)
+        for (int64_t n = 0; n < direction->nodes && attenuations; n++)
+            changes |= attenuations[p * direction->nodes + n] != 0;
+        if (changes)
+            return skg_fail(
+                SKG_ERR_UNSUPPORTED,
+                "%s: %s is a volume of cells, which have no common attenuation coefficient; change its density, or "
+                "give it as a mesh",
+                call, scene->parts[p].label);
+        if (moves)
             return skg_fail(
                 SKG_ERR_UNSUPPORTED,
                 "%s: %s is a volume of cells, and images have no derivative by its place; move the other "

@@ -11,8 +11,8 @@
 skg_status skg_gradient_check(const char *call, const skg_plan *plan, const skg_frame *frame,
                               const skg_gradient *wanted);
 
-/* Refuses a volume of cells that moves along a direction. poses: [parts][6] or NULL; vertices: [parts] or NULL */
-skg_status skg_gradient_check_moving(const char *call, const skg_scene *scene, const double *poses,
-                                     const double *const *vertices);
+/* Refuses a volume of cells that moves along a direction, or whose attenuation coefficients change. The direction's number of nodes was
+ * checked. */
+skg_status skg_gradient_check_cells(const char *call, const skg_scene *scene, const skg_direction *direction);
 
 #endif

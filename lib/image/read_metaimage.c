@@ -20,7 +20,9 @@ typedef struct {
     char kind;
     char data[LINE]; /* ElementDataFile */
     char unit[32];   /* DistanceUnits; "": not given */
-    long header;     /* HeaderSize; 0: the data follow the header, or begin the file */
+    char
+        bad[32]; /* a key of the place that does not say as many finite numbers as a volume needs; "": none */
+    long header; /* HeaderSize; 0: the data follow the header, or begin the file */
     int32_t quantity;
 } metaimage;
 
@@ -47,25 +49,36 @@ static void read_sizes(const char *value, metaimage *image) {
     }
 }
 
-/* Up to `count` numbers, the others stay. */
-static void read_numbers(const char *value, int count, double *numbers) {
+/* Up to `count` numbers, the others stay. Returns how many finite ones there were. */
+static int read_numbers(const char *value, int count, double *numbers) {
+    int finite = 0;
     for (int k = 0; k < count; k++) {
         const char *end = value;
         const double number = skg_read_number(value, &end);
-        if (end == value) return;
+        if (end == value) return finite;
         numbers[k] = number, value = end;
+        finite += isfinite(number) != 0;
     }
+    return finite;
 }
 
 /* Where the grid lies; MetaIO knows several names. */
 static void read_place(const char *key, const char *value, metaimage *image) {
-    if (!strcmp(key, "ElementSpacing")) read_numbers(value, 3, image->spacing), image->has_spacing = 1;
-    if (!strcmp(key, "ElementSize")) read_numbers(value, 3, image->element);
-    if (!strcmp(key, "Offset") || !strcmp(key, "Position") || !strcmp(key, "Origin"))
-        read_numbers(value, 3, image->offset);
+    const struct {
+        const char *keys[3];
+        int count;
+        double *numbers;
+    } places[] = {{{"ElementSpacing"}, 3, image->spacing},
+                  {{"ElementSize"}, 3, image->element},
+                  {{"Offset", "Position", "Origin"}, 3, image->offset},
+                  {{"TransformMatrix", "Rotation", "Orientation"}, 9, image->axes}};
+    for (size_t p = 0; p < sizeof places / sizeof *places; p++)
+        for (int k = 0; k < 3 && places[p].keys[k]; k++)
+            if (!strcmp(key, places[p].keys[k]) &&
+                read_numbers(value, places[p].count, places[p].numbers) < places[p].count)
+                snprintf(image->bad, sizeof image->bad, "%s", key);
+    if (!strcmp(key, "ElementSpacing")) image->has_spacing = 1;
     if (!strcmp(key, "DistanceUnits")) snprintf(image->unit, sizeof image->unit, "%s", value);
-    if (!strcmp(key, "TransformMatrix") || !strcmp(key, "Rotation") || !strcmp(key, "Orientation"))
-        read_numbers(value, 9, image->axes);
 }
 
 /* One line "key = value" of the header. Keys that say nothing of the values are passed over. */
@@ -209,6 +222,14 @@ skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid) {
     SKG_TRY_CLEANUP(read_header(path, stream, &image));
     if (image.dimensions != 3) {
         status = skg_fail(SKG_ERR_FORMAT, "%s: has %d dimensions; a volume has 3", path, image.dimensions);
+        goto cleanup;
+    }
+    if (image.bad[0]) {
+        status = skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: its %s does not say as many finite numbers as a volume of 3 dimensions needs; write 3, or "
+            "9 for a matrix",
+            path, image.bad);
         goto cleanup;
     }
     if (!find_unit(&image, &mm)) {

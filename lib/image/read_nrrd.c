@@ -2,6 +2,7 @@
 #include "core/text.h"
 #include "image/image.h"
 
+#include <ctype.h>
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -13,7 +14,7 @@ typedef struct {
     skg_grid_file file;
     double sizes[3], unit_mm[3]; /* unit_mm: of each axis; 0: not given; below 0: of none that is known */
     double sign[3];              /* of x, y, z towards left, back and head */
-    int dimensions, has_minima;
+    int dimensions, has_minima, is_quantized;
     char endian[8]; /* "": not given */
     long bytes_skipped, lines_skipped;
     char directions[LINE], origin[LINE], spacings[LINE]; /* what these fields say; "": they are not given */
@@ -108,16 +109,26 @@ static void read_units(const char *value, nrrd *n) {
 /* "right-anterior-superior" or RAS: where x, y and z point to. Others have no anatomy. */
 static void read_space(const char *value, nrrd *n) {
     const int is_short = strlen(value) == 3;
-    if (strstr(value, "right-") == value || (is_short && value[0] == 'R')) n->sign[0] = -1;
-    if (strstr(value, "-anterior") || (is_short && value[1] == 'A')) n->sign[1] = -1;
-    if (strstr(value, "-inferior") || (is_short && value[2] == 'I')) n->sign[2] = -1;
+    if (strstr(value, "right-") == value || (is_short && value[0] == 'r')) n->sign[0] = -1;
+    if (strstr(value, "-anterior") || (is_short && value[1] == 'a')) n->sign[1] = -1;
+    if (strstr(value, "-inferior") || (is_short && value[2] == 'i')) n->sign[2] = -1;
 }
 
 static void keep(const char *value, char kept[LINE]) {
     snprintf(kept, LINE, "%s", value);
 }
 
-/* One line "field: value"; fields that say nothing of cells and place are passed over. */
+/* Case does not matter in NRRD, nor do the blanks in the name of a field. */
+static void simplify(char *field, char *value) {
+    char *to = field;
+    for (const char *at = field; *at; at++)
+        if (*at != ' ') *to++ = (char)tolower((unsigned char)*at);
+    *to = '\0';
+    if (strcmp(field, "datafile") == 0) return;
+    for (char *at = value; *at; at++) *at = (char)tolower((unsigned char)*at);
+}
+
+/* One line "field: value", both simplified; fields that say nothing of cells and place are passed over. */
 static void read_field(const char *field, const char *value, nrrd *n) {
     const char *end;
     if (!strcmp(field, "type")) read_type(value, n);
@@ -130,14 +141,15 @@ static void read_field(const char *field, const char *value, nrrd *n) {
     for (int k = 0; k < 3 && !strcmp(field, "sizes"); k++, value = end)
         n->sizes[k] = skg_read_number(value, &end);
     if (!strcmp(field, "spacings")) keep(value, n->spacings);
-    if (!strcmp(field, "space directions")) keep(value, n->directions);
-    if (!strcmp(field, "space origin")) keep(value, n->origin);
-    if (!strcmp(field, "space units") || !strcmp(field, "units")) read_units(value, n);
+    if (!strcmp(field, "spacedirections")) keep(value, n->directions);
+    if (!strcmp(field, "spaceorigin")) keep(value, n->origin);
+    if (!strcmp(field, "spaceunits") || !strcmp(field, "units")) read_units(value, n);
     if (!strcmp(field, "space")) read_space(value, n);
-    if (!strcmp(field, "axis mins") || !strcmp(field, "axismins")) n->has_minima = 1;
-    if (!strcmp(field, "byte skip") || !strcmp(field, "byteskip")) n->bytes_skipped = atol(value);
-    if (!strcmp(field, "line skip") || !strcmp(field, "lineskip")) n->lines_skipped = atol(value);
-    if (!strcmp(field, "data file") || !strcmp(field, "datafile")) keep(value, n->data);
+    if (!strcmp(field, "axismins")) n->has_minima = 1;
+    if (!strcmp(field, "oldmin") || !strcmp(field, "oldmax")) n->is_quantized = 1;
+    if (!strcmp(field, "byteskip")) n->bytes_skipped = atol(value);
+    if (!strcmp(field, "lineskip")) n->lines_skipped = atol(value);
+    if (!strcmp(field, "datafile")) keep(value, n->data);
 }
 
 static skg_status check(const char *path, const nrrd *n) {
@@ -157,6 +169,9 @@ static skg_status check(const char *path, const nrrd *n) {
     if (n->has_minima && !n->origin[0])
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "%s: is placed by axis mins; write space directions and space origin", path);
+    if (n->is_quantized)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s: its values stand for others (old min, old max); write those themselves", path);
     if (n->bytes_skipped < 0 || n->lines_skipped < 0)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: skips from the end; write it without", path);
     return skg_picture_size_check(path, n->sizes[0], n->sizes[1], n->sizes[2]);
@@ -173,6 +188,7 @@ static skg_status read_header(const char *path, FILE *stream, nrrd *n) {
         char *colon = strstr(line, ": ");
         if (line[0] == '#' || !colon) continue;
         *colon = '\0';
+        simplify(line, colon + 2);
         read_field(line, colon + 2, n);
     }
     return check(path, n);

@@ -22,7 +22,7 @@ static const char *first_volume(const skg_scene *scene) {
     return scene->parts[p].label;
 }
 
-/* What scatters has elements, and cells of the object take those of one volume. */
+/* What scatters has elements, and cells of the object take those of a few volumes. */
 static skg_status check_scatter(const skg_recipe *recipe, int64_t part) {
     const skg_scene *scene = recipe->scene;
     if (!recipe->options.scatter) return SKG_OK;
@@ -32,12 +32,13 @@ static skg_status check_scatter(const skg_recipe *recipe, int64_t part) {
             "scatter: the values of %s are attenuation coefficients, which do not say how it scatters; give "
             "densities or Hounsfield numbers, or leave out the scatter",
             scene->parts[part].label);
-    if (recipe->volume_count == 1) return SKG_OK;
-    return skg_fail(SKG_ERR_UNSUPPORTED,
-                    "scatter: %s is one of %" PRId64
-                    " volumes of cells, and photons are followed through one; join them, or leave out the "
-                    "scatter",
-                    scene->parts[part].label, recipe->volume_count);
+    if (recipe->volume_count <= SKG_SCATTER_VOLUMES_MAX) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_UNSUPPORTED,
+        "scatter: %s is one of %" PRId64
+        " volumes of cells, and photons are followed through %d at most; join some of them, or leave "
+        "out the scatter",
+        scene->parts[part].label, recipe->volume_count, (int)SKG_SCATTER_VOLUMES_MAX);
 }
 
 skg_status skg_volumes_check(const skg_recipe *recipe) {

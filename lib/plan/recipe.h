@@ -45,6 +45,9 @@ struct skg_recipe {
     int64_t *leaky; /* [leaky_count] numbers of the parts whose meshes are not closed */
 };
 
+/* The most volumes of cells that photons are followed through. */
+enum { SKG_SCATTER_VOLUMES_MAX = 4 };
+
 /* Checks everything and decides, but for the nodes of the model, which skg_recipe_complete waits for. context: the device
  * that frames will run on. options may be NULL. */
 skg_status skg_recipe_create(const skg_context *context, skg_scene *scene, const skg_view *view,

@@ -90,7 +90,8 @@ static void sum_up(const skg_cell_parts *parts, const amount *amounts, const ins
         if (counts(parts, in, in->part[i]))
             add(sum, amounts[in->part[i]], parts->unite ? in->times[i] > 0 : in->times[i]);
     /* What several parts displace is away once, and outside of its box there is nothing to displace. */
-    if (sum[SKG_CELL_TIMES] < 0) sum[SKG_CELL_TIMES] = 0;
+    for (int k = SKG_CELL_TIMES; k < SKG_CELL_AMOUNTS; k++)
+        if (sum[k] < 0) sum[k] = 0;
 }
 
 static void settle_column(const skg_cell_parts *parts, const amount *amounts, skg_columns *grid,
@@ -125,7 +126,8 @@ skg_status skg_cells_amounts(const skg_cell_parts *parts, skg_cell_amount **amou
     for (int64_t i = 0; i < parts->count; i++) {
         for (int k = 0; k < SKG_SCATTER_RANK; k++)
             (*amounts)[i][k] = llrint(parts->coefficients[i][k] * SKG_CELL_UNIT);
-        if (parts->volume) (*amounts)[i][SKG_CELL_TIMES] = parts->volume->times[i] * (int64_t)SKG_CELL_UNIT;
+        for (int64_t v = 0; v < parts->volume_count; v++)
+            (*amounts)[i][SKG_CELL_TIMES + v] = parts->volumes[v].times[i] * (int64_t)SKG_CELL_UNIT;
     }
     return SKG_OK;
 }
@@ -138,9 +140,9 @@ static void mix(const filling *f, int64_t cell, const int64_t *before, const int
     const double each = 1 / (SKG_CELL_UNIT * SKG_CELL_COLUMNS * SKG_CELL_COLUMNS);
     for (int k = 0; k < SKG_SCATTER_RANK; k++) {
         double sum = (double)(before[k] + own[k]) * each + (base ? base[k] : 0);
-        if (f->cells->within)
-            sum += (double)(before[SKG_CELL_TIMES] + own[SKG_CELL_TIMES]) * each *
-                   ((double)f->cells->within[cell][k] / SKG_CELL_UNIT);
+        for (int64_t v = 0; v < f->cells->volume_count; v++)
+            sum += (double)(before[SKG_CELL_TIMES + v] + own[SKG_CELL_TIMES + v]) * each *
+                   ((double)f->cells->within[v * skg_cells_count(f->cells) + cell][k] / SKG_CELL_UNIT);
         mixture[k] = (float)sum;
     }
 }
@@ -203,11 +205,11 @@ static void count_cells(const skg_columns *grid, double voxel_mm, skg_cells *cel
 
 static skg_status fill(filling *f) {
     skg_cells *cells = f->cells;
-    const int64_t total = cells->count[0] * cells->count[1] * cells->count[2];
+    const int64_t total = skg_cells_count(cells);
     SKG_TRY(skg_cells_amounts(f->parts, &f->amounts));
     SKG_TRY(skg_alloc(total, sizeof *cells->mixtures, "cells", &cells->mixtures));
     SKG_TRY(skg_alloc(total, sizeof *cells->known, "cells", &cells->known));
-    if (f->parts->volume) SKG_TRY(skg_cells_within(f->parts->volume, cells));
+    if (f->parts->volume_count > 0) SKG_TRY(skg_cells_within(f->parts, cells));
     SKG_TRY(skg_parallel(cells->count[1], fill_row, f));
     for (int64_t c = 0; c < total; c++)
         for (int k = 0; k < SKG_SCATTER_RANK; k++)

@@ -11,10 +11,6 @@
 /* A cell with more faces gets a brick of finer cells. */
 enum { FACES = 12 };
 
-static int64_t cells_of(const skg_cells *cells) {
-    return cells->count[0] * cells->count[1] * cells->count[2];
-}
-
 /* --- faces */
 
 static skg_status find_faces(skg_planting *p) {
@@ -76,7 +72,7 @@ static skg_status visit_share(void *user, int64_t share) {
 }
 
 static skg_status sort_pairs(skg_planting *p, const visits *v) {
-    const int64_t total = cells_of(p->cells);
+    const int64_t total = skg_cells_count(p->cells);
     SKG_TRY(skg_alloc(total + 1, sizeof *p->first, "cells", &p->first));
     for (int s = 0; s < SHARES; s++)
         for (int64_t i = 0; i < v->pairs[s].count; i += 2) p->first[v->pairs[s].of[i] + 1]++;
@@ -111,10 +107,13 @@ static double contrast_of(skg_planting *p, int64_t cell) {
         double more = 0;
         if (p->seen[part] == cell + 1) continue;
         p->seen[part] = cell + 1;
-        const int32_t times = p->parts->volume ? p->parts->volume->times[part] : 0;
-        for (int k = 0; k < SKG_SCATTER_RANK; k++)
-            more += p->mu[k] * (p->parts->coefficients[part][k] +
-                                (times ? times * ((double)cells->within[cell][k] / SKG_CELL_UNIT) : 0));
+        for (int k = 0; k < SKG_SCATTER_RANK; k++) more += p->mu[k] * p->parts->coefficients[part][k];
+        for (int64_t v = 0; v < cells->volume_count; v++) {
+            const int32_t times = p->parts->volumes[v].times[part];
+            const int64_t *within = cells->within[v * skg_cells_count(cells) + cell];
+            for (int k = 0; k < SKG_SCATTER_RANK && times; k++)
+                more += p->mu[k] * (times * ((double)within[k] / SKG_CELL_UNIT));
+        }
         sum += fabs(more) * side;
     }
     return sum;
@@ -165,14 +164,14 @@ static skg_status prepare(skg_planting *p) {
             p->amounts[i][k] *= p->parts->sign[i];
             more[k] = (float)((double)p->amounts[i][k] / SKG_CELL_UNIT);
         }
-        p->amounts[i][SKG_CELL_TIMES] *= p->parts->sign[i];
+        for (int k = SKG_CELL_TIMES; k < SKG_CELL_AMOUNTS; k++) p->amounts[i][k] *= p->parts->sign[i];
         SKG_TRY(skg_media_add(&p->media, more, &p->more[i]));
     }
     SKG_TRY(skg_cells_settled(p->parts, p->cells, &p->settled));
     SKG_TRY(find_faces(p));
     SKG_TRY(sort_faces(p));
     p->originals = p->cells->face_count;
-    return p->parts->volume ? skg_plant_copies(p) : SKG_OK;
+    return p->parts->volume_count > 0 ? skg_plant_copies(p) : SKG_OK;
 }
 
 /* Cells that are planted together: the bricks among them are made by several threads, and written in their order. */
@@ -215,7 +214,7 @@ static skg_status plant_some(planted *g, int64_t first, int64_t count) {
 }
 
 static skg_status plant(skg_planting *p) {
-    const int64_t total = cells_of(p->cells);
+    const int64_t total = skg_cells_count(p->cells);
     int64_t first = 0;
     planted *g = NULL;
     skg_brick *bricks = NULL;

@@ -31,11 +31,10 @@ const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part) {
 /* The materials of a scene, each once, but for voids. */
 typedef struct {
     int64_t count;
-    skg_material **materials; /* [parts + curves of a volume + 1] borrowed */
+    skg_material **materials; /* [parts + curves of volumes + 1] borrowed */
     int64_t *of_part;         /* [parts] -1: void */
     int64_t of_world;         /* likewise */
-    int64_t volume;           /* the part that is a volume of cells, or -1 */
-    int64_t *of_curve;        /* [curves of the volume] */
+    int64_t *of_curve;        /* [curves of volumes] those of the first volume, then of the next */
 } palette;
 
 static int64_t place_in(palette *p, skg_material *material) {
@@ -46,25 +45,22 @@ static int64_t place_in(palette *p, skg_material *material) {
     return m;
 }
 
-static skg_status add_volume(const skg_scene *scene, palette *p) {
-    const skg_volume *volume = scene->parts[p->volume].volume;
-    SKG_TRY(skg_alloc(volume->curve_count, sizeof *p->of_curve, "materials", &p->of_curve));
-    for (int64_t c = 0; c < volume->curve_count; c++) p->of_curve[c] = place_in(p, volume->curves[c]);
-    return SKG_OK;
-}
-
 static skg_status find_palette(const skg_recipe *recipe, palette *p) {
     const skg_scene *scene = recipe->scene;
-    int64_t curves = 0;
-    p->volume = -1;
-    for (int64_t i = 0; i < scene->count; i++)
-        if (scene->parts[i].volume) p->volume = i, curves = scene->parts[i].volume->curve_count;
+    const int64_t curves = skg_scene_curves(scene, scene->count);
     SKG_TRY(skg_alloc(scene->count + curves + 1, sizeof *p->materials, "materials", &p->materials));
     SKG_TRY(skg_alloc(scene->count, sizeof *p->of_part, "materials", &p->of_part));
+    SKG_TRY(skg_alloc(curves, sizeof *p->of_curve, "materials", &p->of_curve));
     for (int64_t i = 0; i < scene->count; i++) p->of_part[i] = place_in(p, scene->parts[i].material);
     skg_material *world = skg_scatter_world(recipe);
     p->of_world = world ? place_in(p, world) : -1;
-    return p->volume < 0 ? SKG_OK : add_volume(scene, p);
+    int64_t *of_curve = p->of_curve;
+    for (int64_t i = 0; i < scene->count; i++) {
+        const skg_volume *volume = scene->parts[i].volume;
+        for (int64_t c = 0; volume && c < volume->curve_count; c++)
+            *of_curve++ = place_in(p, volume->curves[c]);
+    }
+    return SKG_OK;
 }
 
 static skg_status make_physics(const skg_scatter_work *work, const palette *p, skg_scatter_object *object) {
@@ -111,8 +107,8 @@ typedef struct {
     int32_t *sign, *priority;
     double (*differences)[SKG_SCATTER_RANK]; /* coefficients */
     double (*lines)[SKG_SCATTER_RANK];       /* attenuation of the beam's lines */
-    skg_cell_volume volume;                  /* without a volume of cells all zero */
-    int32_t *times;
+    int64_t volume_count;
+    skg_cell_volume volumes[SKG_SCATTER_VOLUMES_MAX];
 } placed;
 
 static skg_status place(const skg_scatter_work *work, placed *to) {
@@ -141,28 +137,43 @@ static void drop(int64_t count, placed *p) {
     skg_free(&p->priority);
     skg_free(&p->differences);
     skg_free(&p->lines);
-    skg_free(&p->volume.coefficients);
-    skg_free(&p->volume.lines);
-    skg_free(&p->times);
+    for (int64_t v = 0; v < p->volume_count; v++) {
+        skg_free(&p->volumes[v].times);
+        skg_free(&p->volumes[v].coefficients);
+        skg_free(&p->volumes[v].lines);
+    }
 }
 
 /* What the cells of a volume are made of. of: what the palette's materials have per mm */
-static skg_status fill_curves(const palette *p, int64_t curves, const double (*of)[SKG_SCATTER_RANK],
-                              double (**to)[SKG_SCATTER_RANK]) {
-    SKG_TRY(skg_alloc(curves, sizeof **to, "cells", to));
-    for (int64_t c = 0; c < curves; c++) memcpy((*to)[c], of[p->of_curve[c]], sizeof **to);
+static skg_status fill_curves(const palette *p, const skg_cell_volume *volume,
+                              const double (*of)[SKG_SCATTER_RANK], double (**to)[SKG_SCATTER_RANK]) {
+    const int64_t *of_curve = p->of_curve + volume->first_curve;
+    SKG_TRY(skg_alloc(volume->volume->curve_count, sizeof **to, "cells", to));
+    for (int64_t c = 0; c < volume->volume->curve_count; c++) memcpy((*to)[c], of[of_curve[c]], sizeof **to);
     return SKG_OK;
 }
 
-static skg_status place_volume(const skg_scatter_work *work, const palette *p, placed *to) {
+static skg_status place_volume(const skg_scatter_work *work, int64_t part, skg_cell_volume *to) {
     const skg_scene *scene = work->recipe->scene;
-    if (p->volume < 0) return SKG_OK;
-    to->volume.volume = scene->parts[p->volume].volume;
-    skg_volume_to_cells(to->volume.volume, skg_scatter_pose(work, p->volume), to->volume.to_cells);
+    to->volume = scene->parts[part].volume;
+    to->first_curve = skg_scene_curves(scene, part);
+    skg_volume_to_cells(to->volume, skg_scatter_pose(work, part), to->to_cells);
     SKG_TRY(skg_alloc(scene->count, sizeof *to->times, "cells", &to->times));
     for (int64_t i = 0; i < scene->count; i++)
-        to->times[i] = i == p->volume ? 1 : scene->parts[i].inside == p->volume ? -1 : 0;
-    to->volume.times = to->times;
+        to->times[i] = i == part ? 1 : scene->parts[i].inside == part ? -1 : 0;
+    return SKG_OK;
+}
+
+static skg_status place_volumes(const skg_scatter_work *work, const palette *p,
+                                const skg_scatter_physics *physics, placed *to) {
+    const skg_scene *scene = work->recipe->scene;
+    for (int64_t i = 0; i < scene->count; i++) {
+        if (!scene->parts[i].volume) continue;
+        skg_cell_volume *volume = &to->volumes[to->volume_count++];
+        SKG_TRY(place_volume(work, i, volume));
+        SKG_TRY(fill_curves(p, volume, (const double(*)[SKG_SCATTER_RANK])physics->coefficients,
+                            &volume->coefficients));
+    }
     return SKG_OK;
 }
 
@@ -189,10 +200,10 @@ static skg_status find_lines(const skg_scatter_work *work, const palette *p, pla
     memcpy(lines->world, p->of_world < 0 ? none : mu[p->of_world], sizeof lines->world);
     find_differences(work, p, (const double(*)[SKG_SCATTER_RANK])mu, lines->world, parts->lines);
     lines->parts = (const double(*)[SKG_SCATTER_RANK])parts->lines;
-    const skg_status status = parts->times
-                                  ? fill_curves(p, parts->volume.volume->curve_count,
-                                                (const double(*)[SKG_SCATTER_RANK])mu, &parts->volume.lines)
-                                  : SKG_OK;
+    skg_status status = SKG_OK;
+    for (int64_t v = 0; v < parts->volume_count && status == SKG_OK; v++)
+        status = fill_curves(p, &parts->volumes[v], (const double(*)[SKG_SCATTER_RANK])mu,
+                             &parts->volumes[v].lines);
     skg_free(&mu);
     return status;
 }
@@ -215,7 +226,7 @@ static skg_status trace(const skg_scatter_work *work, const skg_cell_parts *part
     const double asked = work->recipe->options.scatter->tolerance,
                  tolerance = asked > 0 ? asked : DEFAULT_TOLERANCE;
     double limit = sqrt(tolerance * SMEARED);
-    if (parts->priority || parts->volume) {
+    if (parts->priority || parts->volume_count > 0) {
         SKG_TRY(trace_to(work, parts, lines, 0, object));
         object->settled_error = object->judged.cells;
     }
@@ -244,11 +255,7 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
         object->world[k] = object->physics.coefficients[p.of_world][k];
     find_differences(work, &p, (const double(*)[SKG_SCATTER_RANK])object->physics.coefficients, object->world,
                      parts.differences);
-    SKG_TRY_CLEANUP(place_volume(work, &p, &parts));
-    if (parts.times)
-        SKG_TRY_CLEANUP(fill_curves(&p, parts.volume.volume->curve_count,
-                                    (const double(*)[SKG_SCATTER_RANK])object->physics.coefficients,
-                                    &parts.volume.coefficients));
+    SKG_TRY_CLEANUP(place_volumes(work, &p, &object->physics, &parts));
     SKG_TRY_CLEANUP(find_lines(work, &p, &parts, &lines));
     const skg_cell_parts to_fill = {
         .count = work->recipe->scene->count,
@@ -259,7 +266,8 @@ skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_obj
         .priority = work->recipe->priority_possible ? parts.priority : NULL,
         .clip = work->recipe->options.clip,
         .unite = work->recipe->options.unite,
-        .volume = parts.times ? &parts.volume : NULL,
+        .volume_count = parts.volume_count,
+        .volumes = parts.volumes,
     };
     SKG_TRY_CLEANUP(skg_cells_make(&to_fill, work->recipe->options.scatter->voxel_mm, &object->cells));
     status = trace(work, &to_fill, &lines, object);

@@ -35,16 +35,18 @@ static inline void skg_cell_place(const skg_cells *cells, int64_t cell, double p
     place[2] = (double)(cell / cells->count[0] / cells->count[1]);
 }
 
-/* What amounts at a place in a coarse cell are, with what the volume holds there. */
+/* What amounts at a place in a coarse cell are, with what the volumes hold there. */
 static inline void skg_cell_all(const skg_cells *cells, int64_t cell, const int64_t *amounts,
                                 skg_cell_amount all) {
-    const int64_t times = amounts[SKG_CELL_TIMES] / (int64_t)SKG_CELL_UNIT;
-    for (int k = 0; k < SKG_SCATTER_RANK; k++)
-        all[k] = amounts[k] + (times ? times * cells->within[cell][k] : 0);
-    all[SKG_CELL_TIMES] = 0;
+    for (int k = 0; k < SKG_CELL_AMOUNTS; k++) all[k] = k < SKG_SCATTER_RANK ? amounts[k] : 0;
+    for (int64_t v = 0; v < cells->volume_count; v++) {
+        const int64_t times = amounts[SKG_CELL_TIMES + v] / (int64_t)SKG_CELL_UNIT;
+        const int64_t *within = cells->within[v * skg_cells_count(cells) + cell];
+        for (int k = 0; k < SKG_SCATTER_RANK && times; k++) all[k] += times * within[k];
+    }
 }
 
-/* Beside a volume: gives each cell copies of its own of faces at which the volume begins or ends, and settles cells where its box and what
+/* Beside volumes: gives each cell copies of its own of faces at which a volume begins or ends, and settles cells where its box and what
  * displaces it meet. */
 skg_status skg_plant_copies(skg_planting *p);
 

@@ -89,11 +89,11 @@ typedef struct {
     const ray *along;
     double from;     /* where the ray enters the cells */
     int exact;       /* 1: lines; 0: coefficients */
-    double *amounts; /* [curves of a volume] workspace */
+    double *amounts; /* [skg_cell_curves] workspace */
 } sum;
 
 /* From a depth on a volume of cells is there `times` times. */
-static void add_volume(sum *s, double depth, double times) {
+static void add_volume(sum *s, const skg_cell_volume *volume, double depth, double times) {
     const double to = way_to(s->j, depth);
     double ends[2][3], through[SKG_SCATTER_RANK] = {0};
     if (times == 0 || !(to > s->from)) return;
@@ -101,7 +101,7 @@ static void add_volume(sum *s, double depth, double times) {
         ends[0][k] = s->along->on[k] + s->from * s->along->way[k];
         ends[1][k] = s->along->on[k] + to * s->along->way[k];
     }
-    skg_volume_between(s->j->parts->volume, s->exact, ends[0], ends[1], s->amounts, through);
+    skg_volume_between(volume, s->exact, ends[0], ends[1], s->amounts, through);
     for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= times * through[k] * (to - s->from) * s->length;
 }
 
@@ -109,7 +109,9 @@ static void add_change(void *user, double depth, const int64_t *more, int64_t fa
     sum *s = user;
     const double mm = (double)factor * s->length * way_to(s->j, depth) / SKG_CELL_UNIT;
     for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= (double)more[k] * mm;
-    if (s->j->parts->volume) add_volume(s, depth, (double)(factor * more[SKG_CELL_TIMES]) / SKG_CELL_UNIT);
+    for (int64_t v = 0; v < s->j->parts->volume_count; v++)
+        add_volume(s, &s->j->parts->volumes[v], depth,
+                   (double)(factor * more[SKG_CELL_TIMES + v]) / SKG_CELL_UNIT);
 }
 
 /* What scatters straight on once and passes, but for a factor. depth: of each line */
@@ -150,8 +152,7 @@ static skg_status judge_row(void *user, int64_t row) {
     skg_status status = SKG_OK;
     grid.first_row = row;
     grid.rows = 1;
-    if (j->parts->volume)
-        SKG_TRY_CLEANUP(skg_alloc(j->parts->volume->volume->curve_count, sizeof *amounts, "cells", &amounts));
+    SKG_TRY_CLEANUP(skg_alloc(skg_cell_curves(j->parts), sizeof *amounts, "cells", &amounts));
     SKG_TRY_CLEANUP(skg_alloc(2 * j->parts->count, sizeof *work, "cells", &work));
     SKG_TRY_CLEANUP(skg_columns_gather(&grid, j->parts->count, j->parts->solids, j->rows));
     for (int64_t c = 0; c < RAYS; c++) {

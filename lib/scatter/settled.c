@@ -31,8 +31,12 @@ static void mark(const skg_cells *cells, const int64_t first[3], const int64_t l
                 settled[(z * cells->count[1] + y) * cells->count[0] + x] = 1;
 }
 
-static int displaces(const skg_cell_parts *parts, int64_t part) {
-    return parts->volume && parts->volume->times[part] < 0;
+/* Whether two parts displace the same volume. */
+static int both_displace(const skg_cell_parts *parts, int64_t a, int64_t b) {
+    int same = 0;
+    for (int64_t v = 0; v < parts->volume_count; v++)
+        same |= parts->volumes[v].times[a] < 0 && parts->volumes[v].times[b] < 0;
+    return same;
 }
 
 /* Where two parts that displace a volume may overlap, its cells are away once. */
@@ -48,7 +52,7 @@ static void mark_pair(const skg_cells *cells, const skg_solid *a, const skg_soli
 }
 
 skg_status skg_cells_settled(const skg_cell_parts *parts, const skg_cells *cells, uint8_t **settled) {
-    SKG_TRY(skg_alloc(cells->count[0] * cells->count[1] * cells->count[2], 1, "cells", settled));
+    SKG_TRY(skg_alloc(skg_cells_count(cells), 1, "cells", settled));
     if (!parts->priority || parts->count == 0) return SKG_OK;
     const int32_t lowest = lowest_priority(parts);
     for (int64_t i = 0; i < parts->count; i++) {
@@ -57,8 +61,8 @@ skg_status skg_cells_settled(const skg_cell_parts *parts, const skg_cells *cells
             find_range(cells, &parts->solids[i], first, last);
             mark(cells, first, last, *settled);
         }
-        for (int64_t j = 0; displaces(parts, i) && j < i; j++)
-            if (displaces(parts, j)) mark_pair(cells, &parts->solids[i], &parts->solids[j], *settled);
+        for (int64_t j = 0; parts->volume_count > 0 && j < i; j++)
+            if (both_displace(parts, i, j)) mark_pair(cells, &parts->solids[i], &parts->solids[j], *settled);
     }
     return SKG_OK;
 }

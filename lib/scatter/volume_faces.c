@@ -1,25 +1,26 @@
-/* Faces at which a volume of cells begins or ends: what they add differs from cell to cell of the object. */
+/* Faces at which volumes of cells begin or end: what they add differs from cell to cell of the object. */
 #include "scatter/planting.h"
 
 #include <string.h>
 
-static int is_box(const skg_planting *p, int64_t face) {
-    return p->parts->volume->times[p->part[face]] > 0;
-}
-
 static int changes(const skg_planting *p, int64_t face) {
-    return p->parts->volume->times[p->part[face]] != 0;
+    int some = 0;
+    for (int64_t v = 0; v < p->parts->volume_count; v++)
+        some |= p->parts->volumes[v].times[p->part[face]] != 0;
+    return some;
 }
 
-/* Where a part leaves the box of the volume, what its faces add is not the same on both sides of the box. */
+/* Where a part leaves the box of a volume, what its faces add is not the same on both sides of the box. */
 static void settle(skg_planting *p, int64_t cell) {
-    int box = 0, other = 0;
-    for (int64_t i = p->first[cell]; i < p->first[cell + 1]; i++) {
-        if (!changes(p, p->faces_of[i])) continue;
-        box |= is_box(p, p->faces_of[i]);
-        other |= !is_box(p, p->faces_of[i]);
+    for (int64_t v = 0; v < p->parts->volume_count; v++) {
+        int box = 0, other = 0;
+        for (int64_t i = p->first[cell]; i < p->first[cell + 1]; i++) {
+            const int32_t times = p->parts->volumes[v].times[p->part[p->faces_of[i]]];
+            box |= times > 0;
+            other |= times < 0;
+        }
+        if (box && other) p->settled[cell] = 1;
     }
-    if (box && other) p->settled[cell] = 1;
 }
 
 /* The medium that faces of a part add in a cell. */
@@ -51,7 +52,7 @@ static skg_status copy(skg_planting *p, int64_t cell, int64_t *next) {
 }
 
 skg_status skg_plant_copies(skg_planting *p) {
-    const int64_t cells = p->cells->count[0] * p->cells->count[1] * p->cells->count[2];
+    const int64_t cells = skg_cells_count(p->cells);
     int64_t copies = 0, next = p->originals;
     for (int64_t i = 0; i < p->first[cells]; i++) copies += changes(p, p->faces_of[i]);
     SKG_TRY(skg_realloc(p->originals + copies, sizeof *p->corners, "cells", &p->corners));

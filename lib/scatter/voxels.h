@@ -33,18 +33,20 @@ skg_status skg_scatter_columns(int64_t count, skg_material *const *materials, co
 
 enum { SKG_CELLS_DEFAULT = 64, SKG_CELLS_MAX = 128, SKG_CELL_COLUMNS = 2 };
 
-/* Whole multiples of a unit, of which sums of 2^22 hits fit in 63 bits: of the coefficients, and how many times a volume of cells is there. */
+/* Whole multiples of a unit, of which sums of 2^22 hits fit in 63 bits: of the coefficients, and how many times each volume of cells is
+ * there. */
 #define SKG_CELL_UNIT 0x1p40
-enum { SKG_CELL_TIMES = SKG_SCATTER_RANK, SKG_CELL_AMOUNTS };
+enum { SKG_CELL_TIMES = SKG_SCATTER_RANK, SKG_CELL_AMOUNTS = SKG_CELL_TIMES + SKG_SCATTER_VOLUMES_MAX };
 typedef int64_t skg_cell_amount[SKG_CELL_AMOUNTS];
 
 typedef struct {
-    int64_t count[3];        /* cells along x, y, z; along x and y as many */
-    double low[3], size[3];  /* mm, of the box of all parts */
-    skg_mixture *mixtures;   /* [z][y][x] coefficients of skg_scatter_physics per mm */
-    skg_cell_amount *known;  /* [z][y][x] what is at one place of each, beyond the base: SKG_KNOWN */
-    skg_cell_amount *within; /* [z][y][x] what the volume of cells holds there, on average; NULL: none */
-    double mean[SKG_SCATTER_RANK]; /* over the cells */
+    int64_t count[3];       /* cells along x, y, z; along x and y as many */
+    double low[3], size[3]; /* mm, of the box of all parts */
+    skg_mixture *mixtures;  /* [z][y][x] coefficients of skg_scatter_physics per mm */
+    skg_cell_amount *known; /* [z][y][x] what is at one place of each, beyond the base: SKG_KNOWN */
+    int64_t volume_count;   /* volumes of cells */
+    int64_t (*within)[SKG_SCATTER_RANK]; /* [volume][z][y][x] what each holds there, on average; NULL: none */
+    double mean[SKG_SCATTER_RANK];       /* over the cells */
     /* As photons read them (walk.clh), by skg_cells_trace: */
     skg_mixture *media; /* [media_count] mixtures per mm, and what faces of each part add */
     uint32_t *tree;     /* [tree_count] words of the cells; bricks of finer cells; lists of faces */
@@ -60,11 +62,12 @@ typedef struct {
 #define SKG_KNOWN ((const double[3]){0.3660254037844386, 0.20710678118654755, 0.5772156649015329})
 
 /* A volume of cells among the parts. What it holds differs from place to place, and is no part's amount: it is added where amounts say that
- * the volume is there. */
+ * the volume is there. A volume in another is the box of its own and displaces that. */
 typedef struct {
     const skg_volume *volume;
-    double to_cells[16];  /* from mm of the world */
-    const int32_t *times; /* [parts] 1: its box; -1: a part inside it, which displaces it */
+    int64_t first_curve; /* among those of all volumes */
+    double to_cells[16]; /* from mm of the world */
+    int32_t *times;      /* [parts] 1: its box; -1: a part inside it, which displaces it */
     double (*coefficients)[SKG_SCATTER_RANK]; /* [curves] of an amount of 1, per mm */
     double (*lines)[SKG_SCATTER_RANK];        /* likewise of the beam's lines */
 } skg_cell_volume;
@@ -80,8 +83,16 @@ typedef struct {
         *priority; /* of each, which decides where solids with the same parent overlap; NULL: amounts add */
     int32_t clip;  /* 1, with priority: a solid counts only inside its parent */
     int32_t unite; /* 1: a solid counts once where its winding number is above 0 */
-    const skg_cell_volume *volume; /* NULL: none */
+    int64_t volume_count;
+    const skg_cell_volume *volumes; /* [volume_count] */
 } skg_cell_parts;
+
+static inline int64_t skg_cells_count(const skg_cells *cells) {
+    return cells->count[0] * cells->count[1] * cells->count[2];
+}
+
+/* The most curves that a volume among the parts has. */
+int64_t skg_cell_curves(const skg_cell_parts *parts);
 
 /* The coefficients of each part in these units; the caller frees them. */
 skg_status skg_cells_amounts(const skg_cell_parts *parts, skg_cell_amount **amounts);
@@ -93,11 +104,11 @@ typedef void skg_cell_change(void *user, double depth, const int64_t *more, int6
 void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts, skg_columns *grid,
                     int64_t column, int64_t *work, skg_cell_change *change, void *user);
 
-/* What the volume of cells holds in each cell, on average over the places in it that are within the volume. */
-skg_status skg_cells_within(const skg_cell_volume *volume, skg_cells *cells);
+/* What each volume of cells holds in each cell, on average over the places in it that are within the volume. */
+skg_status skg_cells_within(const skg_cell_parts *parts, skg_cells *cells);
 
 /* Adds the integral of what a volume holds from one place of the world to another, as shares of the way: coefficients, or lines. amounts:
- * [curves] workspace */
+ * workspace of the curves of the volume */
 void skg_volume_between(const skg_cell_volume *volume, int lines, const double from[3], const double to[3],
                         double *amounts, double sums[SKG_SCATTER_RANK]);
 

@@ -1,4 +1,4 @@
-/* A volume of cells among the parts: what it holds in each cell of the object, and along lines. */
+/* Volumes of cells among the parts: what they hold in each cell of the object, and along lines. */
 #include "scatter/voxels.h"
 
 #include "core/maths.h"
@@ -11,8 +11,9 @@ enum { SAMPLES_MIN = 4, SAMPLES_MAX = 16 };
 
 typedef struct {
     const skg_cell_volume *of;
-    skg_cells *cells;
-    int64_t samples[3]; /* along the sides of a cell */
+    const skg_cells *cells;
+    int64_t (*within)[SKG_SCATTER_RANK]; /* [z][y][x] */
+    int64_t samples[3];                  /* along the sides of a cell */
 } filling;
 
 /* Adds what the volume holds at a place of the world. Returns 0 outside. */
@@ -52,21 +53,38 @@ static skg_status fill_plane(void *user, int64_t z) {
     const int64_t *count = f->cells->count;
     for (int64_t y = 0; y < count[1]; y++)
         for (int64_t x = 0; x < count[0]; x++)
-            fill_cell(f, (const int64_t[3]){x, y, z}, f->cells->within[(z * count[1] + y) * count[0] + x]);
+            fill_cell(f, (const int64_t[3]){x, y, z}, f->within[(z * count[1] + y) * count[0] + x]);
     return SKG_OK;
 }
 
-skg_status skg_cells_within(const skg_cell_volume *of, skg_cells *cells) {
-    filling f = {.of = of, .cells = cells};
+static skg_status fill_volume(const skg_cell_volume *of, const skg_cells *cells,
+                              int64_t (*within)[SKG_SCATTER_RANK]) {
+    filling f = {.of = of, .cells = cells, .within = within};
     for (int k = 0; k < 3; k++) { /* so many of the volume's cells along a side */
         double most = 0;
         for (int r = 0; r < 3; r++)
             most = fmax(most, fabs(of->to_cells[4 * r + k]) * cells->size[k] / (double)cells->count[k]);
         f.samples[k] = (int64_t)fmin(fmax(ceil(most - 1e-6), SAMPLES_MIN), SAMPLES_MAX);
     }
-    SKG_TRY(skg_alloc(cells->count[0] * cells->count[1] * cells->count[2], sizeof *cells->within, "cells",
-                      &cells->within));
     return skg_parallel(cells->count[2], fill_plane, &f);
+}
+
+skg_status skg_cells_within(const skg_cell_parts *parts, skg_cells *cells) {
+    const int64_t total = skg_cells_count(cells);
+    cells->volume_count = parts->volume_count;
+    SKG_TRY(skg_alloc(parts->volume_count * total, sizeof *cells->within, "cells", &cells->within));
+    for (int64_t v = 0; v < parts->volume_count; v++)
+        SKG_TRY(fill_volume(&parts->volumes[v], cells, cells->within + v * total));
+    return SKG_OK;
+}
+
+int64_t skg_cell_curves(const skg_cell_parts *parts) {
+    int64_t most = 0;
+    for (int64_t v = 0; v < parts->volume_count; v++) {
+        const int64_t curves = parts->volumes[v].volume->curve_count;
+        most = curves > most ? curves : most;
+    }
+    return most;
 }
 
 void skg_volume_between(const skg_cell_volume *of, int lines, const double from[3], const double to[3],

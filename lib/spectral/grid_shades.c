@@ -44,7 +44,7 @@ static skg_status see(void *user, const skg_camera *camera, const double ray[3],
                                        "direction across the strips");
     skg_grid_tilt(e->shades, camera, tilt);
     e->tilt = fmax(e->tilt, fabs(tilt[0] + tilt[1] * column + tilt[2] * row));
-    const double oblique = skg_length(ray) / skg_camera_foot(camera);
+    const double oblique = fmax(skg_length(ray) / skg_camera_foot(camera), 1); /* but for rounding */
     e->low = fmin(e->low, oblique), e->high = fmax(e->high, oblique);
     return SKG_OK;
 }

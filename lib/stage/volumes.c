@@ -43,15 +43,20 @@ skg_status skg_volumes_create(skg_context *context, const skg_scene *scene, skg_
     return SKG_OK;
 }
 
+/* Everything but the cells. */
+static void release_placed(skg_placed_volume *placed) {
+    skg_buffer_release(&placed->weights);
+    skg_buffer_release(&placed->displacing);
+    skg_cell_lines_release(&placed->lines);
+    skg_free(&placed->planes);
+}
+
 void skg_volumes_release(skg_volumes *volumes) {
     for (int64_t v = 0; v < volumes->count; v++) {
-        skg_placed_volume *placed = &volumes->volumes[v];
-        skg_buffer_release(&placed->cells);
-        skg_buffer_release(&placed->weights);
-        skg_buffer_release(&placed->displacing);
-        skg_cell_lines_release(&placed->lines);
-        skg_free(&placed->planes);
+        skg_buffer_release(&volumes->volumes[v].cells);
+        release_placed(&volumes->volumes[v]);
     }
+    release_placed(&volumes->alone);
     skg_free(&volumes->volumes);
     volumes->count = 0;
 }
@@ -63,10 +68,15 @@ int64_t skg_volumes_bytes(const skg_volumes *volumes) {
     return bytes;
 }
 
-double skg_volumes_most(const skg_volumes *volumes, int64_t part) {
+const skg_placed_volume *skg_volumes_find(const skg_volumes *volumes, int64_t part) {
     for (int64_t v = 0; v < volumes->count; v++)
-        if (volumes->volumes[v].part == part) return volumes->volumes[v].most;
-    return 0;
+        if (volumes->volumes[v].part == part) return &volumes->volumes[v];
+    return NULL;
+}
+
+double skg_volumes_most(const skg_volumes *volumes, int64_t part) {
+    const skg_placed_volume *placed = skg_volumes_find(volumes, part);
+    return placed ? placed->most : 0;
 }
 
 /* --- weights */
@@ -100,7 +110,8 @@ static skg_status list_planes(const contributors *c, skg_placed_volume *placed) 
     return SKG_OK;
 }
 
-/* The weight of code k on plane p of the volume is weights[p * codes + k]. A volume of wide cells has one, for the unit of its cells. */
+/* The weight of code k on plane p of the volume is weights[p * codes + k]; planes that are not listed are left out. A volume of wide cells
+ * has one, for the unit of its cells. */
 static void fill_weights(const contributors *c, skg_placed_volume *placed, int64_t codes, double *weights) {
     const skg_volume *volume = placed->volume;
     const skg_model *model = c->model;
@@ -110,9 +121,10 @@ static void fill_weights(const contributors *c, skg_placed_volume *placed, int64
         const double amount = volume->wide ? volume->unit : volume->amounts[k];
         for (int64_t w = model->first_contribution[curve]; w < model->first_contribution[curve + 1]; w++) {
             const skg_contribution *own = &model->contributions[w];
-            double *weight = &weights[plane_of(placed, own->plane) * codes + k];
-            *weight = own->weight * amount;
-            placed->most = fmax(placed->most, fabs(*weight));
+            const int64_t plane = plane_of(placed, own->plane);
+            if (plane == placed->plane_count) continue;
+            weights[plane * codes + k] = own->weight * amount;
+            placed->most = fmax(placed->most, fabs(own->weight * amount));
         }
     }
 }
@@ -327,4 +339,24 @@ skg_status skg_volumes_add(const skg_volumes *volumes, const skg_pass *pass, con
                            skg_staging *staging) {
     for (int64_t v = 0; v < volumes->count; v++) SKG_TRY(add(&volumes->volumes[v], pass, hits, staging));
     return SKG_OK;
+}
+
+/* A copy of a volume that adds to plane 0 what it adds to a plane of the model. The memory of the last copy is taken again. */
+static skg_status place_alone(skg_volumes *volumes, const skg_model *model, int64_t part, int32_t plane,
+                              const skg_pass *pass, skg_context *context) {
+    const skg_placed_volume *placed = skg_volumes_find(volumes, part);
+    const contributors c = {model, pass->scene->count + skg_scene_curves(pass->scene, part)};
+    skg_placed_volume *alone = &volumes->alone;
+    if (!alone->planes) SKG_TRY(skg_alloc(1, sizeof *alone->planes, "planes of a volume", &alone->planes));
+    alone->part = part, alone->volume = placed->volume, alone->cells = placed->cells;
+    alone->lanes = 1, alone->plane_count = 1, alone->planes[0] = plane;
+    SKG_TRY(upload_weights(context, &c, alone));
+    alone->planes[0] = 0;
+    return SKG_OK;
+}
+
+skg_status skg_volumes_add_alone(skg_volumes *volumes, const skg_model *model, int64_t part, int32_t plane,
+                                 const skg_pass *pass, const skg_hits_memory *hits, skg_staging *staging) {
+    SKG_TRY(place_alone(volumes, model, part, plane, pass, staging->context));
+    return add(&volumes->alone, pass, hits, staging);
 }

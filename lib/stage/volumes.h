@@ -22,6 +22,7 @@ typedef struct {
 typedef struct skg_volumes {
     int64_t count;
     skg_placed_volume *volumes;
+    skg_placed_volume alone; /* of skg_volumes_add_alone: its cells are borrowed */
 } skg_volumes;
 
 /* Uploads the cells of a scene's volumes. SKG_ERR_DEVICE_MEMORY if they are larger than the device allows. */
@@ -34,6 +35,9 @@ void skg_volumes_release(skg_volumes *volumes);
 
 /* Bytes on the device. */
 int64_t skg_volumes_bytes(const skg_volumes *volumes);
+
+/* The volume that a part is; NULL: it is none. */
+const skg_placed_volume *skg_volumes_find(const skg_volumes *volumes, int64_t part);
 
 /* The largest weight of a cell of a part; 0: it is no volume. */
 double skg_volumes_most(const skg_volumes *volumes, int64_t part);
@@ -55,5 +59,9 @@ skg_status skg_volume_program(const skg_placed_volume *placed, const skg_pass *p
 /* Enqueues the sums of all volumes behind the raster and the hits of a pass. */
 skg_status skg_volumes_add(const skg_volumes *volumes, const skg_pass *pass, const skg_hits_memory *hits,
                            skg_staging *staging);
+
+/* Enqueues what the cells of one part add to a plane of the model as the sums of a pass of one plane. */
+skg_status skg_volumes_add_alone(skg_volumes *volumes, const skg_model *model, int64_t part, int32_t plane,
+                                 const skg_pass *pass, const skg_hits_memory *hits, skg_staging *staging);
 
 #endif

@@ -35,7 +35,8 @@ class Differentiable:
         [n, 3]} in the axes of the mesh, "density": {label: number} by the density over the present one, "mu": {label: [energies]} by the attenuation coefficient in
         1/cm at each of plan()["energies"], for the price of an image for each part. A twist is (tx, ty,
         tz in mm, rx, ry, rz in rad) in world axes about the world's origin; the image counts as if pose' = exp(twist) pose.
-        The twist of a volume of cells is not a number: images have no derivative by its place.
+        The density of a volume of cells is a factor of all its cells. Its twist and "mu" are not numbers: images have no derivative by
+        its place, and its cells have no common coefficient.
         docs/derivatives.md says what is exact, what counts as constant and what is refused.
 
         >>> import numpy as np, skiagraph as sk

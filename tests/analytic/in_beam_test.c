@@ -252,6 +252,26 @@ START_TEST(grid_in_a_parallel_beam) {
 }
 END_TEST
 
+/* A plan takes views that source, detector and grid have turned to as one, however their numbers are rounded: those of a scan. */
+START_TEST(grid_turns_with_the_view) {
+    enum { TURNS = 90 };
+    skg_plan *plan = NULL;
+    make_grid(1200);
+    ck_skg(skg_plan_create(run_context, scene, &view, beam, &options, &plan));
+    for (int k = 1; k < TURNS; k++) {
+        const double c = cos(360.0 / TURNS * k * degree), s = sin(360.0 / TURNS * k * degree);
+        skg_view turned = view;
+        double *const vectors[] = {turned.source, turned.centre, turned.column_step, turned.row_step};
+        for (int v = 0; v < 4; v++) {
+            const double x = vectors[v][0], z = vectors[v][2];
+            vectors[v][0] = c * x + s * z, vectors[v][2] = c * z - s * x;
+        }
+        ck_skg(skg_plan_view_set(plan, &turned));
+    }
+    skg_plan_release(&plan);
+}
+END_TEST
+
 START_TEST(grid_is_absent_or_refused) {
     skg_plan *plan = NULL;
     ck_assert(!effect_is_on(&view, beam, "anti-scatter grid", "none is given"));
@@ -322,6 +342,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, grid_of_parallel_strips);
     tcase_add_test(tests, grid_near_cut_off_behind_matter);
     tcase_add_test(tests, grid_in_a_parallel_beam);
+    tcase_add_test(tests, grid_turns_with_the_view);
     tcase_add_test(tests, grid_is_absent_or_refused);
     tcase_add_test(tests, all_together);
     tcase_add_test(tests, rays_of_samples);

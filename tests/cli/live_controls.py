@@ -53,6 +53,41 @@ def exposure(tried, path):
     tried.still()
 
 
+def presets(tried, path):
+    """Geometry, beam and grid of examinations, each in one step, as the verb image computes them."""
+    run = tried.browser.run
+    first = run("frameSum()")
+    for name in json.loads(run("JSON.stringify(Object.keys(PRESETS))")):
+        tried.differs(name, f"typed(byId('preset'), '{name}')")
+        check("preset named", run("byId('preset').value") == name, run("byId('preset').value"))
+        asked = json.loads(run("JSON.stringify(state.settings)"))
+        check("two keys", sorted(asked) == ["Detector", "Source"], str(sorted(asked)))
+        away = run("size(add(scene.view.centre, -1, scene.view.source))")
+        check("distance", abs(away - run(f"PRESETS['{name}'].distance")) < 1e-6, f"{name}: {away}")
+        words = [word for key, value in asked.items() for word in ("--set", f"{key}={json.dumps(value)}")]
+        told = json.loads(subprocess.run([command, "plan", path, "--json", *words], capture_output=True, text=True, check=True).stdout)
+        kerma = f"air kerma at the detector {float(format(told['open_beam']['air_kerma_uGy'], '.3g')):g} \u00b5Gy"
+        check("kerma of a preset", run("byId('kerma').textContent") == kerma, f"{run('byId(`kerma`).textContent')}, not {kerma}")
+        check_image(tried, path, asked)
+    run("byId('reset').click()")
+    tried.still()
+    run("typed(byId('preset'), 'chest PA')")
+    tried.still()
+    place = "scene.view.source.concat(scene.view.centre).map(x => x.toFixed(6)).join()"
+    # a cube of 80 mm about the origin, 50 mm before the detector
+    check("from the back", run(place) == "0.000000,1710.000000,0.000000,0.000000,-90.000000,0.000000", run(place))
+    run("choose('source')")
+    tried.differs("movable", "typed(byId('about').querySelector('.grid input'), 30)")
+    check("no preset", run("byId('preset').value") == "", run("byId('preset').value"))
+    run("byId('undo').click(); byId('undo').click(); choose('')")
+    tried.still()
+    check("undone", run("frameSum()") == first and run("byId('preset').value") == "")
+    run("window.box = scene.box; scene.box = [[-900, -900, -900], [900, 900, 900]]; typed(byId('preset'), 'hand'); scene.box = window.box")
+    check("too deep", run("byId('sentence').textContent.includes('too deep for hand') && Object.keys(state.settings).length === 0"),
+          run("byId('sentence').textContent"))
+    run("byId('preset').value = ''")
+
+
 def cut(tried):
     """A plane cuts the parts, and what is cut off is not chosen."""
     browser, run = tried.browser, tried.browser.run

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import chromium
 from chromium import Browser
 from live_client import Page, Server
-from live_controls import cut, exposure, sinogram, tape
+from live_controls import cut, exposure, presets, sinogram, tape
 from live_radiograph import radiograph
 from live_test import SCENE, check_same, has_server, image
 from live_tried import Tried, check, failures
@@ -288,6 +288,7 @@ def work(folder, path):
             beam_and_dials(tried)
             bands(tried, path)
             exposure(tried, path)
+            presets(tried, path)
             check("software draws slowly", tried.browser.run("isSlow && isServed()"))
             for by in ("browser", "server"):
                 tried.drawn(by)

@@ -1,4 +1,4 @@
-/* Derivatives by the places of meshes in a volume of cells, and beside it, against differences of images. */
+/* Derivatives by the places of meshes in a volume of cells, and beside it, and by all densities, against differences of images. */
 #include "suite.h"
 #include "support/random.h"
 #include "support/run.h"
@@ -6,6 +6,7 @@
 #include <skiagraph/gradient.h>
 #include <skiagraph/volume.h>
 
+#include <float.h>
 #include <math.h>
 #include <string.h>
 
@@ -24,6 +25,7 @@ enum {
 };
 
 static skg_scene *scene;
+static double factors[PARTS] = {1, 1, 1, 1, 1}; /* of the densities */
 
 /* A cube of 60 mm about the origin. */
 static void add_volume(const double *cells, int32_t values) {
@@ -53,10 +55,19 @@ static void add_box(const char *label, double x, double y, double z, const char 
     for (int k = 0; k < 9; k++) part.pose[4 * (k / 3) + k % 3] = turned[k];
     for (int k = 0; k < 3; k++) part.pose[4 * k + 3] = at[k];
     ck_skg(skg_mesh_create_cuboid(x, y, z, &part.mesh));
-    ck_skg(skg_material_create_named(material, &part.material));
+    skg_material *nominal = NULL;
+    double density = 0;
+    int64_t id = 0;
+    ck_skg(skg_scene_part_count(scene, &id));
+    ck_skg(skg_material_create_named(material, &nominal));
+    const int is_vacuum = strcmp(material, "Vacuum") == 0; /* has no density */
+    if (is_vacuum) ck_skg(skg_material_retain(part.material = nominal));
+    if (!is_vacuum) ck_skg(skg_material_density_get(nominal, &density));
+    if (!is_vacuum) ck_skg(skg_material_create_at_density(nominal, density * factors[id], &part.material));
     ck_skg(skg_scene_part_add(scene, &part, NULL));
     skg_mesh_release(&part.mesh);
     skg_material_release(&part.material);
+    skg_material_release(&nominal);
 }
 
 static skg_plan *make(int wide, int parallel) {
@@ -73,7 +84,8 @@ static skg_plan *make(int wide, int parallel) {
     view.column_step[2] = 0.21, view.row_step[0] = 0.13;
     if (parallel) view.projection = SKG_PROJECTION_PARALLEL;
     ck_skg(skg_scene_create(run_context, &scene));
-    for (int c = 0; c < ALL; c++) cells[c] = wide ? draw(&state, 0, 2) : floor(draw(&state, 0, 3));
+    for (int c = 0; c < ALL; c++)
+        cells[c] = factors[VOLUME] * (wide ? draw(&state, 0, 2) : floor(draw(&state, 0, 3)));
     add_volume(cells, SKG_VOLUME_DENSITY);
     add_box("rod", 8, 26, 9, "Al", 0.4, rod, VOLUME, 0);
     add_box("hole", 14, 12, 13, "Vacuum", 0.7, hole, VOLUME, 0);
@@ -243,6 +255,104 @@ START_TEST(faces_along_rays_lose_the_cells_behind_them) {
 }
 END_TEST
 
+/* --- densities */
+
+/* The image of the scene with the density of a part changed by a share. */
+static void render_denser(int wide, int parallel, int64_t part, double share, double *image) {
+    factors[part] = 1 + share;
+    skg_plan *plan = make(wide, parallel);
+    factors[part] = 1;
+    render(plan, ROD, 0, 0, image);
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+}
+
+/* The derivative by each density, by differences: of the volume, which meshes displace; of those; of the mesh that wins over it; and of
+ * one beside it. Weights of cells are floats, so that steps are large; the next order in the step is taken out. */
+START_TEST(densities_have_the_derivatives_of_differences) {
+    static double image[2][PIXELS], derivative[PIXELS], adjoint[PIXELS], densities[PARTS];
+    static const double steps[2] = {0.02, 0.01};
+    uint64_t state = 3;
+    if (!run_has_double()) return;
+    for (int p = 0; p < PIXELS; p++) adjoint[p] = draw(&state, -0.5, 0.5);
+    for (int64_t part = 0; part < PARTS; part++) {
+        double by_differences[2][PIXELS], change[PARTS] = {0}, largest = 0, sum = 0, size = 0;
+        skg_adjoint given;
+        skg_gradient gradient;
+        skg_direction direction;
+        for (int s = 0; s < 2; s++) {
+            render_denser(_i & 1, _i & 2, part, steps[s], image[0]);
+            render_denser(_i & 1, _i & 2, part, -steps[s], image[1]);
+            for (int p = 0; p < PIXELS; p++)
+                by_differences[s][p] = (image[0][p] - image[1][p]) / (2 * steps[s]);
+        }
+        skg_plan *plan = make(_i & 1, _i & 2);
+        skg_adjoint_init(&given);
+        skg_gradient_init(&gradient);
+        skg_direction_init(&direction);
+        change[part] = 1, direction.densities = change;
+        ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL));
+        given.channels = 1, given.rows = given.columns = SIDE, given.data = adjoint;
+        gradient.densities = densities;
+        ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
+        for (int p = 0; p < PIXELS; p++) {
+            largest = fmax(largest, fabs(by_differences[1][p]));
+            sum += adjoint[p] * derivative[p], size += fabs(adjoint[p] * derivative[p]);
+        }
+        if (part == HOLE)
+            ck_assert_double_eq(largest, 0);
+        else
+            ck_assert_double_gt(largest, 0.1);
+        for (int p = 0; p < PIXELS; p++) { /* differences of images whose weights are floats, over the step */
+            const double slope = (4 * by_differences[1][p] - by_differences[0][p]) / 3;
+            ck_assert_double_le(fabs(derivative[p] - slope), 64 * (double)FLT_EPSILON / steps[1] * largest);
+        }
+        ck_assert_double_le(fabs(densities[part] - sum), 1e-9 * size); /* sums in integers of 2^-50 */
+        skg_plan_release(&plan);
+        skg_scene_release(&scene);
+    }
+}
+END_TEST
+
+/* A density changes all coefficients of its material alike: the derivative by it is the sum of those by coefficients times these. */
+START_TEST(coefficients_add_up_to_densities) {
+    enum { NODES_MAX = 8 };
+    static double adjoint[PIXELS], densities[PARTS], attenuations[PARTS * NODES_MAX];
+    skg_adjoint given;
+    skg_gradient gradient;
+    uint64_t state = 3;
+    if (!run_has_double()) return;
+    skg_plan *plan = make(_i & 1, _i & 2);
+    skg_adjoint_init(&given);
+    skg_gradient_init(&gradient);
+    for (int p = 0; p < PIXELS; p++) adjoint[p] = draw(&state, -0.5, 0.5);
+    given.channels = 1, given.rows = given.columns = SIDE, given.data = adjoint;
+    ck_skg(skg_plan_node_count(plan, &gradient.nodes));
+    ck_assert_int_le(gradient.nodes, NODES_MAX);
+    gradient.densities = densities, gradient.attenuations = attenuations;
+    ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
+    for (int64_t part = 0; part < PARTS; part++) {
+        skg_part of;
+        double sum = 0, size = 0;
+        skg_part_init(&of);
+        ck_skg(skg_scene_part_get(scene, part, &of));
+        for (int64_t n = 0; n < gradient.nodes; n++) {
+            double kev = 0, mu = 0;
+            if (part == VOLUME) ck_assert(isnan(attenuations[n]));
+            if (part == VOLUME) continue;
+            ck_skg(skg_plan_node_get(plan, n, &kev, NULL, NULL));
+            ck_skg(skg_material_attenuation_get(of.material, kev, &mu));
+            sum += mu * attenuations[part * gradient.nodes + n];
+            size += fabs(mu * attenuations[part * gradient.nodes + n]);
+        }
+        if (part != VOLUME)
+            ck_assert_double_le(fabs(densities[part] - sum), 1e-6 * size); /* weights are floats */
+    }
+    skg_plan_release(&plan);
+    skg_scene_release(&scene);
+}
+END_TEST
+
 START_TEST(what_has_no_derivative_is_refused) {
     static double adjoint[PIXELS], poses[PARTS][6], more[PARTS * 6], derivative[PIXELS];
     double *vertices[PARTS] = {NULL};
@@ -257,9 +367,6 @@ START_TEST(what_has_no_derivative_is_refused) {
     gradient.source = more;
     ck_skg_fails(skg_plan_gradient(plan, NULL, &given, &gradient), SKG_ERR_UNSUPPORTED, "source or detector");
     skg_gradient_init(&gradient);
-    gradient.densities = more;
-    ck_skg_fails(skg_plan_gradient(plan, NULL, &given, &gradient), SKG_ERR_UNSUPPORTED, "beside volume");
-    skg_gradient_init(&gradient);
     vertices[VOLUME] = more, gradient.vertices = vertices;
     ck_skg_fails(skg_plan_gradient(plan, NULL, &given, &gradient), SKG_ERR_UNSUPPORTED,
                  "no vertices of its own");
@@ -267,6 +374,12 @@ START_TEST(what_has_no_derivative_is_refused) {
     poses[VOLUME][1] = 1, direction.poses = poses[0];
     ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL), SKG_ERR_UNSUPPORTED,
                  "no derivative by its place");
+    skg_direction_init(&direction);
+    ck_skg(skg_plan_node_count(plan, &direction.nodes));
+    ck_assert_int_le(PARTS * direction.nodes, PARTS * 6);
+    more[VOLUME] = 1, direction.attenuations = more;
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL), SKG_ERR_UNSUPPORTED,
+                 "no common attenuation coefficient");
     skg_plan_release(&plan);
     skg_scene_release(&scene);
 }
@@ -276,6 +389,8 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_loop_test(tests, derivatives_are_those_of_differences, 0, 4);
     tcase_add_test(tests, faces_along_rays_lose_the_cells_behind_them);
+    tcase_add_loop_test(tests, densities_have_the_derivatives_of_differences, 0, 4);
+    tcase_add_loop_test(tests, coefficients_add_up_to_densities, 0, 4);
     tcase_add_test(tests, what_has_no_derivative_is_refused);
 }
 

@@ -117,8 +117,10 @@ def test_what_cannot_be_is_refused(tmp_path):
     with pytest.raises(sk.Error, match="no derivative by source or detector"):
         scene.gradient(np.ones((30, 40)), wrt=("source",))
     assert np.isnan(scene.gradient(np.ones((30, 40)), wrt=("poses",))["poses"]["ct"]).all()
+    assert np.isnan(scene.gradient(np.ones((30, 40)), wrt=("mu",))["mu"]["ct"]).all()
+    assert scene.gradient(np.ones((30, 40)), wrt=("density",))["density"]["ct"] < 0  # less arrives, as energy
     scene.add_volume("mu", np.ones((2, 3, 4)), AFFINE, "mu")
-    with pytest.raises(sk.Error, match="one of 2 volumes of cells"):
+    with pytest.raises(sk.Error, match="mu are attenuation coefficients"):
         scene.image(scatter=0.1)
 
 

@@ -12,30 +12,59 @@ static const double FROM[2] = {0, 1.25}; /* g/cm3 */
 
 enum { SIDE_MM = 80 };
 
-/* A cube of 80 mm of so many cells along each side, of water and from 1.25 g/cm3 on bone. */
-static void add_volume(subject *s, const char *label, const double *pose, int64_t side, const uint16_t *cells,
-                       int32_t values, double scale) {
+/* Cubes as cells, of water and from 1.25 g/cm3 on bone. */
+typedef struct {
+    int64_t count[3];      /* along x, y and z */
+    double low[3], mm;     /* the lowest corner; the side of a cube */
+    const uint16_t *cells; /* densities in units of `scale` */
+    double scale;
+    const double *pose; /* NULL: none */
+    int64_t inside;
+    int32_t priority, values;
+} block;
+
+static void add_block(subject *s, const char *label, const block *b) {
+    const int64_t count = b->count[0] * b->count[1] * b->count[2];
     skg_volume_source source;
     skg_material *materials[2] = {NULL};
     skg_part part;
-    double *numbers = calloc((size_t)(side * side * side), sizeof *numbers);
-    for (int64_t c = 0; c < side * side * side; c++) numbers[c] = scale * cells[c];
+    double *numbers = calloc((size_t)count, sizeof *numbers);
+    for (int64_t c = 0; c < count; c++) numbers[c] = b->scale * b->cells[c];
     skg_volume_source_init(&source);
-    source.columns = source.rows = source.slices = side;
-    source.cells = numbers, source.type = SKG_VOLUME_FLOAT64, source.values = values;
-    const double mm = (double)SIDE_MM / (double)side;
-    for (int k = 0; k < 3; k++) source.affine[5 * k] = mm, source.affine[4 * k + 3] = 0.5 * (mm - SIDE_MM);
+    source.columns = b->count[0], source.rows = b->count[1], source.slices = b->count[2];
+    source.cells = numbers, source.type = SKG_VOLUME_FLOAT64, source.values = b->values;
+    for (int k = 0; k < 3; k++)
+        source.affine[5 * k] = b->mm, source.affine[4 * k + 3] = b->low[k] + 0.5 * b->mm;
     for (int m = 0; m < 2; m++) ck_skg(skg_material_create_named(NAMES[m], &materials[m]));
-    if (values == SKG_VOLUME_DENSITY)
+    if (b->values == SKG_VOLUME_DENSITY)
         source.class_count = 2, source.class_from = FROM, source.class_materials = materials;
     skg_part_init(&part);
     ck_skg(skg_volume_create(&source, &part.volume));
-    part.label = label;
-    if (pose) memcpy(part.pose, pose, sizeof part.pose);
+    part.label = label, part.inside = b->inside, part.priority = b->priority;
+    if (b->pose) memcpy(part.pose, b->pose, sizeof part.pose);
     ck_skg(skg_scene_part_add(s->scene, &part, NULL));
     skg_volume_release(&part.volume);
     for (int m = 0; m < 2; m++) skg_material_release(&materials[m]);
     free(numbers);
+}
+
+/* A cube of 80 mm of so many cells along each side. */
+static block cube_of(int64_t side, const uint16_t *cells, double scale) {
+    const double low = -SIDE_MM / 2.0;
+    return (block){.count = {side, side, side},
+                   .low = {low, low, low},
+                   .mm = (double)SIDE_MM / (double)side,
+                   .cells = cells,
+                   .scale = scale,
+                   .inside = -1,
+                   .values = SKG_VOLUME_DENSITY};
+}
+
+static void add_volume(subject *s, const char *label, const double *pose, int64_t side, const uint16_t *cells,
+                       int32_t values, double scale) {
+    block b = cube_of(side, cells, scale);
+    b.pose = pose, b.values = values;
+    add_block(s, label, &b);
 }
 
 /* A mesh of a material at a density; releases the mesh. */
@@ -111,10 +140,10 @@ static void compare(found *cells, found *meshes, double most) {
 
 static const double whole[3] = {SIDE_MM, SIDE_MM, SIDE_MM}, middle[3] = {0, 0, 0};
 static const uint16_t one[1] = {1};
+static const double tilted[16] = {0.8, 0, 0.6, 3, 0.36, 0.8, -0.48, 4, -0.48, 0.6, 0.64, -10, 0, 0, 0, 1};
 
 /* The cells of a volume that fills the object are the object's: the same histories come back to the rounding of floats. */
 START_TEST(a_cube_of_cells_scatters_as_a_mesh) {
-    static const double tilted[16] = {0.8, 0, 0.6, 3, 0.36, 0.8, -0.48, 4, -0.48, 0.6, 0.64, -10, 0, 0, 0, 1};
     subject s;
     found f[2];
     for (int k = 0; k < 2; k++) {
@@ -178,6 +207,90 @@ START_TEST(meshes_displace_the_cells) {
 }
 END_TEST
 
+/* Two volumes that are the halves of one along an axis. */
+static void add_halves(subject *s, const double *pose, int axis, int64_t side, const uint16_t *cells,
+                       double scale) {
+    enum { CELLS_MAX = 64 };
+    uint16_t own[CELLS_MAX];
+    for (int half = 0; half < 2; half++) {
+        block b = cube_of(side, own, scale);
+        int64_t from[3] = {0}, at = 0;
+        from[axis] = half * (side / 2);
+        b.count[axis] = side / 2;
+        b.low[axis] += half * SIDE_MM / 2.0;
+        b.pose = pose;
+        for (int64_t z = 0; z < b.count[2]; z++)
+            for (int64_t y = 0; y < b.count[1]; y++)
+                for (int64_t x = 0; x < b.count[0]; x++)
+                    own[at++] = cells[((from[2] + z) * side + from[1] + y) * side + from[0] + x];
+        add_block(s, half ? "upper half" : "lower half", &b);
+    }
+}
+
+/* Each cell of the object holds the same, but where the plane between the halves crosses one: there a face is met instead of a mean. */
+START_TEST(halves_of_a_volume_scatter_as_the_whole) {
+    enum { SIDE = 4, CELLS = SIDE * SIDE * SIDE };
+    const double *const pose = _i / 3 ? tilted : NULL;
+    uint16_t cells[CELLS];
+    subject s;
+    found f[2];
+    for (int c = 0; c < CELLS; c++) cells[c] = (uint16_t)(c * 7 % 5);
+    subject_open(&s);
+    add_halves(&s, pose, _i % 3, SIDE, cells, 0.5);
+    f[0] = finish(&s);
+    subject_open(&s);
+    add_volume(&s, "whole", pose, SIDE, cells, SKG_VOLUME_DENSITY, 0.5);
+    f[1] = finish(&s);
+    compare(&f[0], &f[1], 0.1);
+}
+END_TEST
+
+START_TEST(halves_of_water_scatter_as_a_mesh) {
+    const double *const pose = _i / 3 ? tilted : NULL;
+    static const uint16_t ones[8] = {1, 1, 1, 1, 1, 1, 1, 1};
+    subject s;
+    found f[2];
+    subject_open(&s);
+    add_halves(&s, pose, _i % 3, 2, ones, 1);
+    f[0] = finish(&s);
+    subject_open(&s);
+    add_box(&s, pose, whole, middle, 1);
+    f[1] = finish(&s);
+    compare(&f[0], &f[1], 0.1); /* faces that cancel are met, or smeared over cells */
+}
+END_TEST
+
+/* Water, and in a corner of it a block of bone, as volumes and as meshes: of one priority, so that both are there; of a higher one; of a
+ * lower one, so that the block counts outside of the water only; within the water, with a ball of aluminium. */
+START_TEST(volumes_that_overlap_scatter_as_meshes) {
+    enum { ADD, OVER, UNDER, WITHIN };
+    static const int32_t priority[] = {0, 1, -1, 0};
+    static const double size[3] = {40, 40, 40}, corner[3] = {30, 10, 5}, inner[3] = {5, 10, 5};
+    const double *at = _i == WITHIN ? inner : corner;
+    subject s;
+    found f[2];
+    for (int k = 0; k < 2; k++) {
+        const int64_t inside = _i == WITHIN ? 0 : -1;
+        subject_open(&s);
+        if (k == 0) {
+            block b = cube_of(1, one, 1.5);
+            for (int a = 0; a < 3; a++) b.low[a] = at[a] - size[a] / 2;
+            b.mm = size[0], b.inside = inside, b.priority = priority[_i];
+            add_volume(&s, "water", NULL, 1, one, SKG_VOLUME_DENSITY, 1);
+            add_block(&s, "bone", &b);
+        } else {
+            skg_mesh *box = NULL;
+            add_box(&s, NULL, whole, middle, 1);
+            ck_skg(skg_mesh_create_cuboid(size[0], size[1], size[2], &box));
+            add_mesh(&s, box, NAMES[1], 1.5, NULL, at, inside, priority[_i]);
+        }
+        if (_i == WITHIN) add_ball(&s, 12, 2.7, at[0], 1);
+        f[k] = finish(&s);
+    }
+    compare(&f[0], &f[1], 0.1); /* parts that compete are smeared over the same cells */
+}
+END_TEST
+
 START_TEST(what_does_not_scatter_is_refused) {
     subject s;
     subject_open(&s);
@@ -186,9 +299,11 @@ START_TEST(what_does_not_scatter_is_refused) {
                  "attenuation coefficients, which do not say how it scatters");
     subject_close(&s);
     subject_open(&s);
-    add_volume(&s, "volume", NULL, 1, one, SKG_VOLUME_DENSITY, 1);
-    add_volume(&s, "other", NULL, 1, one, SKG_VOLUME_DENSITY, 1);
-    ck_skg_fails(subject_try(&s), SKG_ERR_UNSUPPORTED, "one of 2 volumes of cells");
+    for (int k = 0; k < 5; k++)
+        add_volume(&s, (const char *const[]){"a", "b", "c", "d", "e"}[k], NULL, 1, one, SKG_VOLUME_DENSITY,
+                   1);
+    ck_skg_fails(subject_try(&s), SKG_ERR_UNSUPPORTED,
+                 "one of 5 volumes of cells, and photons are followed through 4");
     subject_close(&s);
 }
 END_TEST
@@ -198,6 +313,9 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, a_cube_of_cells_scatters_as_a_mesh, 0, 2);
     tcase_add_loop_test(tests, cells_that_differ_scatter_as_boxes, 0, 2);
     tcase_add_loop_test(tests, meshes_displace_the_cells, 0, 4);
+    tcase_add_loop_test(tests, halves_of_a_volume_scatter_as_the_whole, 0, 6);
+    tcase_add_loop_test(tests, halves_of_water_scatter_as_a_mesh, 0, 6);
+    tcase_add_loop_test(tests, volumes_that_overlap_scatter_as_meshes, 0, 4);
     tcase_add_test(tests, what_does_not_scatter_is_refused);
 }
 

@@ -71,12 +71,13 @@ typedef struct {
      * they are not wanted. NULL: of no part. The derivative of a place is divided evenly among the vertices that stand there.
      * Parts that share a mesh each have their own; the sum is that of the mesh. */
     double *const *vertices;
-    /** [parts] by the density of each part over that of its material; NULL: not wanted. In a world, for frames with densities of
-     * their own, and for parts that compete by priority it costs an image of path lengths a part. */
+    /** [parts] by the density of each part over that of its material, or of all cells of a volume over their own; NULL: not wanted. In a
+     * world, for frames with densities of their own, and for parts that compete by priority or displace a volume it costs an image of
+     * path lengths a part; of a volume, an image for each of its planes. */
     double *densities;
     /** [parts][nodes] by the attenuation coefficient of the material of each part at each energy of the plan (skg_plan_node_count,
      * skg_plan_node_get), per 1/cm; NULL: not wanted. It costs an image of path lengths a part, and for each energy a pass over the
-     * image and 8 bytes for each of its rays. A pixel of an attenuation above 87, in precision double above 700, counts as
+     * image and 8 bytes for each of its rays. NaN of volumes of cells, which have no common coefficient. A pixel of an attenuation above 87, in precision double above 700, counts as
      * constant if the plan has several energies. */
     double *attenuations;
     /** Number of energies that `attenuations` has memory for: that of the plan. */
@@ -104,7 +105,7 @@ SKG_INIT(skg_gradient)
  *                the source, positions set on the device, and ratios to a flat field that differs from pixel to pixel if
  *                they have noise or steps; for source and detector also for the heel effect, a bow-tie filter, a grid, an
  *                oblique scintillator, jaws, and a world with ratios or in a parallel beam; beside volumes of cells for source,
- *                detector, densities, attenuations and the vertices of the volume
+ *                detector and the vertices of the volume, and for everything if the values of one are linear between its cells
  *     range      SKG_RANGE if a derivative by a path length is not finite
  *     stale      SKG_STALE as skg_plan_submit */
 SKG_API skg_status skg_plan_gradient_submit(skg_plan *plan, const skg_frame *frame,
@@ -157,7 +158,8 @@ SKG_INIT(skg_direction)
  *     limits        as above: faces that contain rays change the means of their pixels
  *     job           result
  *     errors        as of skg_plan_gradient_submit; SKG_ERR_ARGUMENT for fewer than one direction and for numbers that are not
- *                   finite; SKG_ERR_UNSUPPORTED also for a blur that depends on depth, and for a volume of cells that moves */
+ *                   finite; SKG_ERR_UNSUPPORTED also for a blur that depends on depth, and for a volume of cells that
+ *                   moves, or whose attenuation coefficients change */
 SKG_API skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, int64_t count,
                                                const skg_direction *directions, double *derivatives,
                                                int64_t *saturated, skg_job **job);

@@ -42,6 +42,7 @@ function takeScene(message) {
     fillBands();
     fillSpot();
     fillJaws();
+    fillPresets();
     fillMotion();
     listenToSinogram();
     fillDials();
