@@ -115,7 +115,8 @@ static int make_frame(live_loop *loop, char *sentence) {
     live_shot shot;
     const int64_t number = loop->number + 1;
     loop->is_wanted = 0;
-    if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, loop->hub, number, &shot, sentence))
+    if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, &loop->lag, loop->hub, number, &shot,
+                         sentence))
         return 0;
     if (shot.is_dropped || !shot.bytes) return 1;
     loop->number = number;
@@ -245,8 +246,9 @@ static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
     if (!loop->is_told) tell_scene(loop, 0);
     if (loop->is_wanted || !live_hub_is_thirsty(loop->hub)) return; /* no page is there */
-    if (loop->refines || (loop->scene.frames == 1 && !loop->scene.session.options.scatter))
-        loop->is_wanted = 1; /* with more scatter, or once more, for its time */
+    if (loop->refines || live_lag_changes(&loop->lag) ||
+        (loop->scene.frames == 1 && !loop->scene.session.options.scatter))
+        loop->is_wanted = 1; /* with more scatter, with less lag, or once more, for its time */
     else if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
         tell_error(loop, loop->wish.number, sentence);
 }
@@ -302,6 +304,7 @@ void live_loop_run(live_loop *loop, double idle) {
 
 void live_loop_end(live_loop *loop) {
     live_registering_end(&loop->registering);
+    live_lag_free(&loop->lag);
     live_scene_free(&loop->scene);
     if (loop->wish.settings) live_wish_free(&loop->wish);
     live_base_free(&loop->base);
