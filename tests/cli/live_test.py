@@ -246,6 +246,36 @@ def lag(path):
             pass
 
 
+def doses(path):
+    """What a frame gives is what the verb dose has of the scene as it stands; a tube without mAs has no number of photons."""
+    def verb(*words):
+        run = subprocess.run([command, "dose", path, "--histories", "0", "--json", "--quiet", *words], check=True, stdout=subprocess.PIPE)
+        found = json.loads(run.stdout)
+        return [found["kerma"][0]["air_kerma_uGy"], *(found[name] for name in ("kap_uGy_cm2", "detector_air_kerma_uGy", "exposure_index"))]
+
+    def check(found, wanted):
+        names = ("air_kerma_uGy", "kap_uGy_cm2", "detector_air_kerma_uGy", "exposure_index")
+        for name, value in zip(names, wanted, strict=True):
+            assert abs(found[name] - value) <= 1e-6 * value, (name, found[name], value)  # floats of the image at the detector
+
+    put(path, json.dumps({key: SCENE[key] for key in SCENE if key != "Scan"}))  # of which the verb adds up the projections
+    position = [40, -400, 0, "mm"]
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        check(page.text("dosed")["dosed"], verb())
+        wish = page.wish(settings={"Source.Position": position})
+        same = page.frame(wish)
+        check(page.text("dosed")["dosed"], verb("--set", f"Source.Position={json.dumps(position)}"))
+        # the frames that follow are those of the plan as it was
+        check_same(page.frame(page.wish(settings={})), image(path, "--quantity", "attenuation"))
+        page.text("dosed")
+        assert not differ(page.frame(page.wish(settings={"Source.Position": position})), same)
+        check(page.text("dosed")["dosed"], verb("--set", f"Source.Position={json.dumps(position)}"))
+        page.wish(settings={"Source.Beam": {"kVp": 80}})
+        assert page.text("dosed")["dosed"] is None
+
+
 def answers(path):
     with Server(command, path) as server:
         page = Page(server)
@@ -683,7 +713,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, lag, answers, looks, fixed, stopped, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, lag, doses, answers, looks, fixed, stopped, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

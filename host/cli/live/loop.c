@@ -7,6 +7,7 @@
 #include "common/say.h"
 #include "live/ask.h"
 #include "live/describe.h"
+#include "live/dose.h"
 #include "live/fixed.h"
 #include "live/frame.h"
 #include "live/page.h"
@@ -241,6 +242,17 @@ static void answer(live_loop *loop, const live_asked *asked) {
     if (asked->has_measure) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
 }
 
+/* Tells pages what a frame gives, if that is not known of the view. */
+static void tell_dose(live_loop *loop) {
+    live_scene *scene = &loop->scene;
+    if (!scene->is_shown || live_dose_is_known(scene, &scene->shown, loop->wish.phase)) return;
+    live_dose_find(scene, &scene->shown, loop->wish.phase);
+    json_t *object = json_object();
+    json_object_set(object, "dosed", scene->dose);
+    live_hub_tell_json(loop->hub, object);
+    tell_scene(loop, 0); /* of pages that begin */
+}
+
 /* What can wait until nothing is asked for. */
 static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
@@ -251,6 +263,8 @@ static void rest(live_loop *loop) {
         loop->is_wanted = 1; /* with more scatter, with less lag, or once more, for its time */
     else if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
         tell_error(loop, loop->wish.number, sentence);
+    else if (!loop->wish.dragging)
+        tell_dose(loop);
 }
 
 /* Draws a picture of the 3D view that a page waits for. Images come first. */
