@@ -15,7 +15,7 @@ typedef struct {
     const char *name, *what;
     scene_changes changes;
     int precision, strategy, quantity, type, profile;
-    int counts;                             /* 1: the detector counts photons */
+    int counts; /* 1: the detector counts photons; 2: with pile-up and two thresholds */
     void (*ask)(skg_plan_options *options); /* sets further options; may be NULL */
 } effect;
 
@@ -54,14 +54,18 @@ static void ask_steps(skg_plan_options *options) {
 }
 
 /* A detector that counts, of the pixels of a view. */
-static skg_counter *make_counter(const skg_view *view) {
-    static const double threshold = 20;
+static skg_counter *make_counter(const skg_view *view, int pile_up) {
+    static const double thresholds[] = {20, 50};
     skg_counting counting;
     skg_counter *counter = NULL;
     skg_counting_init(&counting);
     bench_try(skg_material_create_named("CdTe", &counting.material), "CdTe");
     counting.thickness_mm = 1, counting.bias_v = 400;
-    counting.count = 1, counting.threshold_kev = &threshold;
+    counting.count = 1, counting.threshold_kev = thresholds;
+    if (pile_up) {
+        counting.count = 2, counting.pile_up = SKG_PILE_UP_PARALYSABLE;
+        counting.dead_time_ns = 100, counting.exposure_s = 1;
+    }
     for (int k = 0; k < 3; k++) {
         counting.pixel_mm[0] = hypot(counting.pixel_mm[0], view->column_step[k]);
         counting.pixel_mm[1] = hypot(counting.pixel_mm[1], view->row_step[k]);
@@ -95,6 +99,11 @@ static const effect effects[] = {
      {.flat = 1},
      .quantity = SKG_QUANTITY_PHOTONS,
      .counts = 1},
+    {"pile-up",
+     "the same with two thresholds, and pulses that overlap",
+     {.flat = 1},
+     .quantity = SKG_QUANTITY_PHOTONS,
+     .counts = 2},
 };
 enum { EFFECTS = sizeof effects / sizeof *effects };
 
@@ -143,7 +152,7 @@ static void make_plan(skg_context *context, const effect *kind, long size, conte
     scene.options.quantity = kind->quantity;
     scene.options.profile = kind->profile;
     if (kind->ask) kind->ask(&scene.options);
-    skg_counter *counter = kind->counts ? make_counter(&scene.view) : NULL;
+    skg_counter *counter = kind->counts ? make_counter(&scene.view, kind->counts > 1) : NULL;
     scene.options.counter = counter;
     const double start = bench_now();
     const skg_status status =
@@ -156,8 +165,8 @@ static void make_plan(skg_context *context, const effect *kind, long size, conte
         bench_try(status, kind->name);
     skg_output_init(&out->output);
     out->output.type = kind->type;
-    out->output.data =
-        bench_alloc((size_t)(size * size), kind->type == SKG_TYPE_FLOAT64 ? sizeof(double) : sizeof(float));
+    out->output.data = bench_alloc((size_t)(size * size * (kind->counts > 1 ? 2 : 1)),
+                                   kind->type == SKG_TYPE_FLOAT64 ? sizeof(double) : sizeof(float));
     scene_close(&scene);
 }
 

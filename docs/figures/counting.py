@@ -1,11 +1,10 @@
-"""Draws docs/counting.png: what detectors that count make of photons of 60 keV by the height of their pulses, and what dead time leaves.
+"""Draws docs/counting.png: what detectors that count make of photons of 60 keV by the height of their pulses, and what pile-up leaves in windows.
 Needs numpy and matplotlib.
 
 Usage: counting.py SKIAGRAPH OUT.png
 """
 
 import json
-import math
 import subprocess
 import sys
 import tempfile
@@ -28,19 +27,24 @@ SENSORS = [
 ]
 
 
-def scene(counting):
+WINDOWED = {**CDTE, **SHARED, "ElectronicNoise": 1.5, "Thresholds": [12, 30, 50], "DeadTime": 100, "ExposureTime": 1}
+PILE_UPS = [("paralysable", "-"), ("nonparalysable", "--")]
+COLOURS = ["#1f6fb4", "#d95f02", "#7570b3"]
+
+
+def scene(counting, photons=1):
     return {
         "Source": {"Position": [0, -1000, 0, "mm"], "Shape": "ParallelBeam",
-                   "Beam": [{"Energy": KEV, "Unit": "keV", "PhotonCount": 1}]},
+                   "Beam": [{"Energy": KEV, "Unit": "keV", "PhotonCount": photons}]},
         "Detector": {"Position": [0, 0, 0, "mm"], "UpVector": [0, 0, -1], "NumberOfPixels": [3, 3], "Spacing": [0.1, 0.1, "mm"],
                      "Counting": counting},
         "Samples": [{"Label": "aside", "Cuboid": [1, 1, 1, "mm"], "Material": "water", "Transform": [["Translation", 50, -500, 0, "mm"]]}],
     }
 
 
-def counts(skiagraph, counting, folder):
-    """Counts of a photon in each window of the middle pixel."""
-    (folder / "scene.json").write_text(json.dumps(scene(counting)))
+def counts(skiagraph, counting, folder, photons=1):
+    """Counts in each window of the middle pixel."""
+    (folder / "scene.json").write_text(json.dumps(scene(counting, photons)))
     subprocess.run([skiagraph, "image", folder / "scene.json", "--quiet", "-o", folder / "image.mha"], check=True)
     values = np.frombuffer((folder / "image.mha").read_bytes()[-4 * 9 * len(counting["Thresholds"]):], "<f4")
     return values.reshape(9, -1)[4]  # windows of a pixel lie together
@@ -56,6 +60,16 @@ def heights(skiagraph, counting):
     return LOWEST + STEP * (np.arange(len(found)) + 0.5), np.array(found)
 
 
+def recorded(skiagraph, kind, pulses):
+    """Counts in a dead time in each window, by the number of pulses in it."""
+    with tempfile.TemporaryDirectory() as name:
+        each = {key: WINDOWED[key] for key in WINDOWED if key not in ("DeadTime", "ExposureTime")}
+        of_one = counts(skiagraph, each, Path(name)).sum()
+        share = WINDOWED["DeadTime"] * 1e-9 / WINDOWED["ExposureTime"]
+        found = [counts(skiagraph, {**WINDOWED, "PileUp": kind}, Path(name), n / share / of_one) for n in pulses]
+    return np.array(found) * share
+
+
 def draw(skiagraph, out):
     figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 3.8))
     for label, sensor, colour, line in SENSORS:
@@ -64,12 +78,13 @@ def draw(skiagraph, out):
     left.set(xlabel="height of the pulse (keV)", ylabel="counts per photon and keV", yscale="log", ylim=(1e-4, 5),
              xlim=(LOWEST, HIGHEST), title="photons of 60 keV")
     left.legend(fontsize=7, loc="upper center")
-    pulses = np.linspace(0, 3, 200)
-    right.plot(pulses, pulses, color="#999999", linestyle=":", label="every pulse counts")
-    right.plot(pulses, pulses / (1 + pulses), color="#1f6fb4", label="nonparalysable")
-    right.plot(pulses, [n * math.exp(-n) for n in pulses], color="#d95f02", label="paralysable")
-    right.set(xlabel="pulses in a dead time", ylabel="counts in a dead time", ylim=(0, 1), xlim=(0, 3), title="dead time")
-    right.legend(fontsize=8)
+    pulses, labels = np.linspace(0.02, 2, 34), ["12 to 30 keV", "30 to 50 keV", "above 50 keV"]
+    for kind, line in PILE_UPS:
+        found = recorded(skiagraph, kind, pulses)
+        for w, colour in enumerate(COLOURS):
+            right.plot(pulses, found[:, w], color=colour, linestyle=line, label=f"{labels[w]}, {kind}")
+    right.set(xlabel="pulses in a dead time", ylabel="counts in a dead time", xlim=(0, 2), title="CdTe, 100 µm pixels, 60 keV")
+    right.legend(fontsize=7)
     figure.tight_layout()
     figure.savefig(out, dpi=110)
 

@@ -3,7 +3,8 @@
  *
  * from      images of all channels and, with args.noise, those of their deviations behind them
  * weights   first the share of the exposure that a dead time is; then [channels][square] of the means, and [channel][from which][square] of
- *           the deviations, with squares of 2 args.reach + 1 pixels */
+ *           the deviations, with squares of 2 args.reach + 1 pixels; with SKG_MOVES, then [channels][SKG_PULSE_STEPS] of pile_up.clh, and
+ *           [channels][SKG_PULSE_STEPS] heights of the pulses of each window, as the open beam has them */
 #if SKG_DOUBLE
 SKG_DEFINE_EXP2_DOUBLE(skg_exp2_of, double, long, as_double, as_long)
 #define SKG_LOG2_E 1.44269504088896340736
@@ -12,6 +13,12 @@ SKG_DEFINE_EXP2_FLOAT(skg_exp2_of, float, int, as_float, as_int)
 #define SKG_LOG2_E 1.44269504088896340736f
 #endif
 SKG_DEFINE_ROOT(skg_root_of, float, uint, as_float, as_uint)
+#if SKG_MOVES
+SKG_DEFINE_LOG_FLOAT(skg_log_of, float, int, as_float, as_int, convert_float)
+SKG_DEFINE_PHILOX(skg_philox_of, uint, mul_hi)
+SKG_DEFINE_NORMAL(skg_normal_of, float, uint, convert_float, as_float, as_uint, skg_log_of)
+SKG_DEFINE_PILE_UP(skg_pile_up, skg_real, __global)
+#endif
 
 /* The sum of a square about a pixel, weighted. */
 static skg_real skg_square(const skg_pulses_args *args, __global const skg_real *from, __global const skg_real *weights, int column,
@@ -35,16 +42,65 @@ static skg_real skg_dead(int pile_up, skg_real n, skg_real *fano) {
     return left;
 }
 
-/* Dead time: pulses are lost whatever their window. Of the noise of their number what is left follows from its variance; which window each
- * that is left falls into is as random as before. */
-static void skg_lose(int pile_up, int channels, skg_real share, const skg_real *mean, skg_real *noise, skg_real *shown) {
-    skg_real all = (skg_real)(0), moved = (skg_real)(0), fano;
-    for (int c = 0; c < channels; c++) all += mean[c], moved += noise[c];
-    const skg_real left = skg_dead(pile_up, max(all, (skg_real)(0)) * share, &fano);
-    const skg_real together = skg_root_of((float)(left * fano)), alone = skg_root_of((float)left);
+#if SKG_MOVES
+/* The shares of all pulses that each window records if pulses overlap. table: behind the weights */
+static void skg_move(const skg_pulses_args *args, __global const skg_real *table, skg_real n, skg_real *shares) {
+    const int channels = args->to.channels;
+    __global const skg_real *alone = table + channels * SKG_PULSE_STEPS;
+    const skg_real few = min(n, (skg_real)(SKG_PULSES_MOST));
+    skg_real heights[SKG_PULSE_STEPS];
+    for (int j = args->first - 1; j < SKG_PULSE_STEPS; j++) {
+        heights[j] = (skg_real)(0);
+        for (int c = 0; c < channels; c++) heights[j] = fma(shares[c], alone[c * SKG_PULSE_STEPS + j], heights[j]);
+    }
+    skg_pile_up(args->pile_up == SKG_PILE_UP_PULSES_END, channels, args->first, few, skg_exp2_of(-few * SKG_LOG2_E), heights, table,
+                shares);
+}
+
+/* A normal deviate of a pixel for each window. */
+static void skg_draw_moved(const skg_pulses_args *args, int pixel, float *deviates) {
+    for (int c = 0; c < args->to.channels; c += 4) {
+        uint draw[4] = {(uint)pixel, SKG_DRAW_WORD(SKG_DRAW_ELECTRONIC, c, 1), (uint)args->key.frame[0], (uint)args->key.frame[1]};
+        skg_philox_of(draw, (uint)args->key.seed[0], (uint)args->key.seed[1]);
+        for (int k = 0; k < 4; k++) deviates[c + k] = skg_normal_of(draw[k]);
+    }
+}
+#endif
+
+/* Dead time: some pulses are lost, and with SKG_MOVES some are recorded in another window. Of the noise of their number what is left
+ * follows from its variance; which window each that is left falls into is as random as before. What a window records beyond its own
+ * pulses has noise of its own. */
+static void skg_lose(const skg_pulses_args *args, __global const skg_real *weights, int pixel, const skg_real *mean,
+                     const skg_real *noise, skg_real *shown) {
+    const int channels = args->to.channels;
+    skg_real all = (skg_real)(0), moved = (skg_real)(0), fano, off[SKG_CHANNELS_COUNTED];
+    for (int c = 0; c < channels; c++) all += max(mean[c], (skg_real)(0));
+    const skg_real n = all * weights[0], left = skg_dead(args->pile_up, n, &fano);
+#if SKG_MOVES
+    skg_real share[SKG_CHANNELS_COUNTED];
+    float deviates[SKG_CHANNELS_COUNTED];
+    const int square = (2 * args->reach + 1) * (2 * args->reach + 1);
+    for (int c = 0; c < channels; c++) share[c] = all > 0 ? max(mean[c], (skg_real)(0)) / all : (skg_real)(0);
+    skg_move(args, weights + 1 + channels * (1 + channels) * square, n, share);
+    if (args->noise) skg_draw_moved(args, pixel, deviates);
+#endif
     for (int c = 0; c < channels; c++) {
-        const skg_real part = all > 0 ? mean[c] / all : (skg_real)(0);
-        shown[c] = fma(left, mean[c], fma(together, part * moved, alone * (noise[c] - part * moved)));
+#if SKG_MOVES
+        const skg_real own = min(max(all * share[c], (skg_real)(0)), left * mean[c]);
+        off[c] = mean[c] > 0 ? noise[c] * skg_root_of((float)(own / mean[c])) : (skg_real)(0);
+        if (args->noise) off[c] += skg_root_of((float)max(all * share[c] - own, (skg_real)(0))) * deviates[c];
+        shown[c] = all * share[c];
+#else
+        off[c] = noise[c] * skg_root_of((float)left);
+        shown[c] = left * mean[c];
+#endif
+        moved += off[c];
+    }
+    const skg_real together = skg_root_of((float)fano), counted = left * all;
+    const skg_real each = counted > 0 ? (skg_real)(1) / counted : (skg_real)(0);
+    for (int c = 0; c < channels; c++) {
+        const skg_real part = shown[c] * each;
+        shown[c] += fma(together, part * moved, off[c] - part * moved);
     }
 }
 
@@ -64,7 +120,7 @@ __kernel void skg_pulses(skg_pulses_args args, __global const skg_real *from, __
             noise[c] += skg_square(&args, from + (channels + k) * args.from.channel_stride, own + k * square, column, row);
         shown[c] = mean[c] + noise[c];
     }
-    if (args.pile_up) skg_lose(args.pile_up, channels, weights[0], mean, noise, shown);
+    if (args.pile_up) skg_lose(&args, weights, row * args.to.columns + column, mean, noise, shown);
     for (int c = 0; c < channels; c++) to[c * args.to.channel_stride] = shown[c];
 }
 

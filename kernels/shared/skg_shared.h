@@ -263,10 +263,12 @@ typedef struct {
 #define SKG_PILE_UP_PULSES_END                                                                               \
     2 /* the last pulse, whether it counted or not; 1: the last one that counted; 0: there is none */
 
-/* Of its kernels: weights are squares of 2 reach + 1 pixels. noise: 1: deviations lie behind the means. */
+/* Of its kernels: weights are squares of 2 reach + 1 pixels. noise: 1: deviations lie behind the means. first: the lowest step of the
+ * heights of pulses, and key: of the noise of those that are moved, if pulses that overlap are (SKG_MOVES). */
 typedef struct {
     skg_image_args from, to;
-    SKG_INT reach, noise, pile_up, reserved;
+    SKG_INT reach, noise, pile_up, first;
+    skg_noise_args key;
 } skg_pulses_args;
 
 /* Of skg_attenuate (attenuate.cl). In such a struct the reals come first and the members of one size for both precisions
@@ -452,7 +454,7 @@ _Static_assert(sizeof(skg_attenuate_float) == 40 * 4 + 224 && sizeof(skg_attenua
 _Static_assert(sizeof(skg_detect_float) == 4 * 4 + 64 && sizeof(skg_detect_double) == 4 * 8 + 64,
                "layout of the arguments of skg_detect");
 _Static_assert(sizeof(skg_image_args) == 40 && sizeof(skg_blur_args) == 72 &&
-                   sizeof(skg_blur_variance_args) == 96 && sizeof(skg_pulses_args) == 96,
+                   sizeof(skg_blur_variance_args) == 96 && sizeof(skg_pulses_args) == 120,
                "layout of images");
 _Static_assert(sizeof(skg_hits_args) == 104 && sizeof(skg_leaky_args) == 88, "layout of arguments");
 _Static_assert(sizeof(skg_volume_args) == 19 * 8 + 72 + 28 * 4, "layout of the arguments of skg_volume_add");

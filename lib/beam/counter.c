@@ -27,7 +27,7 @@ static skg_status check_switch(const char *what, int32_t flag) {
 }
 
 static skg_status check_thresholds(const skg_counting *c) {
-    const double noise = c->electronic_kev * (c->anti_coincidence ? 2 : 1);
+    const double noise = skg_pulse_noise(c);
     if (c->count < 1 || c->count > SKG_THRESHOLDS_MAX || !c->threshold_kev)
         return skg_fail(SKG_ERR_BEAM, "counting detector: %" PRId64 " thresholds; give 1 to %d", c->count,
                         (int)SKG_THRESHOLDS_MAX);
@@ -167,7 +167,8 @@ static void mirror(double table[SKG_COUNTING_PIXELS]) {
 }
 
 static skg_status make_row(const skg_counter *counter, double kev, skg_counter_row **row) {
-    const int64_t windows = counter->counting.count, size = skg_counter_row_size(windows);
+    const int64_t windows = counter->counting.count, size = skg_counter_row_size(&counter->counting);
+    const int64_t tables = skg_counter_tables_size(windows);
     skg_arrival *arrival = NULL;
     skg_deposit deposits[SKG_DEPOSITS_MAX];
     skg_status status = SKG_OK;
@@ -177,9 +178,10 @@ static skg_status make_row(const skg_counter *counter, double kev, skg_counter_r
     SKG_TRY_CLEANUP(skg_alloc(size, sizeof *(*row)->counts, "counting detector", &(*row)->counts));
     double *counts = (*row)->counts;
     for (int64_t h = 0; h < SKG_HISTORIES; h++)
-        skg_pixels_count(&counter->counting, skg_arrival_follow(arrival, h, deposits), deposits, counts);
+        skg_pixels_count(&counter->counting, skg_arrival_follow(arrival, h, deposits), deposits, counts,
+                         skg_counting_moves(&counter->counting) ? counts + tables : NULL);
     for (int64_t k = 0; k < size; k++) counts[k] *= skg_arrival_efficiency(arrival) / SKG_HISTORIES;
-    for (int64_t t = windows; t < size; t += SKG_COUNTING_PIXELS) mirror(counts + t);
+    for (int64_t t = windows; t < tables; t += SKG_COUNTING_PIXELS) mirror(counts + t);
     (*row)->kev = kev;
 cleanup:
     skg_arrival_release(&arrival);
@@ -286,19 +288,5 @@ skg_status skg_counter_pairs_get(skg_counter *counter, double energy_kev, int64_
     SKG_TRY(check_window(counter, other));
     SKG_TRY(skg_counter_rows_get(counter, 1, &energy_kev, &row));
     memcpy(pairs, skg_counter_pairs(counter, row, window, other), SKG_COUNTING_PIXELS * sizeof *pairs);
-    return SKG_OK;
-}
-
-skg_status skg_pile_up_get(int32_t pile_up, double pulses, double *counted, double *fano) {
-    SKG_PLAIN;
-    SKG_NEEDS(counted);
-    if (!(pulses >= 0 && isfinite(pulses)))
-        return skg_fail(SKG_ERR_ARGUMENT, "%g pulses in a dead time; give 0 or more", pulses);
-    if (pile_up < SKG_PILE_UP_NONE || pile_up > SKG_PILE_UP_PARALYSABLE)
-        return skg_fail(SKG_ERR_ARGUMENT, "pile-up %" PRId32 " is no SKG_PILE_UP_ value", pile_up);
-    const int nonparalysable = pile_up == SKG_PILE_UP_NONPARALYSABLE;
-    const double left = pile_up == SKG_PILE_UP_NONE ? 1 : nonparalysable ? 1 / (1 + pulses) : exp(-pulses);
-    *counted = pulses * left;
-    if (fano) *fano = pile_up == SKG_PILE_UP_NONE ? 1 : nonparalysable ? left * left : 1 - 2 * *counted;
     return SKG_OK;
 }

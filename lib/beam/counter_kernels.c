@@ -4,6 +4,7 @@
 #include "core/maths.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -24,6 +25,7 @@ typedef struct {
     double counts[SKG_THRESHOLDS_MAX];
     double spread[SKG_THRESHOLDS_MAX][PIXELS];
     double pairs[SKG_THRESHOLDS_MAX][SKG_THRESHOLDS_MAX][PIXELS];
+    double heights[SKG_THRESHOLDS_MAX][SKG_PULSE_STEPS]; /* if pulses are moved */
 } beam_sums;
 
 static void add_up(const skg_counter *counter, const skg_counter_row *row, double photons, beam_sums *sums) {
@@ -34,6 +36,8 @@ static void add_up(const skg_counter *counter, const skg_counter_row *row, doubl
         for (int32_t o = 0; o < sums->windows; o++)
             for (int k = 0; k < PIXELS; k++)
                 sums->pairs[w][o][k] += photons * skg_counter_pairs(counter, row, w, o)[k];
+        for (int j = 0; skg_counting_moves(&counter->counting) && j < SKG_PULSE_STEPS; j++)
+            sums->heights[w][j] += photons * skg_counter_heights(counter, row, w)[j];
     }
 }
 
@@ -132,6 +136,15 @@ static void scale_means(int size, double *means) {
     for (int k = 0; k < size; k++) means[k] /= sum;
 }
 
+static void fill_heights(const skg_counting *counting, const beam_sums *sums, skg_counter_kernels *made) {
+    double *heights = made->below + (ptrdiff_t)sums->windows * SKG_PULSE_STEPS;
+    skg_pile_up_below(counting, made->below);
+    for (int k = 0; k < sums->windows * SKG_PULSE_STEPS; k++) {
+        const double counts = sums->counts[k / SKG_PULSE_STEPS];
+        heights[k] = counts > 0 ? sums->heights[k / SKG_PULSE_STEPS][k % SKG_PULSE_STEPS] / counts : 0;
+    }
+}
+
 static void fill(const beam_sums *sums, const double *wide, skg_counter_kernels *made) {
     const int n = sums->windows, size = (2 * made->reach + 1) * (2 * made->reach + 1);
     for (int t = 0; t < n; t++) {
@@ -159,10 +172,13 @@ skg_status skg_counter_kernels_make(skg_counter *counter, const skg_spectrum *sp
     for (int f = 0; f < FREQUENCIES * FREQUENCIES; f++)
         add_frequency(sums, f % FREQUENCIES, f / FREQUENCIES, wide + n * PIXELS);
     kernels->reach = find_reach(tables, wide);
+    if (skg_counting_moves(&counter->counting)) kernels->first = skg_pulse_first(&counter->counting);
     const int64_t size = (2 * kernels->reach + 1) * (2 * kernels->reach + 1);
-    SKG_TRY_CLEANUP(skg_alloc(tables * size, sizeof *kernels->means, "counting detector", &kernels->means));
-    kernels->noise = kernels->means + n * size;
+    SKG_TRY_CLEANUP(skg_alloc(skg_counter_kernels_size(kernels), sizeof *kernels->means, "counting detector",
+                              &kernels->means));
+    kernels->noise = kernels->means + n * size, kernels->below = kernels->means + tables * size;
     fill(sums, wide, kernels);
+    if (kernels->first) fill_heights(&counter->counting, sums, kernels);
 cleanup:
     skg_free(&wide);
     skg_free(&sums);
@@ -172,5 +188,5 @@ cleanup:
 
 void skg_counter_kernels_release(skg_counter_kernels *kernels) {
     skg_free(&kernels->means);
-    kernels->noise = NULL;
+    kernels->noise = kernels->below = NULL;
 }

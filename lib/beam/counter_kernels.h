@@ -12,7 +12,18 @@ typedef struct {
     int32_t reach; /* tables are squares of 2 reach + 1 pixels */
     double *means; /* [windows][square], each with the sum 1 */
     double *noise; /* [to][from][square]: of deviations that are independent, with the means as variances */
+    int32_t
+        first; /* 0: pulses are not moved; otherwise the lowest step of their heights, and behind the noise there are */
+    int32_t reserved;
+    double *
+        below; /* [windows][SKG_PULSE_STEPS] of pile_up.clh, and [windows][SKG_PULSE_STEPS] heights of the open beam */
 } skg_counter_kernels;
+
+/* Doubles of all tables, which follow each other from `means` on. */
+static inline int64_t skg_counter_kernels_size(const skg_counter_kernels *kernels) {
+    const int64_t side = 2 * kernels->reach + 1, windows = kernels->windows;
+    return windows * (1 + windows) * side * side + (kernels->first ? 2 * windows * SKG_PULSE_STEPS : 0);
+}
 
 skg_status skg_counter_kernels_make(skg_counter *counter, const skg_spectrum *spectrum,
                                     skg_counter_kernels *kernels);

@@ -2,6 +2,7 @@
 #include "beam/counter_pixels.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <stdlib.h>
 
 /* kT/e at 300 K, V (CODATA 2018). */
@@ -80,16 +81,30 @@ static int sort_pulse(const skg_counting *c, double kev, double noise, double *c
     return 1;
 }
 
-/* A pixel that may count, and with what chance in each window. */
+double skg_pulse_noise(const skg_counting *c) {
+    return c->electronic_kev * (c->anti_coincidence ? 2 : 1);
+}
+
+double skg_pulse_step(const skg_counting *c) {
+    return (c->threshold_kev[c->count - 1] + END * skg_pulse_noise(c)) / SKG_PULSE_STEPS;
+}
+
+int32_t skg_pulse_first(const skg_counting *c) {
+    const double first = floor((c->threshold_kev[0] - END * skg_pulse_noise(c)) / skg_pulse_step(c));
+    return first > 1 ? (int32_t)first : 1;
+}
+
+/* A pixel that may count, with its pulse without noise, and with what chance in each window. */
 typedef struct {
     int column, row;
+    double kev;
     double chances[SKG_THRESHOLDS_MAX];
 } hit;
 
 static int list_pixels(const skg_counting *c, const charge *all, hit *hits) {
     int count = 0;
     for (const pixel *p = all->pixels; p < all->pixels + all->count; p++) {
-        hits[count].column = p->column, hits[count].row = p->row;
+        hits[count].column = p->column, hits[count].row = p->row, hits[count].kev = p->kev;
         count += sort_pulse(c, p->kev, c->electronic_kev, hits[count].chances);
     }
     return count;
@@ -117,8 +132,8 @@ static int list_sums(const skg_counting *c, charge *all, hit *hits) {
         double sum = 0;
         for (int corner = 0; corner < 4; corner++)
             sum = fmax(sum, square_sum(all, column - corner % 2, row - corner / 2));
-        hits[count].column = column, hits[count].row = row;
-        count += sort_pulse(c, sum, 2 * c->electronic_kev, hits[count].chances);
+        hits[count].column = column, hits[count].row = row, hits[count].kev = sum;
+        count += sort_pulse(c, sum, skg_pulse_noise(c), hits[count].chances);
         for (pixel *p = all->pixels; p < end; p++)
             if (abs(p->column - column) < 2 && abs(p->row - row) < 2) p->kev = 0;
     }
@@ -132,7 +147,21 @@ static int place_of(int columns, int rows) {
     return (row + reach) * SKG_COUNTING_SIDE + column + reach;
 }
 
-void skg_pixels_count(const skg_counting *counting, int count, const skg_deposit *deposits, double *counts) {
+/* Adds a pulse to the two steps that it lies between, so that means are kept. Pulses above the last step lie above all thresholds,
+ * alone and in sums. */
+static void add_height(const skg_counting *c, const hit *pulse, double *heights) {
+    const double steps = pulse->kev / skg_pulse_step(c);
+    const int low = (int)floor(fmin(steps, SKG_PULSE_STEPS + 1));
+    const double part = steps - low;
+    for (int w = 0; w < (int)c->count; w++) {
+        double *of_window = heights + (ptrdiff_t)w * SKG_PULSE_STEPS - 1;
+        if (low >= 1 && low <= SKG_PULSE_STEPS) of_window[low] += (1 - part) * pulse->chances[w];
+        if (low + 1 <= SKG_PULSE_STEPS) of_window[low + 1] += (low >= 1 ? part : 1) * pulse->chances[w];
+    }
+}
+
+void skg_pixels_count(const skg_counting *counting, int count, const skg_deposit *deposits, double *counts,
+                      double *heights) {
     enum { PIXELS = SKG_COUNTING_PIXELS };
     const int windows = (int)counting->count;
     double *spread = counts + windows, *pairs = spread + windows * PIXELS;
@@ -141,7 +170,8 @@ void skg_pixels_count(const skg_counting *counting, int count, const skg_deposit
     collect(counting, count, deposits, &all);
     const int found =
         counting->anti_coincidence ? list_sums(counting, &all, hits) : list_pixels(counting, &all, hits);
-    for (const hit *a = hits; a < hits + found; a++)
+    for (const hit *a = hits; a < hits + found; a++) {
+        if (heights) add_height(counting, a, heights);
         for (int w = 0; w < windows; w++) {
             const double chance = a->chances[w];
             counts[w] += chance;
@@ -153,4 +183,5 @@ void skg_pixels_count(const skg_counting *counting, int count, const skg_deposit
                     pairs[(w * windows + other) * PIXELS + place] += chance * b->chances[other];
             }
         }
+    }
 }

@@ -62,7 +62,9 @@ skg_status skg_frame_detect(skg_job *job, const skg_frame_work *work, const skg_
     skg_stage_log *log = &job->staging.log;
     double factor = 1;
     if (machine->pulses)
-        SKG_TRY(skg_pulses_run(machine->pulses, recipe->options.noise && !skg_frame_is_expected(recipe, work),
+        SKG_TRY(skg_pulses_run(machine->pulses,
+                               recipe->options.noise && !skg_frame_is_expected(recipe, work) ? &work->noise
+                                                                                             : NULL,
                                layers, &work->place, columns, rows, log));
     else
         SKG_TRY(skg_layers_blur(&machine->layers, skg_frame_layers(job, work), layers, &work->place, columns,

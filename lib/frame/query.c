@@ -67,12 +67,11 @@ skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel
     SKG_NEEDS(plan);
     const skg_recipe *recipe = plan->recipe;
     SKG_TRY(check_index(__func__, "channel", index, recipe->model.channels));
-    const skg_channel ours = {.size = sizeof ours,
-                              .name = recipe->channel_names[index].text,
-                              .unit = skg_channel_unit(recipe->options.quantity),
-                              .flat_field =
-                                  skg_channel_flat_field(&recipe->options, &recipe->model, &recipe->view,
-                                                         skg_recipe_exposure(recipe, &recipe->view), index)};
+    skg_channel ours = {.size = sizeof ours,
+                        .name = recipe->channel_names[index].text,
+                        .unit = skg_channel_unit(recipe->options.quantity)};
+    SKG_TRY(skg_channel_flat_field(&recipe->options, &recipe->model, &recipe->view,
+                                   skg_recipe_exposure(recipe, &recipe->view), index, &ours.flat_field));
     return skg_struct_write(&ours, sizeof ours, "skg_channel", channel);
 }
 
@@ -81,10 +80,12 @@ skg_darkness skg_plan_darkness(const skg_plan *plan) {
     const skg_plan_options *options = &recipe->options;
     const double exposure = skg_recipe_exposure(recipe, &recipe->view);
     skg_plan_options energy = *options;
+    double kev = 0, shown = 0;
     energy.quantity = SKG_QUANTITY_ENERGY;
-    const double kev = skg_channel_flat_field(&energy, &recipe->model, &recipe->view, exposure, 0);
-    const double shown = skg_channel_flat_field(options, &recipe->model, &recipe->view, exposure, 0);
-    const double unit = kev > 0 ? shown / kev : 0;
+    const int known =
+        skg_channel_flat_field(&energy, &recipe->model, &recipe->view, exposure, 0, &kev) == SKG_OK &&
+        skg_channel_flat_field(options, &recipe->model, &recipe->view, exposure, 0, &shown) == SKG_OK;
+    const double unit = known && kev > 0 ? shown / kev : 0;
     return (skg_darkness){unit * options->electronic_kev, unit * options->quantum_step_kev,
                           options->noise_seed};
 }

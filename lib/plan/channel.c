@@ -5,6 +5,7 @@
 #include "plan/rules.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 
 static const char *const quantity_names[] = {"energy", "fluence", "photons", "transmission", "attenuation"};
@@ -61,27 +62,34 @@ double skg_open_pulses(const skg_plan_options *options, const skg_model *model, 
     return pulses * c->dead_time_ns * 1e-9 / c->exposure_s;
 }
 
-/* The share of the pulses of the flat field that count. */
-static double left_of(const skg_plan_options *options, const skg_model *model, double exposure) {
-    const skg_counting *c = options->counter ? &options->counter->counting : NULL;
-    double counted = 0;
-    if (!c || !c->pile_up) return 1;
-    const double pulses = skg_open_pulses(options, model, exposure);
-    return pulses > 0 && skg_pile_up_get(c->pile_up, pulses, &counted, NULL) == SKG_OK ? counted / pulses : 1;
+skg_status skg_open_recorded(const skg_plan_options *options, const skg_model *model, double exposure,
+                             double recorded[SKG_THRESHOLDS_MAX]) {
+    return skg_counter_record(options->counter, model->nodes, model->node_kev, model->node_photons, exposure,
+                              recorded);
 }
 
-double skg_channel_flat_field(const skg_plan_options *options, const skg_model *model, const skg_view *view,
-                              double exposure, int64_t channel) {
+skg_status skg_channel_flat_field(const skg_plan_options *options, const skg_model *model,
+                                  const skg_view *view, double exposure, int64_t channel,
+                                  double *flat_field) {
+    double recorded[SKG_THRESHOLDS_MAX] = {0};
     skg_camera camera;
+    *flat_field = exposure * model->flat_field[channel];
     switch (options->quantity) {
     case SKG_QUANTITY_TRANSMISSION:
-        return 1;
+        *flat_field = 1;
+        return SKG_OK;
     case SKG_QUANTITY_ATTENUATION:
-        return 0;
+        *flat_field = 0;
+        return SKG_OK;
     case SKG_QUANTITY_FLUENCE:
-        if (skg_camera_make(view, NULL, 0, 0, &camera) != SKG_OK) return 0;
-        return exposure * model->flat_field[channel] / skg_camera_pixel_area(&camera);
+        SKG_TRY(skg_camera_make(view, NULL, 0, 0, &camera));
+        *flat_field /= skg_camera_pixel_area(&camera);
+        return SKG_OK;
     default:
-        return exposure * model->flat_field[channel] * left_of(options, model, exposure);
+        if (!options->counter) return SKG_OK;
+        SKG_TRY(skg_open_recorded(options, model, exposure, recorded));
+        /* A low window of a paralysable detector may be negative; pictures take 0 as no scale. */
+        *flat_field = fmax(recorded[channel], 0);
+        return SKG_OK;
     }
 }

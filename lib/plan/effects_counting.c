@@ -146,16 +146,31 @@ static void find_anti_coincidence(const skg_effect_facts *f, skg_effect_state *s
 skg_status skg_counting_check_flat(const skg_recipe *recipe) {
     static const double least = 1e-30; /* floats end at 1e-38, and a ratio divides by it */
     const skg_counting *c = counting_of(&recipe->options);
-    double left = 0;
+    double recorded[SKG_THRESHOLDS_MAX] = {0};
     if (!c || !c->pile_up) return SKG_OK;
     const double pulses = skg_open_pulses(&recipe->options, &recipe->model, 1);
-    SKG_TRY(skg_pile_up_get(c->pile_up, pulses, &left, NULL));
-    if (left > least || !(pulses > 0)) return SKG_OK;
-    return skg_fail(
-        SKG_ERR_BEAM,
-        "the open beam makes %.3g pulses in a dead time, of which a paralysable detector counts none, so there is no ratio to "
-        "its flat field; give fewer photons, a longer ExposureTime or a shorter DeadTime",
-        pulses);
+    SKG_TRY(skg_open_recorded(&recipe->options, &recipe->model, 1, recorded));
+    for (int64_t w = 0; w < c->count && pulses > 0; w++)
+        if (!(recorded[w] > least))
+            return skg_fail(
+                SKG_ERR_BEAM,
+                "the open beam makes %.3g pulses in a dead time, of which the detector counts %.3g in the window from %g keV on, so "
+                "there is no ratio to its flat field; give fewer photons, a longer ExposureTime or a shorter "
+                "DeadTime",
+                pulses, recorded[w], c->threshold_kev[w]);
+    return SKG_OK;
+}
+
+/* The share of the counts of the open beam that pile-up moves to another window. */
+static double share_moved(const skg_effect_facts *f, double kept) {
+    const skg_model *model = &f->recipe->model;
+    double recorded[SKG_THRESHOLDS_MAX] = {0}, all = 0, moved = 0;
+    if (skg_open_recorded(&f->recipe->options, model, 1, recorded) != SKG_OK) return 0;
+    for (int32_t k = 0; k < model->channels; k++) {
+        all += recorded[k];
+        moved += fmax(recorded[k] - kept * model->flat_field[k], 0);
+    }
+    return all > 0 ? moved / all : 0;
 }
 
 static void find_pile_up(const skg_effect_facts *f, skg_effect_state *state) {
@@ -167,10 +182,11 @@ static void find_pile_up(const skg_effect_facts *f, skg_effect_state *state) {
     }
     const double pulses = skg_open_pulses(&f->recipe->options, &f->recipe->model, 1);
     if (skg_pile_up_get(c->pile_up, pulses, &left, NULL) != SKG_OK) return;
-    skg_effect_set(state, 1,
-                   "%.3g pulses in a dead time of the open beam, of which %.3g count; pulses that add up are "
-                   "not moved to higher windows",
-                   pulses, left);
+    skg_effect_set(
+        state, 1,
+        "%.3g pulses in a dead time of the open beam, of which %.3g count; %.2g of the counts are sums "
+        "of pulses that move to another window",
+        pulses, left, pulses > 0 ? share_moved(f, left / pulses) : 0);
     if (pulses > 1 && c->pile_up == SKG_PILE_UP_PARALYSABLE)
         skg_log(
             f->context, SKG_LOG_WARNING,

@@ -47,8 +47,8 @@ const char *skg_channel_unit(int32_t quantity);
 
 /* What a channel shows without parts and world, not weakened by falloff. exposure: the photons per pixel of the view over
  * those of the model. */
-double skg_channel_flat_field(const skg_plan_options *options, const skg_model *model, const skg_view *view,
-                              double exposure, int64_t channel);
+skg_status skg_channel_flat_field(const skg_plan_options *options, const skg_model *model,
+                                  const skg_view *view, double exposure, int64_t channel, double *flat_field);
 
 /* --- The distinct meshes of a scene: each is stored and uploaded once, however many parts use it. */
 

@@ -116,6 +116,10 @@ skg_status skg_counting_check(const skg_recipe *recipe);
 /* Pulses of the flat field in a dead time. The detector counts, with pile-up. */
 double skg_open_pulses(const skg_plan_options *options, const skg_model *model, double exposure);
 
+/* What each window records of the flat field. The detector counts. */
+skg_status skg_open_recorded(const skg_plan_options *options, const skg_model *model, double exposure,
+                             double recorded[SKG_THRESHOLDS_MAX]);
+
 /* Fails if dead times leave nothing of the flat field. */
 skg_status skg_counting_check_flat(const skg_recipe *recipe);
 

@@ -28,7 +28,7 @@ static skg_status enqueue(const skg_flat_field_work *work, const skg_view *view,
                                          &staging->log));
     }
     if (work->pulses)
-        return skg_pulses_run(work->pulses, 0, &place, image, view->columns, view->rows, &staging->log);
+        return skg_pulses_run(work->pulses, NULL, &place, image, view->columns, view->rows, &staging->log);
     return skg_layers_blur(work->layers, used, &place, image, view->columns, view->rows, channels,
                            &staging->log);
 }

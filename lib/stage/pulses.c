@@ -12,7 +12,8 @@ typedef struct {
 
 struct skg_pulses {
     skg_context *context;
-    int32_t windows, reach, pile_up, reserved;
+    int32_t windows, reach, pile_up;
+    int32_t first;       /* 0: pulses are not moved to other windows */
     int64_t count;       /* of weights */
     double *weights;     /* as pulses.cl reads them */
     pulses_type type[2]; /* of float, of double; made on demand */
@@ -23,12 +24,12 @@ _Static_assert(SKG_PILE_UP_PULSES_END == SKG_PILE_UP_PARALYSABLE, "pile-up of pu
 
 skg_status skg_pulses_create(skg_context *context, const skg_counter_kernels *kernels, int32_t pile_up,
                              double dead, skg_pulses **pulses) {
-    const int64_t side = 2 * kernels->reach + 1,
-                  count = kernels->windows * (1 + kernels->windows) * side * side;
+    const int64_t count = skg_counter_kernels_size(kernels);
     SKG_TRY(skg_alloc(1, sizeof **pulses, "counting detector", pulses));
     skg_pulses *made = *pulses;
     made->context = context;
     made->windows = kernels->windows, made->reach = kernels->reach, made->pile_up = pile_up;
+    made->first = kernels->first;
     made->count = 1 + count;
     const skg_status status =
         skg_alloc(made->count, sizeof *made->weights, "counting detector", &made->weights);
@@ -72,15 +73,16 @@ static skg_status get_weights(const skg_pulses *pulses, int is_double, pulses_ty
 }
 
 static skg_status get_type(skg_pulses *pulses, int is_double, pulses_type **got) {
-    static const char *const files[] = {"exponential.clh", "random.clh", "pulses.cl"},
+    static const char *const files[] = {"exponential.clh", "random.clh", "pile_up.clh", "pulses.cl"},
                              *const names[] = {"skg_pulses", "skg_pulses_variance"};
     const skg_kernel_options options = {.precision = is_double ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE,
                                         .bits = 32};
+    const skg_define defines[] = {{"SKG_MOVES", pulses->first > 0}};
     pulses_type *type = *got = &pulses->type[is_double];
     cl_program program = NULL;
     SKG_TRY(get_weights(pulses, is_double, type));
     if (type->kernels[1]) return SKG_OK;
-    SKG_TRY(skg_kernels_get(pulses->context, &options, 3, files, NULL, &program));
+    SKG_TRY(skg_kernels_get(pulses->context, &options, 4, files, SKG_DEFINES(defines), &program));
     for (int k = 0; k < 2; k++)
         if (!type->kernels[k]) SKG_TRY(skg_kernel_create(program, names[k], &type->kernels[k]));
     return SKG_OK;
@@ -91,15 +93,17 @@ static skg_pulses_args lay_out(const skg_pulses *pulses, const skg_image_place *
     return (skg_pulses_args){.from = skg_image_of(from, columns, rows, pulses->windows),
                              .to = skg_image_of(image, columns, rows, pulses->windows),
                              .reach = pulses->reach,
-                             .pile_up = pulses->pile_up};
+                             .pile_up = pulses->pile_up,
+                             .first = pulses->first};
 }
 
-skg_status skg_pulses_run(skg_pulses *pulses, int32_t noise, const skg_image_place *from,
+skg_status skg_pulses_run(skg_pulses *pulses, const skg_noise_args *noise, const skg_image_place *from,
                           const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log) {
     skg_pulses_args args = lay_out(pulses, from, image, columns, rows);
     pulses_type *type = NULL;
     SKG_TRY(get_type(pulses, image->output_double != 0, &type));
-    args.noise = noise;
+    args.noise = noise != NULL;
+    if (noise) args.key = *noise;
     const skg_argument arguments[] = {
         SKG_ARGUMENT(PULSES, args, args),
         SKG_ARGUMENT(PULSES, from, from->memory),

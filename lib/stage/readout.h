@@ -94,8 +94,9 @@ skg_status skg_pulses_create(skg_context *context, const skg_counter_kernels *ke
                              double dead, skg_pulses **pulses);
 void skg_pulses_release(skg_pulses **pulses);
 
-/* Enqueues the stage: from images of means, with deviations behind them if noise is 1, to images of counts. They may not overlap. */
-skg_status skg_pulses_run(skg_pulses *pulses, int32_t noise, const skg_image_place *from,
+/* Enqueues the stage: from images of means, with deviations behind them if there is a key of noise, to images of counts. They may not
+ * overlap. noise: NULL: none */
+skg_status skg_pulses_run(skg_pulses *pulses, const skg_noise_args *noise, const skg_image_place *from,
                           const skg_image_place *image, int64_t columns, int64_t rows, skg_stage_log *log);
 
 /* Likewise for variances of independent counts, without dead time. */

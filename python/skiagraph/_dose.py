@@ -36,8 +36,16 @@ def _report(state: State, handle: Any) -> dict[str, Any]:
     return found
 
 
-def dose(state: State, at: ArrayLike | None, scan: Scan | None, histories: int | None, seed: int, progress: Progress,
-         options: dict[str, Any]) -> dict[str, Any]:
+def _sum(handle: Any, times: float) -> Any:
+    """The dose of so many equal exposures; takes over the handle of one."""
+    try:
+        return make("skg_dose_sum", "skg_dose", 1, ffi.new("skg_dose *[1]", [handle]), ffi.new("double[1]", [times]))
+    finally:
+        release("skg_dose", handle)
+
+
+def dose(state: State, at: ArrayLike | None, scan: Scan | None, times: float, histories: int | None, seed: int,
+         progress: Progress, options: dict[str, Any]) -> dict[str, Any]:
     places = np.ascontiguousarray(() if at is None else at, dtype=np.float64)
     if at is not None and (places.ndim not in (1, 2) or places.shape[-1] != 3):
         raise ArgumentError(f"at has the shape {places.shape}; give a place [x, y, z] in mm, or several [n, 3]")
@@ -53,6 +61,8 @@ def dose(state: State, at: ArrayLike | None, scan: Scan | None, histories: int |
                 handle = make("skg_dose_create", "skg_dose", state.plan(options), asked)
             else:
                 handle = make("skg_scan_dose_create", "skg_dose", state.plan(options, scan[0]), scan._handle, asked)
+        if times != 1:
+            handle = _sum(handle, float(times))
         try:
             return _report(state, handle)
         finally:

@@ -286,19 +286,19 @@ class Scene(_gradient.Differentiable):
         """
         return _scatter.prediction(self._state, options)
 
-    def dose(self, at: Any = None, *, scan: Scan | None = None, histories: int | None = None, seed: int = 0,
+    def dose(self, at: Any = None, *, scan: Scan | None = None, times: float = 1, histories: int | None = None, seed: int = 0,
              progress: Progress = False, **options: Any) -> dict[str, Any]:
         """What one exposure gives to people and things.
 
         at: a place [x, y, z] in mm, or several; without it, where the middle ray of the field enters the first part. scan: all its
-        projections together, such as those of scene.trajectory. histories:
-        photons that are followed through the parts, 200,000 by default. options as of image(). Returns "kerma", a list of {"at",
+        projections together, such as those of scene.trajectory. times: how many such exposures or scans together, such as the frames
+        of a film. histories: photons that are followed through the parts, 200,000 by default. options as of image(). Returns "kerma", a list of {"at",
         "air_kerma_uGy", "backscatter"}; "kap_uGy_cm2"; "detector_air_kerma_uGy"; "exposure_index"; "parts", a list of {"label",
         "dose_uGy", "sigma", "energy_keV"}; "hvl1_mm_al" and "hvl2_mm_al"; with noise "darkest". What is not known is None.
 
         BeamError if the scene does not say how many photons there are, by the mAs of a tube or by photons of a pixel.
         """
-        return _dose.dose(self._state, at, scan, histories, seed, progress, options)
+        return _dose.dose(self._state, at, scan, times, histories, seed, progress, options)
 
     # Scans
 

@@ -4,6 +4,7 @@
 #include "support/run.h"
 
 #include <math.h>
+#include <stddef.h>
 #include <string.h>
 
 enum { SIDE = 40, WINDOWS = 2, PIXELS = SIDE * SIDE, VALUES = WINDOWS * PIXELS, FRAMES = 60 };
@@ -211,10 +212,33 @@ START_TEST(dead_time_is_that_of_single_pulses) {
 }
 END_TEST
 
-/* Images lose pulses whatever their window, and their noise with them. */
-START_TEST(images_lose_pulses) {
+/* What the windows of a plan's open beam record. */
+static void open_beam(const skg_plan *plan, double recorded[WINDOWS]) {
+    for (int w = 0; w < WINDOWS; w++) {
+        skg_channel channel;
+        skg_channel_init(&channel);
+        ck_skg(skg_plan_channel_get(plan, w, &channel));
+        recorded[w] = channel.flat_field;
+    }
+}
+
+/* The variance over pixels and frames of one window, or of the sum of all (window -1). */
+static double variance_of(const double *frames, int window, double mean) {
+    double sums = 0, squares = 0;
+    for (int f = 0; f < FRAMES; f++)
+        for (int p = 0; p < PIXELS; p++) {
+            const double *at = frames + (int64_t)f * VALUES + p;
+            const double off = (window < 0 ? at[0] + at[PIXELS] : at[(ptrdiff_t)window * PIXELS]) - mean;
+            sums += off, squares += off * off;
+        }
+    const double n = (double)FRAMES * PIXELS;
+    return squares / n - sums * sums / (n * n);
+}
+
+/* Images lose pulses, and their noise with them; pulses that overlap move to the higher window. */
+START_TEST(images_lose_and_move_pulses) {
     static double image[VALUES], plain[VALUES], frames[FRAMES * VALUES];
-    double counts[WINDOWS], left = 0, fano = 0, sums = 0, squares = 0;
+    double counts[WINDOWS], recorded[WINDOWS], left = 0, fano = 0;
     const int32_t kind = _i;
     skg_plan *plan = make_plan();
     skg_plan_release(&plan);
@@ -225,27 +249,59 @@ START_TEST(images_lose_pulses) {
     plan = make_plan();
     render(plan, SKG_OUTPUT_MEAN, 0, image);
     ck_skg(skg_pile_up_get(kind, 0.3, &left, &fano));
-    for (int w = 0; w < WINDOWS; w++) /* floats */
-        ck_assert_double_eq_tol(image[w * PIXELS + 820] / (photons * counts[w]), left / 0.3, 1e-5);
+    open_beam(plan, recorded);
+    ck_assert_double_eq_tol((recorded[0] + recorded[1]) / (all * left / 0.3), 1, 1e-9); /* rounding */
+    for (int w = 0; w < WINDOWS; w++)                                                   /* floats */
+        ck_assert_double_eq_tol(image[w * PIXELS + 820] / recorded[w], 1, 2e-5);
+    /* Some 0.3 of the pulses meet another one. */
+    ck_assert_double_gt(recorded[1] / (photons * counts[1]), 1.1 * left / 0.3);
     for (int f = 0; f < FRAMES; f++) render(plan, SKG_OUTPUT_IMAGE, f, frames + (int64_t)f * VALUES);
-    for (int f = 0; f < FRAMES; f++)
-        for (int p = 0; p < PIXELS; p++) {
-            const double *at = frames + (int64_t)f * VALUES + p;
-            const double off = at[0] + at[PIXELS] - all * left / 0.3;
-            sums += off, squares += off * off;
-        }
-    const double n = (double)FRAMES * PIXELS, variance = squares / n - sums * sums / (n * n);
+    const double counted = all * left / 0.3, variance = variance_of(frames, -1, counted);
     /* Windows of one pixel have no photon in common, so that without dead time the variance of all counts is their mean. Two per cent are
      * four standard errors of correlated pixels, and what is cut off; borders show more. */
-    printf("kind %d: variance %.4f of the mean, %.4f\n", (int)kind, variance / (all * left / 0.3), fano);
-    ck_assert_double_eq_tol(variance / (all * left / 0.3) / fano, 1, 0.02 + 0.06);
+    printf("kind %d: variance %.4f of the mean, %.4f\n", (int)kind, variance / counted, fano);
+    ck_assert_double_eq_tol(variance / counted / fano, 1, 0.02 + 0.06);
+    /* Which window a count falls into is drawn for each. */
+    for (int w = 0; w < WINDOWS; w++) {
+        const double wanted = recorded[w] * (1 - recorded[w] / counted * (1 - fano));
+        const double found = variance_of(frames, w, recorded[w]);
+        printf("  window %d: %.4f of the mean, %.4f\n", w, found / recorded[w], wanted / recorded[w]);
+        ck_assert_double_eq_tol(found / wanted, 1, 0.02 + 0.06); /* as above */
+    }
     /* Of a long exposure nothing is lost. */
     skg_plan_release(&plan);
     counting.exposure_s = 1e6, options.noise = 0;
     plan = make_plan();
     render(plan, SKG_OUTPUT_IMAGE, 0, plain);
-    ck_assert_double_eq_tol(plain[820] / (photons * counts[0]), 1, 1e-5); /* floats */
+    for (int w = 0; w < WINDOWS; w++) /* floats */
+        ck_assert_double_eq_tol(plain[w * PIXELS + 820] / (photons * counts[w]), 1, 1e-5);
     skg_plan_release(&plan);
+}
+END_TEST
+
+/* A window above the energy of all photons holds nothing but sums, whose noise is that of their number. */
+START_TEST(sums_make_counts_where_no_photon_does) {
+    static const double above[WINDOWS] = {15, 80};
+    static double frames[FRAMES * VALUES];
+    double recorded[WINDOWS], counts[WINDOWS];
+    counting.threshold_kev = above;
+    skg_plan *plan = make_plan();
+    skg_plan_release(&plan);
+    ck_skg(skg_counter_counts_get(options.counter, 60, counts));
+    ck_assert_double_lt(counts[1], 1e-12); /* 13 standard deviations of the noise above */
+    counting.pile_up = SKG_PILE_UP_NONPARALYSABLE, counting.dead_time_ns = 100;
+    counting.exposure_s = photons * counts[0] * 100e-9 / 0.1;
+    options.noise = 1;
+    plan = make_plan();
+    open_beam(plan, recorded);
+    ck_assert_double_gt(recorded[1], 0.01 * photons);
+    for (int f = 0; f < FRAMES; f++) render(plan, SKG_OUTPUT_IMAGE, f, frames + (int64_t)f * VALUES);
+    const double variance = variance_of(frames, 1, recorded[1]);
+    printf("%.1f sums with a variance of %.1f\n", recorded[1], variance);
+    /* Dead time takes less than a share of 2 n of the part that this window is; the rest as above. */
+    ck_assert_double_eq_tol(variance / recorded[1], 1, 0.05);
+    skg_plan_release(&plan);
+    counting.threshold_kev = thresholds;
 }
 END_TEST
 
@@ -305,7 +361,9 @@ static void add_tests(TCase *tests) {
     tcase_add_loop_test(tests, noise_is_shared_as_photons_are, 0, 2);
     tcase_add_test(tests, variances_are_counts);
     tcase_add_test(tests, dead_time_is_that_of_single_pulses);
-    tcase_add_loop_test(tests, images_lose_pulses, SKG_PILE_UP_NONPARALYSABLE, SKG_PILE_UP_PARALYSABLE + 1);
+    tcase_add_test(tests, sums_make_counts_where_no_photon_does);
+    tcase_add_loop_test(tests, images_lose_and_move_pulses, SKG_PILE_UP_NONPARALYSABLE,
+                        SKG_PILE_UP_PARALYSABLE + 1);
     tcase_add_test(tests, ratios_are_those_of_counts);
     tcase_add_test(tests, what_cannot_be_combined_is_named);
 }

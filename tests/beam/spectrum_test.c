@@ -294,7 +294,33 @@ START_TEST(pulse_heights) {
 }
 END_TEST
 
+/* AAPM TG-195, case 1 (I. Sechopoulos et al., Medical Physics 42 (2015) 5679-5691): the air kerma behind two thicknesses of aluminium over that
+ * without, on average of four Monte Carlo programs. */
+START_TEST(aluminium_transmits_what_tg_195_has) {
+    static const struct {
+        double kev, mm[2], kerma[3];
+    } cases[] = {{30, {2.273, 4.546}, {5.732642e-2, 2.868487e-2, 1.435717e-2}},
+                 {100, {15.11, 30.22}, {2.902460e-2, 1.448180e-2, 7.226802e-3}}};
+    for (int c = 0; c < 2; c++) {
+        skg_spectrum *s = NULL;
+        skg_quality q;
+        skg_quality_init(&q);
+        ck_skg(skg_spectrum_create_mono(cases[c].kev, 1, &s));
+        ck_skg(skg_spectrum_quality_get(s, &q));
+        for (int k = 0; k < 2; k++) {
+            const double ours = pow(0.5, cases[c].mm[k] / q.hvl1_mm_al);
+            printf("%g keV, %g mm: %.5f, published %.5f\n", cases[c].kev, cases[c].mm[k], ours,
+                   cases[c].kerma[1 + k] / cases[c].kerma[0]);
+            /* 0.1 %: four programs and their cross sections */
+            ck_assert_double_eq_tol(ours * cases[c].kerma[0] / cases[c].kerma[1 + k], 1, 1e-3);
+        }
+        skg_spectrum_release(&s);
+    }
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
+    tcase_add_test(tests, aluminium_transmits_what_tg_195_has);
     tcase_add_test(tests, bins_are_sorted_and_merged);
     tcase_add_test(tests, more_photons_than_a_double_holds);
     tcase_add_test(tests, files_of_two_columns);

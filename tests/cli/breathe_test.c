@@ -249,6 +249,36 @@ START_TEST(motion_is_reported) {
 }
 END_TEST
 
+/* Each frame is an exposure of the scene: its dose is that of the verb dose, times their number. */
+START_TEST(a_film_adds_up_its_dose) {
+    static const char *const names[] = {"kap_uGy_cm2", "detector_air_kerma_uGy"};
+    const char *mas = "--set Source.Beam='{\"kVp\":80,\"mAs\":2}'";
+    double one[3], all[3];
+    ck_run(0, "dose thorax.json %s %s %s --histories 0 --json", SMALL, PLAIN, mas);
+    json_t *object = said_json();
+    for (int k = 0; k < 2; k++) one[k] = json_number_value(member(object, names[k]));
+    one[2] = json_number_value(member(json_array_get(member(object, "kerma"), 0), "air_kerma_uGy"));
+    json_decref(object);
+    ck_run(0, "breathe thorax.json %s %s %s --fps 1 --seconds 3 -o f --json", SMALL, PLAIN, mas);
+    object = said_json();
+    json_t *sum = member(object, "dose");
+    for (int k = 0; k < 2; k++) all[k] = json_number_value(member(sum, names[k]));
+    all[2] = json_number_value(member(sum, "air_kerma_uGy"));
+    json_decref(object);
+    for (int k = 0; k < 3; k++) /* floats of the image at the detector */
+        ck_assert_double_eq_tol(all[k] / (3 * one[k]), 1, 1e-6);
+    ck_run(0, "breathe thorax.json %s %s %s --fps 1 --seconds 3 -o g", SMALL, PLAIN, mas);
+    ck_assert_msg(strstr(said, "all frames together: air kerma ") != NULL, "%s", said);
+    ck_run(
+        0,
+        "breathe thorax.json %s %s --set Source.Beam='{\"kVp\":80}' --fps 1 --seconds 3 -o m --json",
+        SMALL, PLAIN);
+    object = said_json();
+    ck_assert(json_is_null(member(object, "dose"))); /* a tube without mAs */
+    json_decref(object);
+}
+END_TEST
+
 /* The scene's own events: a hold, and a needle that goes in. */
 START_TEST(events_happen) {
     double values[18];
@@ -353,6 +383,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_moment_alone_is_the_moment_in_sequence);
     tcase_add_test(tests, conflicts_are_reported);
     tcase_add_test(tests, motion_is_reported);
+    tcase_add_test(tests, a_film_adds_up_its_dose);
     tcase_add_test(tests, events_happen);
     tcase_add_test(tests, contrast_fills);
     tcase_add_test(tests, meshes_have_displacements);

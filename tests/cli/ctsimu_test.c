@@ -163,14 +163,34 @@ START_TEST(current_bad_pixels_and_other_quantities) {
 }
 END_TEST
 
+/* A share of each projection is found in the next one, and no later; of two averaged frames the first has it. */
+START_TEST(image_lag_is_that_of_the_next_frame) {
+    uint16_t plain[4 * PIXELS], lagged[4 * PIXELS];
+    ck_run(0, "scan box.json -o plain.mha");
+    read_pixels("plain.mha", 4 * PIXELS, plain);
+    for (int frames = 1; frames <= 2; frames++) {
+        const double share = 0.2 / frames;
+        ck_run(0,
+               "scan box.json -o lagged.mha --overwrite --set detector.image_lag='{\"value\":0.2}' --set "
+               "acquisition.frame_average=%d",
+               frames);
+        read_pixels("lagged.mha", 4 * PIXELS, lagged);
+        for (int i = 0; i < 4 * PIXELS; i++) {
+            const double before = i < PIXELS ? 100 : plain[i - PIXELS];
+            /* Half a grey value of rounding, of three numbers */
+            ck_assert_double_eq_tol(lagged[i], plain[i] + share * (before - plain[i]), 1.1);
+        }
+    }
+}
+END_TEST
+
 START_TEST(what_is_not_simulated_is_a_warning) {
     edit("\"imin\"", "\"colour\": 3, \"imin\"");
-    ck_run(
-        0,
-        "scan box.json -o a.mha --set detector.image_lag='{\"value\":0.1}' --set acquisition.scattering=true "
-        "--set source.voltage.drifts='[{\"value\":[0,10]}]' --set detector.novelty=3 "
-        "--set acquisition.scan_mode='\"continuous\"'");
-    ck_assert_ptr_nonnull(strstr(complained, "detector.image_lag: is not simulated"));
+    ck_run(0,
+           "scan box.json -o a.mha --set geometry.source.beam_divergence=1 --set acquisition.scattering=true "
+           "--set source.voltage.drifts='[{\"value\":[0,10]}]' --set detector.novelty=3 "
+           "--set acquisition.scan_mode='\"continuous\"'");
+    ck_assert_ptr_nonnull(strstr(complained, "geometry.source.beam_divergence: is not simulated"));
     ck_assert_ptr_nonnull(strstr(complained, "acquisition.scattering: is not simulated"));
     ck_assert_ptr_nonnull(strstr(complained, "source.voltage.drifts: is not simulated"));
     ck_assert_ptr_nonnull(strstr(complained, "detector.novelty: is no key of CTSimU"));
@@ -198,6 +218,7 @@ START_TEST(what_cannot_be_read_is_refused) {
         {"source.spot='{\"intensity_map\":{\"file\":{\"value\":\"none.tif\"}}}'", "none.tif: cannot be read"},
         {"detector.noise='{\"noise_characteristics_file\":{\"value\":\"none.tsv\"}}'",
          "none.tsv: cannot be read"},
+        {"detector.image_lag='{\"value\":1.5}'", "give 0 or more, and less than 1"},
         {"acquisition.number_of_projections=0", "give a whole number"},
         {"acquisition.start_angle.value=190", "is less than start_angle"},
     };
@@ -339,6 +360,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, grey_values_are_those_of_the_law);
     tcase_add_test(tests, a_folder_has_the_layout_of_the_format);
     tcase_add_test(tests, current_bad_pixels_and_other_quantities);
+    tcase_add_test(tests, image_lag_is_that_of_the_next_frame);
     tcase_add_test(tests, what_is_not_simulated_is_a_warning);
     tcase_add_test(tests, what_cannot_be_read_is_refused);
     tcase_add_test(tests, files_of_characteristics_are_read);

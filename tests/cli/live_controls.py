@@ -49,6 +49,15 @@ def exposure(tried, path):
     run("set('Source.Position', [0, -900, 0, 'mm'])")
     tried.still()
     check("farther, less", abs(run("live.beam.air_kerma_ugy") / near - 0.25) < 1e-6, str(near))  # of 500 mm and 1000 mm
+    tried.browser.until("doses.figures !== null && !byId('dose').hidden && doses.figures.kap_uGy_cm2 > 0")
+    run("resetDoses()")
+    run("set('Source.Position', [0, -910, 0, 'mm'])")
+    tried.still()
+    check("dose adds up", run("doses.frames >= 1 && doses.sums.kap_uGy_cm2 > 0"), run("JSON.stringify(doses)"))
+    run("byId('dose-reset').click()")
+    check("dose begins anew", run("doses.frames === 0 && Object.keys(doses.sums).length === 0"))
+    run("set('Source.Beam', {kVp: 80})")  # whose number of photons is not known
+    tried.browser.until("byId('dose').hidden")
     run("byId('reset').click()")
     tried.still()
 

@@ -4,6 +4,7 @@ usage: live_test.py COMMAND [TEST...]
 """
 import faulthandler
 import json
+import math
 import os
 import random
 import socket
@@ -213,6 +214,66 @@ def bands(path):
         for bad in ([20], [20, 20], [-1, 20], "x", [20, "40"], list(range(18))):
             page.wish(settings=beam, bands=bad)
             assert "bands" in page.text("refused")["refused"], bad
+
+
+def lag(path):
+    """The ghost of the last view is in the next frames as GreyValues.Lag has it, and frames follow until it has faded."""
+    share, constant = 0.4, 1.0
+    put(path, json.dumps({**SCENE, "Detector": {**SCENE["Detector"], "GreyValues": {"Lag": [[share, constant]]}}}))
+    moved = {"Source.Position": [80, -400, 0, "mm"]}
+    old = [math.exp(-x) for x in image(path, "--quantity", "attenuation")]
+    new = [math.exp(-x) for x in image(path, "--quantity", "attenuation", "--set", 'Source.Position=[80, -400, 0, "mm"]')]
+    with Server(command, path) as server:
+        page = Page(server)
+
+        def off(frame, pixels):
+            shown = (math.exp(-(frame.low + frame.step * n)) for n in frame.numbers)
+            return max(abs(a - b) for a, b in zip(shown, pixels, strict=True))
+
+        # a detector at rest shows 0.6 of the first frame; frames follow by themselves until it is steady
+        while off(page.frame(), old) > 1 / 1024:
+            pass
+        time.sleep(0.5)  # the frames that are under way
+        wish = page.wish(settings=moved)
+        first = page.frame(wish)
+        held = share
+        for _ in range(4):
+            # what the last view has left, within what steadiness and 16 bits leave open
+            assert off(first, [b + held * (a - b) for a, b in zip(old, new, strict=True)]) < 2e-3, held
+            last, first = first, page.frame()
+            held *= math.exp(-(first.number - last.number) / constant)
+        while off(page.frame(), new) > 1 / 1024:
+            pass
+
+
+def doses(path):
+    """What a frame gives is what the verb dose has of the scene as it stands; a tube without mAs has no number of photons."""
+    def verb(*words):
+        run = subprocess.run([command, "dose", path, "--histories", "0", "--json", "--quiet", *words], check=True, stdout=subprocess.PIPE)
+        found = json.loads(run.stdout)
+        return [found["kerma"][0]["air_kerma_uGy"], *(found[name] for name in ("kap_uGy_cm2", "detector_air_kerma_uGy", "exposure_index"))]
+
+    def check(found, wanted):
+        names = ("air_kerma_uGy", "kap_uGy_cm2", "detector_air_kerma_uGy", "exposure_index")
+        for name, value in zip(names, wanted, strict=True):
+            assert abs(found[name] - value) <= 1e-6 * value, (name, found[name], value)  # floats of the image at the detector
+
+    put(path, json.dumps({key: SCENE[key] for key in SCENE if key != "Scan"}))  # of which the verb adds up the projections
+    position = [40, -400, 0, "mm"]
+    with Server(command, path) as server:
+        page = Page(server)
+        page.frame()
+        check(page.text("dosed")["dosed"], verb())
+        wish = page.wish(settings={"Source.Position": position})
+        same = page.frame(wish)
+        check(page.text("dosed")["dosed"], verb("--set", f"Source.Position={json.dumps(position)}"))
+        # the frames that follow are those of the plan as it was
+        check_same(page.frame(page.wish(settings={})), image(path, "--quantity", "attenuation"))
+        page.text("dosed")
+        assert not differ(page.frame(page.wish(settings={"Source.Position": position})), same)
+        check(page.text("dosed")["dosed"], verb("--set", f"Source.Position={json.dumps(position)}"))
+        page.wish(settings={"Source.Beam": {"kVp": 80}})
+        assert page.text("dosed")["dosed"] is None
 
 
 def answers(path):
@@ -652,7 +713,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, answers, looks, fixed, stopped, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, lag, doses, answers, looks, fixed, stopped, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

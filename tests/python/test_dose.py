@@ -57,6 +57,16 @@ def test_a_scan_adds_its_projections(slab):
     assert both["exposure_index"] is None
 
 
+def test_a_film_adds_its_frames(slab):
+    one, film = slab.dose(histories=3200), slab.dose(times=300, histories=3200)
+    for name in ("kap_uGy_cm2", "detector_air_kerma_uGy"):
+        assert film[name] == pytest.approx(300 * one[name], rel=1e-9)  # roundings
+    assert film["kerma"][0]["backscatter"] == pytest.approx(one["kerma"][0]["backscatter"], rel=1e-9)
+    assert film["parts"][0]["dose_uGy"] == pytest.approx(300 * one["parts"][0]["dose_uGy"], rel=1e-9)
+    with pytest.raises(sk.ArgumentError):
+        slab.dose(times=-1, histories=0)
+
+
 def test_a_tube_without_load_is_refused(slab):
     slab.beam = sk.Beam.tube(80, {"Al": 3})
     with pytest.raises(sk.BeamError, match="give mAs"):

@@ -71,7 +71,7 @@ static const struct {
      0},
     {{"blur.cl"}, NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "detect.cl"}, "-D SKG_FLAT_FIELD=1 " NAMES, 0},
-    {{"exponential.clh", "random.clh", "pulses.cl"}, NAMES, 0},
+    {{"exponential.clh", "random.clh", "pile_up.clh", "pulses.cl"}, "-D SKG_MOVES=1 " NAMES, 0},
     {{"blur_variance.cl", "detect_variance.cl"}, "-D SKG_FLAT_FIELD=1 -D SKG_OF_LOGARITHM=1 " NAMES, 0},
     {{"exponential.clh", "random.clh", "noise.clh", "scatter.clh", "walk.clh", "fluorescence.clh",
       "sight.clh", "strips.clh", "arrive.clh", "profile.clh", "emit.clh", "tally.clh", "next_event.clh",

@@ -196,6 +196,7 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
         json_object_set_new(object, "plan_ms", cli_json_number(s->plan_ms));
         json_object_set_new(object, "range", cli_json_numbers(range, 2));
         if (is_film(s)) json_object_set_new(object, "file", json_string(s->place));
+        if (!is_one(s)) json_object_set_new(object, "dose", film_dose_json(s->dose));
         json_object_set_new(object, "plan", cli_explain_json(f->plan, &f->session));
         return cli_json_print(object);
     }
@@ -210,6 +211,7 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
            "overlapped\nwith the image; -ln(I/I0) is shown from %.3g to %.3g\n",
            s->frames, (double)s->frames / s->fps, rate, s->sequence_ms / (double)s->frames,
            s->pose_ms / (double)s->frames, f->low, f->high);
+    film_dose_print(s->dose);
     if (is_film(s)) {
         cli_print("wrote %s: %" PRId64 " frames, %g per second\n", s->place, s->frames, s->fps);
         return CLI_DONE;
@@ -240,6 +242,8 @@ static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) 
     exit_status = cli_make_plan(&f->session, &f->plan, &s->plan_ms);
     if (exit_status == CLI_DONE && outline) exit_status = outline_find(f, outline);
     if (exit_status == CLI_DONE && !is_one(s)) exit_status = fluoroscopy_open_lag(f);
+    if (exit_status == CLI_DONE && !is_one(s) && (status = film_dose(f, s->frames, &s->dose)) != SKG_OK)
+        exit_status = cli_fail(status);
     return exit_status;
 }
 
@@ -256,33 +260,34 @@ static int check_files(const cli_arguments *arguments, const sequence *s) {
     return exit_status;
 }
 
-static int work(const cli_arguments *arguments, fluoroscopy *f) {
-    sequence s;
-    int exit_status = read_flags(arguments, f, &s);
-    if (exit_status == CLI_DONE && has_folder(&s)) exit_status = cli_make_folder(s.place);
-    if (exit_status == CLI_DONE && s.meshes) exit_status = cli_make_folder(s.meshes);
-    if (exit_status == CLI_DONE) exit_status = prepare(arguments, f, &s);
-    if (exit_status == CLI_DONE && has_folder(&s)) exit_status = check_files(arguments, &s);
-    if (exit_status == CLI_DONE && f->low == 0 && f->high == 0) exit_status = find_range(f, &s);
-    if (exit_status == CLI_DONE) exit_status = run_sequence(f, &s);
+static int work(const cli_arguments *arguments, fluoroscopy *f, sequence *s) {
+    int exit_status = read_flags(arguments, f, s);
+    if (exit_status == CLI_DONE && has_folder(s)) exit_status = cli_make_folder(s->place);
+    if (exit_status == CLI_DONE && s->meshes) exit_status = cli_make_folder(s->meshes);
+    if (exit_status == CLI_DONE) exit_status = prepare(arguments, f, s);
+    if (exit_status == CLI_DONE && has_folder(s)) exit_status = check_files(arguments, s);
+    if (exit_status == CLI_DONE && f->low == 0 && f->high == 0) exit_status = find_range(f, s);
+    if (exit_status == CLI_DONE) exit_status = run_sequence(f, s);
     if (exit_status != CLI_DONE) return exit_status;
-    if (is_film(&s)) {
-        exit_status = write_film(f, &s);
-    } else if (!is_one(&s)) {
-        exit_status = write_sequence(f, &s);
+    if (is_film(s)) {
+        exit_status = write_film(f, s);
+    } else if (!is_one(s)) {
+        exit_status = write_sequence(f, s);
     } else {
-        if (s.meshes) exit_status = meshes_write(f, s.meshes, 0);
-        if (exit_status == CLI_DONE) exit_status = fluoroscopy_write(f, 0, s.place);
+        if (s->meshes) exit_status = meshes_write(f, s->meshes, 0);
+        if (exit_status == CLI_DONE) exit_status = fluoroscopy_write(f, 0, s->place);
     }
-    return exit_status == CLI_DONE ? print(arguments, f, &s) : exit_status;
+    return exit_status == CLI_DONE ? print(arguments, f, s) : exit_status;
 }
 
 int cli_breathe(const cli_arguments *arguments) {
     fluoroscopy f = {.arguments = arguments};
-    int exit_status = work(arguments, &f);
+    sequence s = {.dose = NULL};
+    int exit_status = work(arguments, &f, &s);
     for (int i = 0; i < 2; i++) free(f.image[i]);
     free(f.outline);
     skg_lag_release(&f.lag);
+    skg_dose_release(&s.dose);
     skg_plan_release(&f.plan);
     skg_motion_release(&f.motion);
     cli_close_session(&f.session);

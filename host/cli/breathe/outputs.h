@@ -6,6 +6,7 @@
 #include "breathe/fluoroscopy.h"
 #include "common/file.h"
 
+#include <jansson.h>
 #include <stdio.h>
 
 /* Finds the outlines of "ribs,diaphragm@0": the parts whose labels begin with a word of the list, at the
@@ -48,6 +49,12 @@ int sheet_create(const fluoroscopy *f, int64_t frames, contact_sheet *sheet);
 void sheet_add(const fluoroscopy *f, int which, int64_t frame, int64_t frames, contact_sheet *sheet);
 int sheet_write(const fluoroscopy *f, const contact_sheet *sheet, const char *path);
 
+/* The dose of all frames together, each an exposure of the scene as it stands, without photons that are followed. sum: result; NULL: the scene
+ * does not say how many photons there are. The caller releases it. */
+skg_status film_dose(const fluoroscopy *f, int64_t frames, skg_dose **sum);
+json_t *film_dose_json(const skg_dose *sum);
+void film_dose_print(const skg_dose *sum);
+
 /* The sequence of frames that the flags choose, and its times. */
 
 typedef struct {
@@ -57,6 +64,7 @@ typedef struct {
     const char *place, *meshes;
     double plan_ms, sequence_ms;
     double pose_ms; /* of all frames of the sequence */
+    skg_dose *dose; /* of all frames; NULL: not known, or one picture */
 } sequence;
 
 /* Moves the scene to a frame of the sequence. */

@@ -130,6 +130,7 @@ json_t *live_describe_scene(const live_base *base, live_scene *scene, const live
     json_object_set_new(inner, "unit", cli_json_text(scene->channel.unit));
     json_object_set_new(inner, "plan", plan_json(scene));
     json_object_set_new(inner, "beam", beam_json(scene, &view));
+    json_object_set_new(inner, "dose", scene->dose ? json_incref(scene->dose) : json_null());
     json_object_set_new(inner, "spot", spot_json(scene));
     json_object_set_new(inner, "jaws", jaws_json(scene));
     json_object_set_new(inner, "angles", angles_json(scene));

@@ -166,8 +166,8 @@ int live_frame_pack(const float *values, live_header *header, unsigned char **by
     return 1;
 }
 
-int live_frame_make(const live_base *base, live_scene *scene, const live_wish *wish, live_hub *hub,
-                    int64_t number, live_shot *shot, char *sentence) {
+int live_frame_make(const live_base *base, live_scene *scene, const live_wish *wish, live_lag *lag,
+                    live_hub *hub, int64_t number, live_shot *shot, char *sentence) {
     const double start = cli_now_ms();
     const int is_draft = wish->dragging && scene->draft;
     skg_plan *plan = scene->draft;
@@ -193,6 +193,9 @@ int live_frame_make(const live_base *base, live_scene *scene, const live_wish *w
         return 0;
     shot->ms = cli_now_ms() - start;
     if (shot->is_dropped) return 1;
+    if (!is_draft &&
+        !live_lag_show(lag, scene, scene->channels * view.columns * view.rows, scene->values, sentence))
+        return 0;
     if (plan == scene->plan && scene->frames++ > 0) scene->frame_ms = shot->ms;
     live_header header = {.mark = {'S', 'K', 'L', 'F'},
                           .number = (uint32_t)number,

@@ -3,6 +3,7 @@
 #define CLI_LIVE_FRAME_H
 
 #include "live/hub.h"
+#include "live/lag.h"
 #include "live/scene.h"
 
 /* What a page receives as a frame: this, in the order of the processor, and [rows][columns] numbers of 16 bits. A value is
@@ -35,9 +36,10 @@ typedef struct {
  * 0 without memory. */
 int live_frame_pack(const float *values, live_header *header, unsigned char **bytes, size_t *size);
 
-/* Makes the image of a wish that fits the scene. hub: asked for newer wishes. Returns 0 with a sentence. */
-int live_frame_make(const live_base *base, live_scene *scene, const live_wish *wish, live_hub *hub,
-                    int64_t number, live_shot *shot, char *sentence);
+/* Makes the image of a wish that fits the scene. lag: of the detector; images with fewer pixels pass it by. hub: asked for newer wishes.
+ * Returns 0 with a sentence. */
+int live_frame_make(const live_base *base, live_scene *scene, const live_wish *wish, live_lag *lag,
+                    live_hub *hub, int64_t number, live_shot *shot, char *sentence);
 
 /* Puts a frame's view, poses and matter together and renders it into `values`. plan: the scene's, or its draft with the view that
  * goes with it. hub: may be NULL. Returns 0 with a sentence; *dropped: 1 if a newer wish came. */

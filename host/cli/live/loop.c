@@ -7,6 +7,7 @@
 #include "common/say.h"
 #include "live/ask.h"
 #include "live/describe.h"
+#include "live/dose.h"
 #include "live/fixed.h"
 #include "live/frame.h"
 #include "live/page.h"
@@ -115,7 +116,8 @@ static int make_frame(live_loop *loop, char *sentence) {
     live_shot shot;
     const int64_t number = loop->number + 1;
     loop->is_wanted = 0;
-    if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, loop->hub, number, &shot, sentence))
+    if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, &loop->lag, loop->hub, number, &shot,
+                         sentence))
         return 0;
     if (shot.is_dropped || !shot.bytes) return 1;
     loop->number = number;
@@ -240,15 +242,29 @@ static void answer(live_loop *loop, const live_asked *asked) {
     if (asked->has_measure) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
 }
 
+/* Tells pages what a frame gives, if that is not known of the view. */
+static void tell_dose(live_loop *loop) {
+    live_scene *scene = &loop->scene;
+    if (!scene->is_shown || live_dose_is_known(scene, &scene->shown, loop->wish.phase)) return;
+    live_dose_find(scene, &scene->shown, loop->wish.phase);
+    json_t *object = json_object();
+    json_object_set(object, "dosed", scene->dose);
+    live_hub_tell_json(loop->hub, object);
+    tell_scene(loop, 0); /* of pages that begin */
+}
+
 /* What can wait until nothing is asked for. */
 static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
     if (!loop->is_told) tell_scene(loop, 0);
     if (loop->is_wanted || !live_hub_is_thirsty(loop->hub)) return; /* no page is there */
-    if (loop->refines || (loop->scene.frames == 1 && !loop->scene.session.options.scatter))
-        loop->is_wanted = 1; /* with more scatter, or once more, for its time */
+    if (loop->refines || live_lag_changes(&loop->lag) ||
+        (loop->scene.frames == 1 && !loop->scene.session.options.scatter))
+        loop->is_wanted = 1; /* with more scatter, with less lag, or once more, for its time */
     else if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
         tell_error(loop, loop->wish.number, sentence);
+    else if (!loop->wish.dragging)
+        tell_dose(loop);
 }
 
 /* Draws a picture of the 3D view that a page waits for. Images come first. */
@@ -302,6 +318,7 @@ void live_loop_run(live_loop *loop, double idle) {
 
 void live_loop_end(live_loop *loop) {
     live_registering_end(&loop->registering);
+    live_lag_free(&loop->lag);
     live_scene_free(&loop->scene);
     if (loop->wish.settings) live_wish_free(&loop->wish);
     live_base_free(&loop->base);

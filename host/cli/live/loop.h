@@ -3,6 +3,7 @@
 #define CLI_LIVE_LOOP_H
 
 #include "live/hub.h"
+#include "live/lag.h"
 #include "live/registering.h"
 #include "live/scene.h"
 
@@ -10,6 +11,7 @@ typedef struct {
     live_base base;
     live_scene scene; /* the last one that could be made */
     live_wish wish;   /* which it shows */
+    live_lag lag;     /* of the detector, over all scenes */
     live_hub *hub;
     live_registering *registering; /* NULL: none is under way */
     const char *nonce;

@@ -249,6 +249,7 @@ int live_scene_step(live_scene *scene, skg_plan **plan, char *sentence) {
 void live_scene_free(live_scene *scene) {
     for (int i = 0; i < LIVE_STEPS; i++) skg_plan_release(scene->steps + i);
     skg_plan_release(&scene->draft);
+    json_decref(scene->dose);
     skg_plan_release(&scene->plan);
     skg_motion_release(&scene->motion);
     skg_setup_release(&scene->setup);

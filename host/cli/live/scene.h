@@ -63,6 +63,9 @@ typedef struct {
     skg_view beam_view; /* view of `beam`; all 0: not computed yet */
     skg_quality beam;   /* the open beam, cached because it takes 0.1 ms */
     int has_beam;
+    json_t *dose; /* of the view `dose_view`; NULL: not computed yet */
+    skg_view dose_view;
+    double dose_phase;
 } live_scene;
 
 /* Loads the scene, without a plan. The caller calls live_scene_free, also after a failure. */

@@ -40,7 +40,8 @@ static const char *const text[] = {
     "counts time in hundredths of a second, so that at 30 frames per second some frames last 3 and some 4 of them, and the "
     "whole as long as it should. It has at most 50 frames per second. Files .mp4 (H.264) and .webm (VP9) lose a little, and "
     "need the program ffmpeg; an odd number of columns or rows becomes even: the last one is repeated.",
-    "--json prints {frames, frames_per_s, frame_ms, pose_ms, plan_ms, range, plan}, and for a film {file}.",
+    "--json prints {frames, frames_per_s, frame_ms, pose_ms, plan_ms, range, dose: {at, "
+    "air_kerma_uGy, kap_uGy_cm2, detector_air_kerma_uGy}, plan}, and for a film {file}.",
     NULL};
 
 static const cli_flag *const flags[] = {&cli_flag_breathe_output,

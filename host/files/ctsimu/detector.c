@@ -222,6 +222,20 @@ static skg_status put_bad_pixels(const skg_item *detector, json_t *grey) {
                                     "ByteOrder", order ? order : "little", "Header", (json_int_t)skipped));
 }
 
+/* The format knows one share: of the grey value in the first frame without radiation over that with it. What the frame after shows it does not
+ * say, and nothing is left for it: the time constant is so short that exp(-1 / constant) is 0 in float. Of the frames that a projection averages,
+ * the first has the share. */
+static skg_status put_lag(const skg_item *detector, int64_t frames, json_t *grey) {
+    static const double at_once = 0.005; /* frames */
+    const skg_item lag = skg_item_at(detector, "image_lag");
+    double share = 0;
+    SKG_TRY(skg_item_number(&lag, SKG_UNIT_NONE, &share));
+    if (!skg_item_given(&lag) || share == 0) return SKG_OK;
+    if (!(share > 0 && share < 1))
+        return skg_item_fail(&lag, SKG_ERR_FORMAT, "is %g; give 0 or more, and less than 1", share);
+    return skg_ctsimu_put(grey, "Lag", json_pack("[[f, f]]", share / (double)frames, at_once));
+}
+
 static skg_status put_grey(skg_ctsimu *scenario, json_t *detector) {
     const skg_item root = skg_item_root(scenario), section = skg_item_at(&root, "detector");
     const skg_item depth = skg_item_at(&section, "bit_depth"),
@@ -234,6 +248,7 @@ static skg_status put_grey(skg_ctsimu *scenario, json_t *detector) {
     SKG_TRY(put_bad_pixels(&section, grey));
     SKG_TRY(skg_item_integer(&depth, 1, 64, &bits));
     SKG_TRY(skg_item_integer(&average, 1, 1000000, &frames));
+    SKG_TRY(put_lag(&section, frames, grey));
     SKG_TRY(skg_ctsimu_put(grey, "Bits", json_integer(bits > 16 ? 0 : bits)));
     return skg_ctsimu_put(grey, "Frames", json_integer(frames));
 }

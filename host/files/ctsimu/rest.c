@@ -28,7 +28,7 @@ static const key_rule rules[] = {
     {"detector.bit_depth", READ, NULL},
     {"detector.integration_time", READ, NULL},
     {"detector.dead_time", READ, NULL},
-    {"detector.image_lag", IGNORED, "no frame leaves a trace in the next one"},
+    {"detector.image_lag", READ, NULL},
     {"detector.gray_value.*", READ, NULL},
     {"detector.grey_value.*", READ, NULL},
     {"detector.noise.*", READ, NULL},

@@ -295,7 +295,7 @@ SKG_API skg_status skg_response_create_escaping(const skg_response *scintillator
 /** Makes the response of a scintillator in which scattered photons are followed: Compton scattering leaves the energy of the electron,
  * and the scattered photon, as after Rayleigh scattering, is absorbed elsewhere or lost.
  *
- * of 600 um CsI (packing 0.8) it leaves 0.96 of the energy of photons that interact at 80 keV, 0.85 at 150, 0.52 at 450 keV.
+ * of 600 um CsI (packing 0.8) it leaves 0.96 of the energy of photons that interact at 80 keV, 0.85 at 150, 0.50 at 450 keV.
  *
  *     scintillator   response of skg_response_create_scintillator, _screen or _escaping; it does not change
  *     method         An integral equation of photon transport in the layer, solved once by energy, depth and direction: mean and mean

@@ -26,6 +26,7 @@ def scene(subject: Subject, plan: Any, facts: dict[str, Any]) -> dict[str, Any]:
         "state": subject.wish.json(), "parts": state.count(), "projections": len(scan or ()),
         "period": subject.period if subject.breathes else None, "load_ms": subject.load_ms,
         "channel": channel["name"], "unit": channel["unit"], "plan": _plan(plan), "beam": beam(state, subject.view()),
+        "dose": None,  # the page has no panel: scene.dose() is a call away
         "spot": _spot(state, options), "jaws": _jaws(options),
         "angles": [] if scan is None else scan.angles.tolist(), "fixed": None, **facts}}
 

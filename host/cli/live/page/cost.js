@@ -2,6 +2,9 @@
 'use strict';
 const rates = [];
 
+// Images a second of the last two; 0: too few.
+const perSecond = () => rates.length > 5 ? 1000 * (rates.length - 1) / (performance.now() - rates[0]) : 0;
+
 function showCost(frame) {
   const now = performance.now();
   rates.push(now);

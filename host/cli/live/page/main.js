@@ -51,6 +51,7 @@ function takeScene(message) {
   }
   showSentence('');
   showExposure(live.beam);
+  if (live.dose) takeDose(live.dose);
   showPlan();
   changed();
 }
@@ -138,6 +139,8 @@ function begin() {
   Object.assign(net.hear, {registering: showStep, registered: showFound});
   net.hear.scene = takeScene;
   net.hear.adopted = adopt;
+  net.hear.dosed = message => takeDose(message.dosed);
+  byId('dose-reset').onclick = resetDoses;
   net.hear.error = message => { settle(message.wish); giveUp(message.wish); showSentence(message.error, true); };
   net.hear.refused = message => { settle(net.sent); registerEnded(); showSentence(message.refused); };
   for (const [id, act] of Object.entries({undo, redo, reset})) byId(id).onclick = () => { act(); describe(); change(); };

@@ -96,6 +96,7 @@ function showFrame(frame) {
   drawProfile();
   if (xray.at) moveCursor(xray.at);
   showCost(frame);
+  countDose(frame);
   if (fixed.frame) showRadiograph();
   pairShot();
 }

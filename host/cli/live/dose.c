@@ -1,0 +1,44 @@
+/* What a frame of a page gives, from the library's dose of the plan without photons that are followed. */
+#include "live/dose.h"
+
+#include "common/encode.h"
+
+#include <math.h>
+#include <string.h>
+
+int live_dose_is_known(const live_scene *scene, const skg_view *view, double phase) {
+    return scene->dose && memcmp(&scene->dose_view, view, sizeof *view) == 0 &&
+           (scene->dose_phase == phase || (isnan(scene->dose_phase) && isnan(phase)));
+}
+
+static json_t *figures(const skg_dose *dose) {
+    skg_dose_report report;
+    skg_dose_point point;
+    skg_dose_report_init(&report);
+    skg_dose_point_init(&point);
+    if (skg_dose_report_get(dose, &report) != SKG_OK || skg_dose_point_get(dose, 0, &point) != SKG_OK)
+        return json_null();
+    json_t *object = json_object();
+    json_object_set_new(object, "at", cli_json_numbers(point.at, 3));
+    json_object_set_new(object, "air_kerma_uGy", cli_json_number(point.air_kerma_ugy));
+    json_object_set_new(object, "kap_uGy_cm2", cli_json_number(report.kap_ugy_cm2));
+    json_object_set_new(object, "detector_air_kerma_uGy", cli_json_number(report.detector_air_kerma_ugy));
+    json_object_set_new(object, "exposure_index", cli_json_number(report.exposure_index));
+    return object;
+}
+
+void live_dose_find(live_scene *scene, const skg_view *view, double phase) {
+    skg_dose_options options;
+    skg_dose *dose = NULL;
+    skg_dose_options_init(&options);
+    options.histories = 0;
+    json_decref(scene->dose);
+    scene->dose = NULL;
+    scene->dose_view = *view, scene->dose_phase = phase;
+    if (skg_plan_view_set(scene->plan, view) == SKG_OK &&
+        skg_dose_create(scene->plan, &options, &dose) == SKG_OK)
+        scene->dose = figures(dose);
+    skg_dose_release(&dose);
+    (void)skg_plan_view_set(scene->plan, &scene->session.view); /* which the plan was made with */
+    if (!scene->dose) scene->dose = json_null();
+}

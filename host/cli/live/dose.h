@@ -1,0 +1,14 @@
+/* What a frame of a page gives: air kerma, kerma-area product, exposure index. */
+#ifndef CLI_LIVE_DOSE_H
+#define CLI_LIVE_DOSE_H
+
+#include "live/scene.h"
+
+/* Whether the figures of the scene are those of a view and a phase of the breath. */
+int live_dose_is_known(const live_scene *scene, const skg_view *view, double phase);
+
+/* Finds the figures without following photons, into scene->dose: an object, or null where the number of photons is not known or the scene has
+ * no such figures. */
+void live_dose_find(live_scene *scene, const skg_view *view, double phase);
+
+#endif
