@@ -21,9 +21,10 @@ def numbers(value: Any, what: str) -> NDArray[Any]:
         array = np.asarray(value)
     except (TypeError, ValueError):
         raise ArgumentError(f"{what} is no array of numbers, but a {type(value).__name__}") from None
-    if isinstance(value, np.ma.MaskedArray) and np.ma.count_masked(value):
-        raise ArgumentError(f"{what} has {np.ma.count_masked(value)} masked values of {array.size}, which are no numbers; fill them, as "
-                            "by .filled(0)")
+    if isinstance(value, np.ma.MaskedArray):
+        masked = np.count_nonzero(np.broadcast_to(np.asarray(value.mask), array.shape))
+        if masked:
+            raise ArgumentError(f"{what} has {masked} masked values of {array.size}, which are no numbers; fill them, as by .filled(0)")
     if array.dtype.kind not in "fiub":
         raise ArgumentError(f"{what} has {describe(array)}; give real numbers")
     return array
