@@ -161,10 +161,11 @@ static double density_of(const skg_scene_part_data *part) {
     return !part->volume ? part->material->density : part->volume->values == SKG_VOLUME_MU ? 0 : 1;
 }
 
-static skg_status find_masses(const skg_recipe *recipe, const skg_forest *tree, skg_dose *dose) {
+static skg_status find_masses(const skg_recipe *recipe, const skg_forest *tree, skg_progress *progress,
+                              skg_dose *dose) {
     double *volumes = NULL;
     SKG_TRY(skg_alloc(dose->parts, sizeof *volumes, "dose", &volumes));
-    const skg_status status = skg_dose_volumes(recipe, tree, volumes);
+    const skg_status status = skg_dose_volumes(recipe, tree, progress, volumes);
     for (int64_t i = 0; i < dose->parts && status == SKG_OK; i++) {
         const double density = density_of(&recipe->scene->parts[i]), mm3_per_cm3 = 1e3;
         dose->part[i] =
@@ -180,11 +181,12 @@ static skg_status find_masses(const skg_recipe *recipe, const skg_forest *tree, 
 
 /* --- the detector, by plans of its own; the caller was told of the scene */
 
-static skg_status find_receptor(skg_plan *plan, const skg_dose_beam *beam, skg_dose_report *report) {
+static skg_status find_receptor(skg_plan *plan, const skg_dose_beam *beam, skg_progress *progress,
+                                skg_dose_report *report) {
     skg_dose_receptor found;
     const skg_logger logger = plan->context->log;
     plan->context->log = (skg_logger){0};
-    const skg_status status = skg_dose_receptor_find(plan, beam, &found);
+    const skg_status status = skg_dose_receptor_find(plan, beam, progress, &found);
     plan->context->log = logger;
     if (status != SKG_OK) return status;
     report->detector_air_kerma_ugy = found.kerma;
@@ -206,10 +208,10 @@ static skg_status fill(skg_plan *plan, const skg_dose_options *options, skg_dose
     SKG_TRY_CLEANUP(skg_forest_make(plan->recipe->scene, &tree));
     SKG_TRY_CLEANUP(skg_alloc(dose->points, sizeof *spots, "dose", &spots));
     SKG_TRY_CLEANUP(find_points(options, &beam, &tree, dose, spots));
-    SKG_TRY_CLEANUP(find_masses(plan->recipe, &tree, dose));
+    SKG_TRY_CLEANUP(find_masses(plan->recipe, &tree, options->progress, dose));
     SKG_TRY_CLEANUP(skg_dose_beam_layers(&beam, &dose->report.hvl1_mm_al, &dose->report.hvl2_mm_al));
     dose->report.kap_ugy_cm2 = skg_dose_beam_kap(&beam);
-    SKG_TRY_CLEANUP(find_receptor(plan, &beam, &dose->report));
+    SKG_TRY_CLEANUP(find_receptor(plan, &beam, options->progress, &dose->report));
     status = follow(plan, options, &beam, &tree, spots, dose);
 cleanup:
     skg_free(&spots);

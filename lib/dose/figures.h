@@ -115,7 +115,8 @@ void skg_dose_found_free(skg_dose_found *found);
 /* --- Masses. */
 
 /* The volume of each part, without those inside it, mm3; of leaky parts NAN; of cells of a volume, times g/cm3. */
-skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, double *volumes);
+skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, skg_progress *progress,
+                            double *volumes);
 
 /* --- What the detector gets. */
 
@@ -127,6 +128,7 @@ typedef struct {
     double signal, noise; /* there, in the unit of the plan; noise: standard deviation */
     double relative;      /* noise over signal, also of an attenuation */
 } skg_dose_receptor;
-skg_status skg_dose_receptor_find(skg_plan *plan, const skg_dose_beam *beam, skg_dose_receptor *receptor);
+skg_status skg_dose_receptor_find(skg_plan *plan, const skg_dose_beam *beam, skg_progress *progress,
+                                  skg_dose_receptor *receptor);
 
 #endif

@@ -78,20 +78,25 @@ static skg_plan_options options_of(const skg_recipe *recipe, skg_response *respo
     return options;
 }
 
-static skg_status draw(const skg_plan *plan, const skg_plan_options *options, picture *p) {
+static skg_status draw(const skg_plan *plan, const skg_plan_options *options, skg_progress *progress,
+                       picture *p) {
     const skg_recipe *recipe = plan->recipe;
     skg_spectrum *beam = NULL;
     skg_plan *made = NULL;
     skg_job *job = NULL;
     skg_output outputs[2];
+    skg_frame frame;
     skg_status status = SKG_OK;
+    skg_frame_init(&frame);
+    frame.progress = progress;
     for (int k = 0; k < 2; k++) skg_output_init(&outputs[k]);
     outputs[0].data = p->mean;
     outputs[1].data = p->scattered, outputs[1].kind = SKG_OUTPUT_SCATTER;
+    SKG_TRY_CLEANUP(skg_progress_step(progress, 0, 1));
     SKG_TRY_CLEANUP(
         skg_spectrum_create_counts(recipe->spectrum, skg_recipe_exposure(recipe, &recipe->view), &beam));
     SKG_TRY_CLEANUP(skg_plan_create(plan->context, recipe->scene, &recipe->view, beam, options, &made));
-    SKG_TRY_CLEANUP(skg_plan_outputs_submit(made, 1, NULL, options->scatter ? 2 : 1, outputs, &job));
+    SKG_TRY_CLEANUP(skg_plan_outputs_submit(made, 1, &frame, options->scatter ? 2 : 1, outputs, &job));
     status = skg_job_wait(&job);
 cleanup:
     skg_plan_release(&made);
@@ -180,13 +185,14 @@ static skg_status signal_per_ugy(const skg_response *response, double *signal) {
     return status;
 }
 
-static skg_status find_index(const skg_plan *plan, picture *p, float *values, double *index) {
+static skg_status find_index(const skg_plan *plan, skg_progress *progress, picture *p, float *values,
+                             double *index) {
     const skg_plan_options options =
         options_of(plan->recipe, plan->recipe->options.response, plan->recipe->options.oblique);
     double per_ugy = 0;
     *index = (double)NAN;
     if (plan->recipe->options.counter) return SKG_OK; /* it is defined for detectors of energy */
-    SKG_TRY(draw(plan, &options, p));
+    SKG_TRY(draw(plan, &options, progress, p));
     if (signal_per_ugy(options.response, &per_ugy) != SKG_OK)
         return SKG_OK; /* it does not know these energies */
     *index =
@@ -236,7 +242,8 @@ static skg_status find_window(const skg_dose_beam *beam, int32_t window[4]) {
     return SKG_OK;
 }
 
-skg_status skg_dose_receptor_find(skg_plan *plan, const skg_dose_beam *beam, skg_dose_receptor *found) {
+skg_status skg_dose_receptor_find(skg_plan *plan, const skg_dose_beam *beam, skg_progress *progress,
+                                  skg_dose_receptor *found) {
     const int64_t pixels = plan->recipe->view.columns * plan->recipe->view.rows;
     float *memory = NULL;
     skg_response *meter = NULL;
@@ -249,9 +256,9 @@ skg_status skg_dose_receptor_find(skg_plan *plan, const skg_dose_beam *beam, skg
     p.mean = memory, p.scattered = memory + pixels;
     SKG_TRY_CLEANUP(make_meter(beam->high_kev, &meter, &per_kev));
     const skg_plan_options options = options_of(plan->recipe, meter, 0);
-    SKG_TRY_CLEANUP(draw(plan, &options, &p));
+    SKG_TRY_CLEANUP(draw(plan, &options, progress, &p));
     found->kerma = mean_kerma(beam, &p, per_kev);
-    SKG_TRY_CLEANUP(find_index(plan, &p, memory + 2 * pixels, &found->exposure_index));
+    SKG_TRY_CLEANUP(find_index(plan, progress, &p, memory + 2 * pixels, &found->exposure_index));
     status = find_darkest(plan, &p, memory + 2 * pixels, found);
 cleanup:
     skg_response_release(&meter);

@@ -446,6 +446,32 @@ START_TEST(the_entrance_is_that_of_images) {
 }
 END_TEST
 
+/* Ends work whose steps are photons. user: how many there would be */
+static int32_t ends_scatter(int64_t done, int64_t total, void *user) {
+    if (total > 1) *(int64_t *)user = total;
+    return done >= 0 && total > 1;
+}
+
+/* The detector's scatter takes as long as that of an image, and is not waited for. */
+START_TEST(scatter_of_the_detector_is_cancelled) {
+    subject s = open_box(200, 150, 100, "Water, Liquid");
+    skg_dose_options options = options_of(0);
+    skg_dose *dose = NULL;
+    int64_t total = 0;
+    s.options.scatter = &s.scatter;
+    make_plan(&s);
+    ck_skg(skg_progress_create(ends_scatter, &total, &options.progress));
+    ck_skg_fails(skg_dose_create(s.plan, &options, &dose), SKG_ERR_CANCELLED, "");
+    ck_assert_ptr_null(dose);
+    ck_assert_int_gt(total, 1);
+    skg_progress_release(&options.progress);
+    ck_skg(skg_dose_create(s.plan, &options, &dose)); /* the plan is as it was */
+    ck_assert_double_gt(report_of(dose).detector_air_kerma_ugy, 0);
+    skg_dose_release(&dose);
+    subject_close(&s);
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_set_timeout(tests, 300);
@@ -464,6 +490,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, photons_are_not_followed_through_what_is_not_known);
     tcase_add_test(tests, photons_are_not_followed_through_coefficients);
     tcase_add_test(tests, the_entrance_is_that_of_images);
+    tcase_add_test(tests, scatter_of_the_detector_is_cancelled);
 }
 
 SKG_SUITE_MAIN("dose", add_tests)

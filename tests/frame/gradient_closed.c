@@ -63,7 +63,7 @@ START_TEST(deep_pixels_have_their_derivatives) {
     static const double line[3] = {0.25, 0.5, 0.25}, alone = 1, twist[6] = {1}, step = 3.2;
     static double chosen[PIXELS], found[PIXELS];
     const deep_case *c = &deep_cases[_i / 2];
-    if (!suite_full() && _i % 2 == 0) return; /* gradient_pairs_test compares single with double */
+    if (!suite_full() && _i % 2 == 0) return; /* touching_parts_have_one_side has single, in cones */
     const int first = c->from ? c->from + 1 : 0;
     const double low = c->from ? -1 : -60; /* within the pixel before */
     skg_detector_blur blur;

@@ -2,6 +2,7 @@
 #include "live/dose.h"
 
 #include "common/encode.h"
+#include "common/interrupt.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,18 +28,28 @@ static json_t *figures(const skg_dose *dose) {
     return object;
 }
 
-void live_dose_find(live_scene *scene, const skg_view *view, double phase) {
+/* A newer wish and the end are not kept waiting. */
+static int32_t is_enough(int64_t done, int64_t total, void *user) {
+    (void)done, (void)total;
+    return live_hub_has_news(user) || cli_stop_asked();
+}
+
+int live_dose_find(live_scene *scene, live_hub *hub, const skg_view *view, double phase) {
     skg_dose_options options;
     skg_dose *dose = NULL;
+    skg_status status = SKG_OK;
     skg_dose_options_init(&options);
     options.histories = 0;
     json_decref(scene->dose);
     scene->dose = NULL;
     scene->dose_view = *view, scene->dose_phase = phase;
-    if (skg_plan_view_set(scene->plan, view) == SKG_OK &&
-        skg_dose_create(scene->plan, &options, &dose) == SKG_OK)
-        scene->dose = figures(dose);
+    status = skg_progress_create(is_enough, hub, &options.progress);
+    if (status == SKG_OK) status = skg_plan_view_set(scene->plan, view);
+    if (status == SKG_OK) status = skg_dose_create(scene->plan, &options, &dose);
+    if (status == SKG_OK) scene->dose = figures(dose);
     skg_dose_release(&dose);
+    skg_progress_release(&options.progress);
     (void)skg_plan_view_set(scene->plan, &scene->session.view); /* which the plan was made with */
-    if (!scene->dose) scene->dose = json_null();
+    if (!scene->dose && status != SKG_ERR_CANCELLED) scene->dose = json_null();
+    return scene->dose != NULL;
 }

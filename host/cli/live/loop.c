@@ -246,7 +246,7 @@ static void answer(live_loop *loop, const live_asked *asked) {
 static void tell_dose(live_loop *loop) {
     live_scene *scene = &loop->scene;
     if (!scene->is_shown || live_dose_is_known(scene, &scene->shown, loop->wish.phase)) return;
-    live_dose_find(scene, &scene->shown, loop->wish.phase);
+    if (!live_dose_find(scene, loop->hub, &scene->shown, loop->wish.phase)) return;
     json_t *object = json_object();
     json_object_set(object, "dosed", scene->dose);
     live_hub_tell_json(loop->hub, object);

@@ -32,7 +32,7 @@ typedef struct {
     int64_t point_count;
     /** [point_count][3] mm, world */
     const double *points;
-    /** Told of the photons, and may cancel; NULL: none. */
+    /** Told of the photons, before them of those of the detector's scatter, and may cancel; NULL: none. */
     skg_progress *progress;
 } skg_dose_options;
 
