@@ -160,6 +160,7 @@ static skg_status take_numbers(const source *s, const head *h, int which, skg_di
 
 /* Takes or passes over the value of an attribute. */
 static skg_status take_value(const source *s, int implicit, const head *h, skg_dicom_slice *slice) {
+    if (h->group == 0x0028 && h->element == 0x3000) slice->has_table = 1;
     if (h->length == UNKNOWN_LENGTH || h->is_sequence) return skip(s, implicit, h, 0);
     for (int k = 0; k < SKG_DICOM_NUMBERS; k++)
         if (h->group == attributes[k].group && h->element == attributes[k].element)
@@ -167,6 +168,8 @@ static skg_status take_value(const source *s, int implicit, const head *h, skg_d
     if (h->group == 0x0002 && h->element == 0x0010) return take_copy(s, h->length, slice->syntax);
     if (h->group == 0x0020 && h->element == 0x000e) return take_copy(s, h->length, slice->series);
     if (h->group == 0x0008 && h->element == 0x103e) return take_copy(s, h->length, slice->description);
+    if (h->group == 0x0008 && h->element == 0x0060) return take_copy(s, h->length, slice->modality);
+    if (h->group == 0x0028 && h->element == 0x1054) return take_copy(s, h->length, slice->scale);
     return skip(s, implicit, h, 0);
 }
 
@@ -239,6 +242,15 @@ static skg_status find_layout(const skg_dicom_slice *slice, word_layout *word) {
     if (skg_dicom_number(slice, SKG_DICOM_SAMPLES, 1) != 1)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: its pixels are colours; a volume has one number each",
                         slice->path);
+    if (slice->has_table)
+        return skg_fail(
+            SKG_ERR_UNSUPPORTED,
+            "%s: its values stand in a table (ModalityLUTSequence), which is not read; write them with RescaleSlope",
+            slice->path);
+    if (!(fabs(skg_dicom_number(slice, SKG_DICOM_SLOPE, 1)) > 0) ||
+        !isfinite(skg_dicom_number(slice, SKG_DICOM_SLOPE, 1)))
+        return skg_fail(SKG_ERR_FORMAT, "%s: RescaleSlope is %g; give one that is finite and not 0",
+                        slice->path, skg_dicom_number(slice, SKG_DICOM_SLOPE, 1));
     if (slice->pixel_bytes < 0)
         return skg_fail(
             SKG_ERR_UNSUPPORTED,

@@ -29,7 +29,10 @@ enum skg_dicom_numbers {
 
 typedef struct {
     const char *path; /* set by the caller */
-    char syntax[SKG_DICOM_TEXT], series[SKG_DICOM_TEXT], description[SKG_DICOM_TEXT];
+    char syntax[SKG_DICOM_TEXT], series[SKG_DICOM_TEXT], description[SKG_DICOM_TEXT],
+        modality[SKG_DICOM_TEXT],
+        scale[SKG_DICOM_TEXT];        /* scale: RescaleType, what its values are; empty: it does not say */
+    int has_table;                    /* 1: its values stand in a table (ModalityLUTSequence) */
     int32_t count[SKG_DICOM_NUMBERS]; /* numbers that it has; 0: the file does not have the attribute */
     double numbers[SKG_DICOM_NUMBERS][6];
     int64_t pixels,

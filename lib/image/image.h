@@ -69,6 +69,8 @@ typedef struct {
         no_order; /* 1: it does not say the order of bytes, as it has to; the least significant first is taken */
     int32_t reserved;
     void *cells; /* the caller frees them */
+    char no_hounsfield
+        [96]; /* what the file says of its numbers that Hounsfield numbers do not have; empty: nothing */
 } skg_grid;
 
 /* How the cells of a grid lie in a file. kind: as of skg_number_of_bytes */

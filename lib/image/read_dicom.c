@@ -277,6 +277,16 @@ cleanup:
     return status;
 }
 
+/* CT images hold Hounsfield numbers unless they say otherwise; images of other kinds where they say so (PS3.3, C.8.2.1 and C.11.1). */
+static void find_scale(const series *s, skg_grid *grid) {
+    const skg_dicom_slice *first = &s->slices[0];
+    const int is_said = *first->scale != '\0';
+    if (is_said ? strcmp(first->scale, "HU") == 0 : !*first->modality || strcmp(first->modality, "CT") == 0)
+        return;
+    snprintf(grid->no_hounsfield, sizeof grid->no_hounsfield, "%s is '%s'",
+             is_said ? "RescaleType" : "Modality", is_said ? first->scale : first->modality);
+}
+
 int skg_dicom_is_folder(const char *path) {
     struct stat there;
     return stat(path, &there) == 0 && S_ISDIR(there.st_mode);
@@ -290,6 +300,7 @@ skg_status skg_dicom_read_grid(const char *path, skg_grid *grid) {
     for (int64_t k = 0; k < s.name_count; k++) SKG_TRY_CLEANUP(add_slice(&s, k));
     SKG_TRY_CLEANUP(check_slices(&s));
     SKG_TRY_CLEANUP(place(&s, grid));
+    find_scale(&s, grid);
     status = read_cells(&s, grid);
 cleanup:
     for (int64_t k = 0; k < s.name_count; k++) skg_free(&s.names[k]);

@@ -7,8 +7,9 @@
 #include <skiagraph/mesh.h>
 #include <skiagraph/volume.h>
 
-/* Sentences about a volume, at most: of values below 0; of its file's unit, the size of its cells, the order of its bytes. */
-enum { SKG_VOLUME_REMARKS = 4 };
+/* Sentences about a volume, at most: of values below 0; of its file's unit, the size of its cells, the order of its bytes, what its
+ * numbers are. */
+enum { SKG_VOLUME_REMARKS = 5 };
 
 typedef struct {
     int32_t level; /* enum skg_log_level */

@@ -57,6 +57,11 @@ static void note_unit(skg_volume *volume, const skg_grid *grid, double unit_mm) 
 
 static void note(skg_volume *volume, const skg_grid *grid, double unit_mm) {
     const double *a = volume->affine;
+    if (volume->values == SKG_VOLUME_HU && *grid->no_hounsfield)
+        skg_volume_say(
+            volume, SKG_LOG_WARNING,
+            "its %s, and its numbers are taken as Hounsfield numbers; give a CT image, or say what they are (density, mu)",
+            grid->no_hounsfield);
     note_unit(volume, grid, unit_mm);
     if (grid->no_spacing)
         skg_volume_say(

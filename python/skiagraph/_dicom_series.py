@@ -68,9 +68,17 @@ def _step(folder: pathlib.Path, places: NDArray[np.float64], normal: NDArray[np.
     return step
 
 
-def read(folder: pathlib.Path) -> tuple[NDArray[Any], NDArray[np.float64]]:
+def _no_hounsfield(first: Any) -> str:
+    """What a slice says of its numbers that Hounsfield numbers do not have; CT images hold these unless they say otherwise."""
+    scale, modality = (str(first.get(name, "") or "") for name in ("RescaleType", "Modality"))
+    if scale == "HU" or (not scale and modality in ("", "CT")):
+        return ""
+    return f"RescaleType is '{scale}'" if scale else f"Modality is '{modality}'"
+
+
+def read(folder: pathlib.Path) -> tuple[NDArray[Any], NDArray[np.float64], str]:
     """Cells [z, y, x] after the rescaling of each slice, and the matrix from (x, y, z) indices to mm, in DICOM's coordinates of the
-    patient: left, back, head."""
+    patient: left, back, head; and why the numbers are no Hounsfield numbers ("": they may be)."""
     slices = _slices(folder)
     turns = _attribute(folder, slices, "ImageOrientationPatient")
     spacing = _attribute(folder, slices, "PixelSpacing")
@@ -84,6 +92,12 @@ def read(folder: pathlib.Path) -> tuple[NDArray[Any], NDArray[np.float64]]:
     affine = np.eye(4)
     affine[:3, 0], affine[:3, 1] = right * spacing[1], down * spacing[0]
     affine[:3, 2], affine[:3, 3] = _step(folder, places, normal), places[0]
+    for data in slices:
+        if "ModalityLUTSequence" in data:
+            raise FileError(f"{data.filename}: its values stand in a table (ModalityLUTSequence), which is not read; write them with "
+                            "RescaleSlope")
+        if not (abs(float(data.get("RescaleSlope", 1))) > 0 and np.isfinite(float(data.get("RescaleSlope", 1)))):
+            raise FileError(f"{data.filename}: RescaleSlope is {data.RescaleSlope}; give one that is finite and not 0")
     try:
         stored = [data.pixel_array for data in slices]
     except (AttributeError, NotImplementedError, RuntimeError, ValueError) as failure:
@@ -93,4 +107,4 @@ def read(folder: pathlib.Path) -> tuple[NDArray[Any], NDArray[np.float64]]:
     scaled = [pixels * float(data.get("RescaleSlope", 1)) + float(data.get("RescaleIntercept", 0)) for pixels, data in zip(stored, slices)]
     cells = np.stack(scaled)
     whole = cells.min() >= -32768 and cells.max() <= 32767 and (cells == np.rint(cells)).all()
-    return cells.astype(np.int16 if whole else np.float32), affine
+    return cells.astype(np.int16 if whole else np.float32), affine, _no_hounsfield(slices[0])

@@ -63,7 +63,11 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
         if affine is not None:
             raise ArgumentError("affine is given beside a file, which says where its cells are; leave it out, or give pose")
         if pathlib.Path(array).is_dir():
-            array, affine = _dicom_series.read(pathlib.Path(array))
+            folder = pathlib.Path(array)
+            array, affine, no_hounsfield = _dicom_series.read(folder)
+            if no_hounsfield and source.values == _VALUES["hu"]:
+                warn(f"{label}: {folder}: its {no_hounsfield}, and its numbers are taken as Hounsfield numbers; give a CT image, or say "
+                     "what they are (density, mu)")
     if isinstance(array, (str, os.PathLike)):
         return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 0.0, source),
                 [values, interpolation, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])

@@ -2,6 +2,7 @@
 import json
 import pickle
 import subprocess
+import warnings
 
 import numpy as np
 import pytest
@@ -126,6 +127,8 @@ def test_the_library_reads_what_pydicom_reads(tmp_path, more):
     (range(6), {"NumberOfFrames": 3}, "holds 3 frames"),
     (range(6), {"SamplesPerPixel": 3, "PhotometricInterpretation": "RGB", "PlanarConfiguration": 0, "PixelData": b"\0" * 120}, "colours"),
     (range(6), {"PixelData": b"\0" * 30}, "pixels|PixelData"),
+    (range(6), {"RescaleSlope": 0}, "RescaleSlope is 0"),
+    (range(6), {"ModalityLUTSequence": Sequence([])}, "stand in a table"),
 ])
 def test_what_is_no_volume_is_refused(tmp_path, reading, only, more, says):
     with pytest.raises(sk.Error, match=says):
@@ -144,6 +147,22 @@ def test_a_slice_of_another_kind_is_named(tmp_path, reading, more, says):
     write_slice(tmp_path, 5, at=FIRST + 5 * TURN[:, 2] * SPACING[2], **more)
     with pytest.raises(sk.Error, match=says):
         reading(tmp_path)
+
+
+@both
+@pytest.mark.parametrize("more, says", [
+    ({"Modality": "MR"}, "Modality is 'MR'"),
+    ({"Modality": "CT", "RescaleType": "US"}, "RescaleType is 'US'"),
+    ({"Modality": "CT"}, None),
+    ({"Modality": "OT", "RescaleType": "HU"}, None),
+])
+def test_numbers_of_another_kind_are_warned_of(tmp_path, reading, more, says):
+    """A magnetic resonance image has the same attributes, and would be a patient of bone."""
+    with warnings.catch_warnings(record=True) as found:
+        warnings.simplefilter("always")
+        reading(write(tmp_path, **more))
+    found = [str(w.message) for w in found if "taken as Hounsfield" in str(w.message)]
+    assert len(found) == (says is not None) and all(says in text for text in found)
 
 
 def test_what_the_library_does_not_expand_is_named(tmp_path):
