@@ -31,7 +31,7 @@ static skg_status find_faces(skg_planting *p) {
             }
         }
     }
-    p->cells->face_count = count;
+    p->face_count = count;
     return SKG_OK;
 }
 
@@ -65,7 +65,7 @@ typedef struct {
 
 static skg_status visit_share(void *user, int64_t share) {
     visits *v = user;
-    const int64_t count = v->p->cells->face_count;
+    const int64_t count = v->p->face_count;
     for (int64_t f = share * count / SHARES; f < (share + 1) * count / SHARES; f++)
         SKG_TRY(visit(v->p, f, &v->pairs[share]));
     return SKG_OK;
@@ -120,32 +120,50 @@ static double contrast_of(skg_planting *p, int64_t cell) {
 }
 
 /* Whether the faces of a cell make no difference, so that its mean mixture stands for it. */
-static int is_mixed(skg_planting *p, int64_t cell) {
-    return p->first[cell + 1] > p->first[cell] && (p->settled[cell] || !(contrast_of(p, cell) > p->limit));
+static int is_mixed(const skg_planting *p, const skg_faced *f, double limit) {
+    return p->settled[f->cell] || !(f->contrast > limit);
 }
 
-static skg_status write_mixed(skg_planting *p, int64_t cell, uint32_t *word) {
+static skg_status write_mixed(skg_planting *p, skg_faced *f) {
     uint32_t medium = 0;
-    SKG_TRY(skg_media_add(&p->media, p->cells->mixtures[cell], &medium));
-    *word = skg_cell_word(SKG_CELL_MEDIUM, medium);
-    if (!p->settled[cell]) p->cells->smeared++;
+    SKG_TRY(skg_media_add(&p->media, p->cells->mixtures[f->cell], &medium));
+    f->mixed = skg_cell_word(SKG_CELL_MEDIUM, medium);
     return SKG_OK;
 }
 
-static skg_status write_cell(skg_planting *p, int64_t cell, uint32_t *word) {
-    const int64_t count = p->first[cell + 1] - p->first[cell];
-    const uint32_t *faces = p->faces_of + p->first[cell];
+static skg_status write_list(skg_planting *p, skg_faced *f) {
+    const int64_t first = p->first[f->cell];
     uint32_t medium = 0;
     skg_cell_amount all;
-    skg_cell_all(p->cells, cell, p->cells->known[cell], all);
-    SKG_TRY(skg_media_find(&p->media, (const int64_t *)all, &medium));
-    *word = skg_cell_word(SKG_CELL_MEDIUM, medium);
-    if (count == 0) return SKG_OK;
     double at[3];
-    skg_cell_place(p->cells, cell, at);
+    skg_cell_all(p->cells, f->cell, p->cells->known[f->cell], all);
+    SKG_TRY(skg_media_find(&p->media, (const int64_t *)all, &medium));
+    skg_cell_place(p->cells, f->cell, at);
     for (int k = 0; k < 3; k++) at[k] += SKG_KNOWN[k];
-    p->cells->traced++;
-    return skg_plant_list(p, medium, at, count, faces, word);
+    return skg_plant_list(p, medium, at, p->first[f->cell + 1] - first, p->faces_of + first, &f->traced);
+}
+
+/* The words of cells without faces, and which have some. Many neighbours hold the same. */
+static skg_status sort_cells(skg_planting *p) {
+    const int64_t total = skg_cells_count(p->cells);
+    int64_t place = 0, faced = 0;
+    uint32_t medium = 0;
+    skg_cell_amount all, last;
+    for (int64_t c = 0; c < total; c++) p->faced_count += p->first[c + 1] > p->first[c];
+    SKG_TRY(skg_alloc(p->faced_count, sizeof *p->faced, "cells", &p->faced));
+    SKG_TRY(skg_words_grow(&p->tree, total, &place));
+    memset(last, 0xff, sizeof last);
+    for (int64_t c = 0; c < total; c++) {
+        if (p->first[c + 1] > p->first[c]) {
+            p->faced[faced++] = (skg_faced){c, contrast_of(p, c), SKG_UNMADE, SKG_UNMADE};
+            continue;
+        }
+        skg_cell_all(p->cells, c, p->cells->known[c], all);
+        if (memcmp(all, last, sizeof all)) SKG_TRY(skg_media_find(&p->media, (const int64_t *)all, &medium));
+        memcpy(last, all, sizeof all);
+        p->tree.of[c] = skg_cell_word(SKG_CELL_MEDIUM, medium);
+    }
+    return SKG_OK;
 }
 
 /* --- all of it */
@@ -170,17 +188,18 @@ static skg_status prepare(skg_planting *p) {
     SKG_TRY(skg_cells_settled(p->parts, p->cells, &p->settled));
     SKG_TRY(find_faces(p));
     SKG_TRY(sort_faces(p));
-    p->originals = p->cells->face_count;
-    return p->parts->volume_count > 0 ? skg_plant_copies(p) : SKG_OK;
+    p->originals = p->face_count;
+    if (p->parts->volume_count > 0) SKG_TRY(skg_plant_copies(p));
+    return sort_cells(p);
 }
 
 /* Cells that are planted together: the bricks among them are made by several threads, and written in their order. */
-enum { TOGETHER = 4096, MIXED = -1, PLAIN = -2 };
+enum { TOGETHER = 4096 };
 typedef struct {
     skg_planting *p;
-    int64_t count;           /* bricks */
-    skg_brick *bricks;       /* [TOGETHER] */
-    int64_t which[TOGETHER]; /* the brick of a cell, or MIXED or PLAIN */
+    double limit;
+    int64_t count;     /* bricks */
+    skg_brick *bricks; /* [TOGETHER] */
 } planted;
 
 static skg_status make_brick(void *user, int64_t item) {
@@ -188,47 +207,49 @@ static skg_status make_brick(void *user, int64_t item) {
     return skg_brick_make(g->p, g->bricks[item].cell, &g->bricks[item]);
 }
 
-static skg_status write_word(planted *g, int64_t cell, int64_t which, uint32_t *word) {
-    if (which == MIXED) return write_mixed(g->p, cell, word);
-    if (which == PLAIN) return write_cell(g->p, cell, word);
-    g->p->cells->traced++;
-    return skg_brick_write(g->p, &g->bricks[which], word);
+static int needs_brick(const planted *g, const skg_faced *f) {
+    return f->traced == SKG_UNMADE && !is_mixed(g->p, f, g->limit) &&
+           g->p->first[f->cell + 1] - g->p->first[f->cell] > FACES;
 }
 
-static skg_status plant_some(planted *g, int64_t first, int64_t count) {
+/* Puts what stands for a cell into the tree. *brick: its number, which is then the next one's, if it needs one */
+static skg_status write_word(planted *g, skg_faced *f, int64_t *brick) {
     skg_planting *p = g->p;
+    const int mixed = is_mixed(p, f, g->limit);
+    if (mixed && f->mixed == SKG_UNMADE) SKG_TRY(write_mixed(p, f));
+    if (needs_brick(g, f))
+        SKG_TRY(skg_brick_write(p, &g->bricks[(*brick)++], &f->traced));
+    else if (!mixed && f->traced == SKG_UNMADE)
+        SKG_TRY(write_list(p, f));
+    p->tree.of[f->cell] = mixed ? f->mixed : f->traced;
+    p->cells->smeared += mixed && !p->settled[f->cell];
+    p->cells->traced += !mixed;
+    return SKG_OK;
+}
+
+static skg_status plant_some(planted *g, skg_faced *faced, int64_t count) {
+    int64_t brick = 0;
     g->count = 0;
-    for (int64_t c = 0; c < count; c++) {
-        const int64_t cell = first + c, faces = p->first[cell + 1] - p->first[cell];
-        g->which[c] = is_mixed(p, cell) ? MIXED : faces > FACES ? g->count : PLAIN;
-        if (g->which[c] >= 0) g->bricks[g->count++] = (skg_brick){.cell = cell};
-    }
+    for (int64_t i = 0; i < count; i++)
+        if (needs_brick(g, &faced[i])) g->bricks[g->count++] = (skg_brick){.cell = faced[i].cell};
     skg_status status = g->count ? skg_parallel(g->count, make_brick, g) : SKG_OK;
-    for (int64_t c = 0; c < count && status == SKG_OK; c++) {
-        uint32_t word = 0;
-        status = write_word(g, first + c, g->which[c], &word);
-        if (status == SKG_OK) p->tree.of[first + c] = word;
-    }
+    for (int64_t i = 0; i < count && status == SKG_OK; i++) status = write_word(g, &faced[i], &brick);
     for (int64_t b = 0; b < g->count; b++) skg_brick_free(&g->bricks[b]);
     return status;
 }
 
-static skg_status plant(skg_planting *p) {
+static skg_status plant(skg_planting *p, double limit) {
     const int64_t total = skg_cells_count(p->cells);
-    int64_t first = 0;
-    planted *g = NULL;
-    skg_brick *bricks = NULL;
+    planted g = {.p = p, .limit = limit};
     skg_status status = SKG_OK;
-    SKG_TRY(skg_words_grow(&p->tree, total, &first));
-    SKG_TRY_CLEANUP(skg_alloc(1, sizeof *g, "cells", &g));
-    SKG_TRY_CLEANUP(skg_alloc(TOGETHER, sizeof *bricks, "cells", &bricks));
-    g->p = p, g->bricks = bricks;
-    for (int64_t c = 0; c < total; c += TOGETHER)
-        SKG_TRY_CLEANUP(plant_some(g, c, total - c < TOGETHER ? total - c : TOGETHER));
-cleanup:
-    skg_free(&bricks);
-    skg_free(&g);
+    SKG_TRY(skg_alloc(TOGETHER, sizeof *g.bricks, "cells", &g.bricks));
+    for (int64_t i = 0; i < p->faced_count && status == SKG_OK; i += TOGETHER)
+        status = plant_some(&g, p->faced + i, p->faced_count - i < TOGETHER ? p->faced_count - i : TOGETHER);
+    skg_free(&g.bricks);
     SKG_TRY(status);
+    for (int64_t c = 0; c < total; c++) /* without the leaps of another limit */
+        if (SKG_CELL_KIND(p->tree.of[c]) == SKG_CELL_MEDIUM)
+            p->tree.of[c] = skg_cell_word(SKG_CELL_MEDIUM, SKG_CELL_MEDIUM_OF(p->tree.of[c]));
     SKG_TRY(skg_plant_rough(p));
     return skg_cells_leap(p->cells, p->tree.of);
 }
@@ -252,10 +273,13 @@ static void write_face(const skg_cells *cells, const double corners[9], float to
     }
 }
 
-static skg_status write_faces(const skg_planting *p) {
+/* What photons meet, as soon as a cell has a face. */
+static skg_status write_faces(skg_planting *p) {
     skg_cells *cells = p->cells;
-    if (cells->traced == 0) cells->face_count = 0;
-    SKG_TRY(skg_alloc(cells->face_count + 1, sizeof *cells->faces, "cells", &cells->faces));
+    if (p->has_faces || (cells->traced == 0 && cells->faces)) return SKG_OK;
+    p->has_faces = cells->traced > 0;
+    cells->face_count = p->has_faces ? p->face_count : 0;
+    SKG_TRY(skg_realloc(cells->face_count + 1, sizeof *cells->faces, "cells", &cells->faces));
     for (int64_t f = 0; f < cells->face_count; f++) {
         const uint32_t *more = f < p->originals ? &p->more[p->part[f]] : &p->own[f - p->originals];
         memcpy(&cells->faces[f][3], more, sizeof cells->faces[f][3]);
@@ -265,32 +289,67 @@ static skg_status write_faces(const skg_planting *p) {
     return SKG_OK;
 }
 
-skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK], double limit,
-                           skg_cells *cells) {
-    skg_planting p = {
-        .parts = parts, .cells = cells, .mu = mu, .limit = limit, .media = {.base = parts->base}};
-    skg_status status = SKG_OK;
+/* Lends the cells what has been planted; they own it when the planting ends. */
+static void lend(skg_planting *p) {
+    p->cells->media = p->media.mixtures, p->cells->media_count = p->media.count;
+    p->cells->tree = p->tree.of, p->cells->tree_count = p->tree.count;
+}
+
+skg_status skg_planting_begin(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK],
+                              skg_cells *cells, skg_planting **planting) {
+    skg_planting *p = NULL;
+    *planting = NULL;
     if (!cells->mixtures) return SKG_OK;
+    SKG_TRY(skg_alloc(1, sizeof *p, "cells", &p));
+    *p = (skg_planting){.parts = parts, .cells = cells, .mu = mu, .media = {.base = parts->base}};
     skg_free(&cells->media);
     skg_free(&cells->tree);
     skg_free(&cells->faces);
-    cells->smeared = cells->traced = 0;
-    SKG_TRY_CLEANUP(prepare(&p));
-    SKG_TRY_CLEANUP(plant(&p));
-    SKG_TRY_CLEANUP(write_faces(&p));
-    cells->media = p.media.mixtures, cells->media_count = p.media.count, p.media.mixtures = NULL;
-    cells->tree = p.tree.of, cells->tree_count = p.tree.count, p.tree.of = NULL;
-cleanup:
-    skg_media_free(&p.media);
-    skg_free(&p.tree.of);
-    skg_free(&p.corners);
-    skg_free(&p.part);
-    skg_free(&p.amounts);
-    skg_free(&p.more);
-    skg_free(&p.own);
-    skg_free(&p.seen);
-    skg_free(&p.first);
-    skg_free(&p.faces_of);
-    skg_free(&p.settled);
+    *planting = p;
+    const skg_status status = prepare(p);
+    lend(p);
+    return status;
+}
+
+skg_status skg_planting_to(skg_planting *p, double limit) {
+    if (!p) return SKG_OK;
+    p->cells->smeared = p->cells->traced = 0;
+    skg_status status = plant(p, limit);
+    if (status == SKG_OK) status = write_faces(p);
+    lend(p);
+    return status;
+}
+
+int64_t skg_planting_smears(const skg_planting *p, double limit) {
+    int64_t count = 0;
+    for (int64_t i = 0; p && i < p->faced_count; i++)
+        count += !p->settled[p->faced[i].cell] && is_mixed(p, &p->faced[i], limit);
+    return count;
+}
+
+void skg_planting_end(skg_planting **planting) {
+    skg_planting *p = *planting;
+    if (!p) return;
+    p->media.mixtures = NULL; /* the cells' own now, as is the tree */
+    skg_media_free(&p->media);
+    skg_free(&p->corners);
+    skg_free(&p->part);
+    skg_free(&p->amounts);
+    skg_free(&p->more);
+    skg_free(&p->own);
+    skg_free(&p->seen);
+    skg_free(&p->first);
+    skg_free(&p->faces_of);
+    skg_free(&p->settled);
+    skg_free(&p->faced);
+    skg_free(planting);
+}
+
+skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK], double limit,
+                           skg_cells *cells) {
+    skg_planting *planting = NULL;
+    skg_status status = skg_planting_begin(parts, mu, cells, &planting);
+    if (status == SKG_OK) status = skg_planting_to(planting, limit);
+    skg_planting_end(&planting);
     return status;
 }

@@ -208,37 +208,59 @@ static skg_status find_lines(const skg_scatter_work *work, const palette *p, pla
     return status;
 }
 
-static skg_status trace_to(const skg_scatter_work *work, const skg_cell_parts *parts,
-                           const skg_beam_lines *lines, double limit, skg_scatter_object *object) {
-    double mu[SKG_SCATTER_RANK];
-    find_typical(work->recipe->spectrum, &object->physics, mu);
-    SKG_TRY(skg_cells_trace(parts, mu, limit, &object->cells));
-    return skg_cells_judge(parts, &object->physics, lines, work->view, &object->cells, &object->judged);
-}
-
 /* Above this, every line to the detector is followed through the object. Below, rough cells stand for eight or nine of ten, which pays: .63 for a
  * thorax, whose scatter costs two thirds of what it did. At 2.6 (an iron cube before a table) the noise was ten times as large. */
 static const double ROUGH_MOST = 0.8;
+
+/* Plants to a limit, and judges what has come of it. */
+static skg_status plant(skg_planting *planting, skg_judging *judging, double limit,
+                        skg_scatter_object *object) {
+    SKG_TRY(skg_planting_to(planting, limit));
+    return skg_judging_of(judging, &object->judged);
+}
+
+/* What cells where parts compete, and of volumes, are off by. What this needs is not kept: most of it photons would not meet. */
+static skg_status find_settled_error(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK],
+                                     skg_judging *judging, skg_scatter_object *object) {
+    if (!parts->priority && parts->volume_count == 0) return SKG_OK;
+    SKG_TRY(skg_cells_trace(parts, mu, 0, &object->cells));
+    SKG_TRY(skg_judging_of(judging, &object->judged));
+    object->settled_error = object->judged.cells;
+    return SKG_OK;
+}
+
+/* The next lower limit at which fewer cells are smeared, by a tenth at least: with nearly the same cells the error is the same. */
+static double lower(const skg_planting *planting, const skg_cells *cells, double limit) {
+    const int64_t enough = cells->smeared - cells->smeared / 10;
+    do limit = limit > LEAST_LIMIT ? limit / 1.4 : 0;
+    while (limit > 0 && skg_planting_smears(planting, limit) > enough);
+    return limit;
+}
 
 /* Smears no more of the cells than leaves histories their part of the tolerance: faces cost more than histories. */
 static skg_status trace(const skg_scatter_work *work, const skg_cell_parts *parts,
                         const skg_beam_lines *lines, skg_scatter_object *object) {
     const double asked = work->recipe->options.scatter->tolerance,
                  tolerance = asked > 0 ? asked : DEFAULT_TOLERANCE;
-    double limit = sqrt(tolerance * SMEARED);
-    if (parts->priority || parts->volume_count > 0) {
-        SKG_TRY(trace_to(work, parts, lines, 0, object));
-        object->settled_error = object->judged.cells;
-    }
-    for (;;) {
-        SKG_TRY(trace_to(work, parts, lines, limit, object));
-        if (limit == 0 || object->cells.smeared == 0 ||
-            object->judged.cells <= fmax(SKG_SCATTER_MOST * tolerance, SETTLED_MORE * object->settled_error))
-            break;
-        limit = limit > LEAST_LIMIT ? limit / 1.4 : 0;
+    skg_planting *planting = NULL;
+    skg_judging *judging = NULL;
+    double limit = sqrt(tolerance * SMEARED), mu[SKG_SCATTER_RANK];
+    skg_status status = SKG_OK;
+    find_typical(work->recipe->spectrum, &object->physics, mu);
+    SKG_TRY_CLEANUP(skg_judging_begin(parts, &object->physics, lines, work->view, &object->cells, &judging));
+    SKG_TRY_CLEANUP(find_settled_error(parts, mu, judging, object));
+    SKG_TRY_CLEANUP(skg_planting_begin(parts, mu, &object->cells, &planting));
+    SKG_TRY_CLEANUP(plant(planting, judging, limit, object));
+    const double most = fmax(SKG_SCATTER_MOST * tolerance, SETTLED_MORE * object->settled_error);
+    while (limit > 0 && object->cells.smeared > 0 && object->judged.cells > most) {
+        limit = lower(planting, &object->cells, limit);
+        SKG_TRY_CLEANUP(plant(planting, judging, limit, object));
     }
     if (object->judged.rough > ROUGH_MOST) object->cells.rough = 0;
-    return SKG_OK;
+cleanup:
+    skg_planting_end(&planting);
+    skg_judging_end(&judging);
+    return status;
 }
 
 skg_status skg_scatter_object_make(const skg_scatter_work *work, skg_scatter_object *object) {

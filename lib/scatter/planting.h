@@ -4,11 +4,19 @@
 
 #include "scatter/media.h"
 
+/* A cell with faces: what stands for it, each made when it is first asked for. */
 typedef struct {
+    int64_t cell;
+    double contrast;        /* optical depth over its side by which its media may differ */
+    uint32_t mixed, traced; /* words: of its mean mixture; of its faces or its brick; SKG_UNMADE */
+} skg_faced;
+#define SKG_UNMADE UINT32_MAX
+
+struct skg_planting {
     const skg_cell_parts *parts;
     skg_cells *cells;
     const double *mu;
-    double limit;
+    int64_t face_count;
     double (*corners)[9];     /* [faces] in cells */
     int32_t *part;            /* [faces] */
     skg_cell_amount *amounts; /* [parts] with the sign of the solid */
@@ -17,12 +25,15 @@ typedef struct {
         own; /* [copies] likewise of faces beyond `originals`, copies for single cells of a volume (volume_faces.c) */
     int64_t originals;
     int64_t *seen; /* [parts] 1 + the cell that a part was last seen in */
+    int64_t faced_count;
+    skg_faced *faced;
+    int has_rough, has_faces; /* 1: they are written */
     skg_media media;
     skg_words tree;
     int64_t *first;     /* [cells + 1] */
     uint32_t *faces_of; /* of each cell */
     uint8_t *settled;   /* [cells] 1: parts compete there, and no face is met */
-} skg_planting;
+};
 
 static inline uint32_t skg_cell_word(uint32_t kind, int64_t place) {
     return kind << 30 | (uint32_t)place;

@@ -14,8 +14,11 @@ enum { RAYS = 96, BLOCK = 8, BLOCKS = RAYS / BLOCK };
 /* Ways through the parts. */
 enum { CELLS, SURFACES, MATERIALS, ROUGH, WAYS };
 
-typedef struct {
-    const skg_cell_parts *parts;
+struct skg_judging {
+    skg_cell_parts parts; /* in columns, rows and depths, but for volumes */
+    skg_solid *solids;
+    double *positions;
+    int32_t *sign;
     skg_cell_amount *amounts[2]; /* of coefficients; of lines */
     const skg_view *view;
     const skg_cells *cells;
@@ -26,8 +29,9 @@ typedef struct {
     int32_t turn; /* -1: columns, rows and depths are a mirrored frame */
     const skg_beam_lines *lines;
     double mu[SKG_SCATTER_RANK][SKG_SCATTER_RANK]; /* [lines] 1/mm per coefficient */
-    double (*sent)[WAYS];                          /* [RAYS * RAYS] of the energy */
-} judge;
+    double (*sent)[WAYS]; /* [RAYS * RAYS] of the energy; NULL: a part reaches behind the source */
+};
+typedef skg_judging judge;
 
 /* --- rays */
 
@@ -109,8 +113,8 @@ static void add_change(void *user, double depth, const int64_t *more, int64_t fa
     sum *s = user;
     const double mm = (double)factor * s->length * way_to(s->j, depth) / SKG_CELL_UNIT;
     for (int k = 0; k < SKG_SCATTER_RANK; k++) s->mm[k] -= (double)more[k] * mm;
-    for (int64_t v = 0; v < s->j->parts->volume_count; v++)
-        add_volume(s, &s->j->parts->volumes[v], depth,
+    for (int64_t v = 0; v < s->j->parts.volume_count; v++)
+        add_volume(s, &s->j->parts.volumes[v], depth,
                    (double)(factor * more[SKG_CELL_TIMES + v]) / SKG_CELL_UNIT);
 }
 
@@ -143,8 +147,8 @@ static int enter(const skg_cells *cells, const ray *r, double *from, double *to)
     return *to > *from;
 }
 
-/* A row of rays. */
-static skg_status judge_row(void *user, int64_t row) {
+/* A row of rays through the surfaces. */
+static skg_status walk_surfaces(void *user, int64_t row) {
     judge *j = user;
     skg_columns grid = j->grid;
     int64_t *work = NULL;
@@ -152,28 +156,42 @@ static skg_status judge_row(void *user, int64_t row) {
     skg_status status = SKG_OK;
     grid.first_row = row;
     grid.rows = 1;
-    SKG_TRY_CLEANUP(skg_alloc(skg_cell_curves(j->parts), sizeof *amounts, "cells", &amounts));
-    SKG_TRY_CLEANUP(skg_alloc(2 * j->parts->count, sizeof *work, "cells", &work));
-    SKG_TRY_CLEANUP(skg_columns_gather(&grid, j->parts->count, j->parts->solids, j->rows));
+    SKG_TRY_CLEANUP(skg_alloc(skg_cell_curves(&j->parts), sizeof *amounts, "cells", &amounts));
+    SKG_TRY_CLEANUP(skg_alloc(2 * j->parts.count, sizeof *work, "cells", &work));
+    SKG_TRY_CLEANUP(skg_columns_gather(&grid, j->parts.count, j->parts.solids, j->rows));
     for (int64_t c = 0; c < RAYS; c++) {
         const ray r = ray_at(j, skg_column_place(&grid, 0, c), skg_column_place(&grid, 1, row));
         double from, to;
-        double *sent = j->sent[row * RAYS + c];
         if (!enter(j->cells, &r, &from, &to)) continue;
         for (int exact = 0; exact < 2; exact++) {
-            const double *base = exact ? j->lines->world : j->parts->base;
+            const double *base = exact ? j->lines->world : j->parts.base;
             sum s = {.j = j,
                      .length = skg_length(r.way),
                      .along = &r,
                      .from = from,
                      .exact = exact,
                      .amounts = amounts};
-            skg_cells_walk(j->parts, (const skg_cell_amount *)j->amounts[exact], &grid, c, work, add_change,
+            skg_cells_walk(&j->parts, (const skg_cell_amount *)j->amounts[exact], &grid, c, work, add_change,
                            &s);
             for (int k = 0; k < SKG_SCATTER_RANK && base; k++) s.mm[k] += base[k] * (to - from) * s.length;
-            sent[exact ? MATERIALS : SURFACES] = exact ? sent_by(j, s.mm) : sent_by_mixed(j, s.mm);
+            j->sent[row * RAYS + c][exact ? MATERIALS : SURFACES] =
+                exact ? sent_by(j, s.mm) : sent_by_mixed(j, s.mm);
         }
-        double ends[2][3], mm[SKG_SCATTER_RANK];
+    }
+cleanup:
+    skg_columns_free(&grid);
+    skg_free(&work);
+    skg_free(&amounts);
+    return status;
+}
+
+/* A row of rays through the cells. */
+static skg_status walk_cells(void *user, int64_t row) {
+    judge *j = user;
+    for (int64_t c = 0; c < RAYS; c++) {
+        const ray r = ray_at(j, skg_column_place(&j->grid, 0, c), skg_column_place(&j->grid, 1, row));
+        double from, to, ends[2][3], mm[SKG_SCATTER_RANK], *sent = j->sent[row * RAYS + c];
+        if (!enter(j->cells, &r, &from, &to)) continue;
         for (int k = 0; k < 3; k++) {
             ends[0][k] = r.on[k] + from * r.way[k] - j->cells->low[k];
             ends[1][k] = r.on[k] + to * r.way[k] - j->cells->low[k];
@@ -183,11 +201,7 @@ static skg_status judge_row(void *user, int64_t row) {
         skg_cells_roughly(j->cells, ends[0], ends[1], mm);
         sent[ROUGH] = sent_by_mixed(j, mm);
     }
-cleanup:
-    skg_columns_free(&grid);
-    skg_free(&work);
-    skg_free(&amounts);
-    return status;
+    return SKG_OK;
 }
 
 /* --- the beam, and the verdict */
@@ -234,20 +248,22 @@ static double spread(const judge *j) {
 }
 
 /* The solids in columns, rows and depths, and the signs of their hits there. *in_front: 0 if one reaches behind the source. */
-static skg_status project_solids(const judge *j, skg_solid *solids, int32_t *sign, double **positions,
-                                 int *in_front) {
+static skg_status project_solids(const skg_cell_parts *parts, judge *j, int *in_front) {
     int64_t vertices = 0;
-    for (int64_t p = 0; p < j->parts->count; p++) vertices += j->parts->solids[p].vertices;
-    SKG_TRY(skg_alloc(3 * vertices, sizeof **positions, "cells", positions));
+    for (int64_t p = 0; p < parts->count; p++) vertices += parts->solids[p].vertices;
+    SKG_TRY(skg_alloc(parts->count, sizeof *j->solids, "cells", &j->solids));
+    SKG_TRY(skg_alloc(parts->count, sizeof *j->sign, "cells", &j->sign));
+    SKG_TRY(skg_alloc(3 * vertices, sizeof *j->positions, "cells", &j->positions));
     *in_front = 1;
-    double *to = *positions;
-    for (int64_t p = 0; p < j->parts->count && *in_front; p++) {
-        solids[p] = j->parts->solids[p];
-        sign[p] = j->turn * j->parts->sign[p];
-        *in_front = project(j, solids[p].vertices, solids[p].positions, to);
-        solids[p].positions = to;
-        to += 3 * solids[p].vertices;
+    double *to = j->positions;
+    for (int64_t p = 0; p < parts->count && *in_front; p++) {
+        j->solids[p] = parts->solids[p];
+        j->sign[p] = j->turn * parts->sign[p];
+        *in_front = project(j, j->solids[p].vertices, j->solids[p].positions, to);
+        j->solids[p].positions = to;
+        to += 3 * j->solids[p].vertices;
     }
+    j->parts.solids = j->solids, j->parts.sign = j->sign;
     return SKG_OK;
 }
 
@@ -275,41 +291,46 @@ static skg_status find_amounts(const skg_cell_parts *parts, judge *j) {
     return skg_cells_amounts(&exact, &j->amounts[1]);
 }
 
-skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physics *physics,
-                           const skg_beam_lines *lines, const skg_view *view, const skg_cells *cells,
-                           skg_judged *judged) {
-    judge j = {.view = view, .cells = cells, .lines = lines, .parts = parts};
-    skg_cell_parts projected = *parts;
-    skg_solid *solids = NULL;
-    double *positions = NULL;
-    int32_t *sign = NULL;
+skg_status skg_judging_begin(const skg_cell_parts *parts, const skg_scatter_physics *physics,
+                             const skg_beam_lines *lines, const skg_view *view, const skg_cells *cells,
+                             skg_judging **judging) {
     int in_front = 0;
-    skg_status status = SKG_OK;
-    *judged = (skg_judged){0};
+    judge *j = NULL;
+    *judging = NULL;
     if (!cells->mixtures) return SKG_OK;
-    find_frame(&j);
-    SKG_TRY_CLEANUP(skg_alloc(parts->count, sizeof *solids, "cells", &solids));
-    SKG_TRY_CLEANUP(skg_alloc(parts->count, sizeof *sign, "cells", &sign));
-    SKG_TRY_CLEANUP(project_solids(&j, solids, sign, &positions, &in_front));
-    if (!in_front) goto cleanup;
-    projected.solids = solids, projected.sign = sign;
-    j.parts = &projected;
-    SKG_TRY_CLEANUP(find_amounts(parts, &j));
-    find_coefficients(physics, &j);
-    SKG_TRY_CLEANUP(skg_alloc(RAYS * RAYS, sizeof *j.sent, "cells", &j.sent));
-    j.grid.rows = RAYS;
-    SKG_TRY_CLEANUP(skg_columns_span(&j.grid, parts->count, solids, &j.rows));
-    SKG_TRY_CLEANUP(skg_parallel(RAYS, judge_row, &j));
-    judged->cells = verdict(&j, SURFACES);
-    judged->all = verdict(&j, MATERIALS);
-    judged->rough = spread(&j);
-cleanup:
-    skg_free(&solids);
-    skg_free(&sign);
-    skg_free(&positions);
-    skg_free(&j.amounts[0]);
-    skg_free(&j.amounts[1]);
-    skg_free(&j.rows);
-    skg_free(&j.sent);
-    return status;
+    SKG_TRY(skg_alloc(1, sizeof *j, "cells", &j));
+    *j = (judge){.view = view, .cells = cells, .lines = lines, .parts = *parts};
+    *judging = j;
+    find_frame(j);
+    SKG_TRY(project_solids(parts, j, &in_front));
+    if (!in_front) return SKG_OK;
+    SKG_TRY(find_amounts(parts, j));
+    find_coefficients(physics, j);
+    SKG_TRY(skg_alloc(RAYS * RAYS, sizeof *j->sent, "cells", &j->sent));
+    j->grid.rows = RAYS;
+    SKG_TRY(skg_columns_span(&j->grid, parts->count, j->solids, &j->rows));
+    return skg_parallel(RAYS, walk_surfaces, j);
+}
+
+skg_status skg_judging_of(skg_judging *j, skg_judged *judged) {
+    *judged = (skg_judged){0};
+    if (!j || !j->sent) return SKG_OK;
+    SKG_TRY(skg_parallel(RAYS, walk_cells, j));
+    judged->cells = verdict(j, SURFACES);
+    judged->all = verdict(j, MATERIALS);
+    judged->rough = spread(j);
+    return SKG_OK;
+}
+
+void skg_judging_end(skg_judging **judging) {
+    judge *j = *judging;
+    if (!j) return;
+    skg_free(&j->solids);
+    skg_free(&j->sign);
+    skg_free(&j->positions);
+    skg_free(&j->amounts[0]);
+    skg_free(&j->amounts[1]);
+    skg_free(&j->rows);
+    skg_free(&j->sent);
+    skg_free(judging);
 }

@@ -29,6 +29,8 @@ static int mix_block(const skg_planting *p, const int64_t block[3], double mean[
 skg_status skg_plant_rough(skg_planting *p) {
     int64_t count[3];
     int mixed = 0;
+    if (p->has_rough) return SKG_OK;
+    p->has_rough = 1;
     for (int k = 0; k < 3; k++) count[k] = (p->cells->count[k] + SKG_CELL_ROUGH - 1) / SKG_CELL_ROUGH;
     p->cells->rough = (uint32_t)p->media.count;
     for (int64_t c = 0; c < count[0] * count[1] * count[2]; c++) {

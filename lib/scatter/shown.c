@@ -2,6 +2,7 @@
 #include "scatter/tracing.h"
 
 #include "core/maths.h"
+#include "core/threads.h"
 #include "scatter/beams.h"
 #include "spectral/model.h"
 
@@ -50,19 +51,35 @@ typedef struct {
     double factor, least;
 } picture;
 
-static skg_status draw(const skg_view *view, const picture *p, double *values, float *floats) {
-    const int64_t size = view->rows * view->columns;
-    memset(values, 0, (size_t)size * sizeof *values);
-    if (p->cosines && p->cosines->value)
-        SKG_TRY(skg_cosines_show(p->cosines, p->squares, view->rows, view->columns, values));
-    for (int64_t i = 0; i < size; i++) {
-        const double kept = fmax(values[i], p->least);
-        values[i] = (p->root ? sqrt(kept) : kept) * p->factor;
-        if (p->flat) values[i] /= falloff_at(view, i / view->columns, i % view->columns);
-        if (p->open) values[i] /= skg_open_beam_at(p->open, view, i / view->columns, i % view->columns);
-        floats[i] = (float)values[i];
+/* One that is being drawn. values, floats: [rows][columns] */
+typedef struct {
+    const skg_view *view;
+    const picture *picture;
+    double *values;
+    float *floats;
+} drawn;
+
+/* From photons to the unit of the picture. */
+static skg_status draw_row(void *user, int64_t row) {
+    const drawn *d = user;
+    const picture *p = d->picture;
+    for (int64_t column = 0; column < d->view->columns; column++) {
+        const int64_t i = row * d->view->columns + column;
+        const double kept = fmax(d->values[i], p->least);
+        d->values[i] = (p->root ? sqrt(kept) : kept) * p->factor;
+        if (p->flat) d->values[i] /= falloff_at(d->view, row, column);
+        if (p->open) d->values[i] /= skg_open_beam_at(p->open, d->view, row, column);
+        d->floats[i] = (float)d->values[i];
     }
     return SKG_OK;
+}
+
+static skg_status draw(const skg_view *view, const picture *p, double *values, float *floats) {
+    drawn d = {view, p, values, floats};
+    memset(values, 0, (size_t)(view->rows * view->columns) * sizeof *values);
+    if (p->cosines && p->cosines->value)
+        SKG_TRY(skg_cosines_show(p->cosines, p->squares, view->rows, view->columns, values));
+    return skg_parallel(view->rows, draw_row, &d);
 }
 
 /* Sends pictures, one behind another. mean, square: of them all */

@@ -2,6 +2,7 @@
 #include "scatter/smoothing.h"
 
 #include "core/maths.h"
+#include "core/threads.h"
 
 #include <math.h>
 #include <string.h>
@@ -234,10 +235,33 @@ static skg_status make_shown(int64_t count, int64_t kept, int64_t pixels, double
     return SKG_OK;
 }
 
+/* An image of cosines. half: [kept][columns] sums along each row of cosines; down: [kept][rows] */
+typedef struct {
+    const skg_cosines *of;
+    int squares;
+    int64_t kept, rows, columns;
+    const double *half, *down;
+    double *image;
+} shown;
+
+/* A row at a time: its sums do not wait for one another. */
+static skg_status show_row(void *user, int64_t r) {
+    const shown *s = user;
+    const skg_cosines *c = s->of;
+    const double share = (double)(c->rows * c->columns) / (double)(s->rows * s->columns);
+    const double least = s->squares ? MIN_SHARE * c->spread[0] / sqrt((double)(c->rows * c->columns)) : 0;
+    double *row = s->image + r * s->columns;
+    memset(row, 0, (size_t)s->columns * sizeof *row);
+    for (int64_t n = 0; n < s->kept; n++)
+        for (int64_t i = 0; i < s->columns; i++)
+            row[i] += s->half[n * s->columns + i] * s->down[n * s->rows + r];
+    for (int64_t i = 0; i < s->columns; i++)
+        row[i] = s->squares ? (skg_greater(row[i], least) + c->bias) * share * share : row[i] * share;
+    return SKG_OK;
+}
+
 skg_status skg_cosines_show(const skg_cosines *c, int squares, int64_t rows, int64_t columns, double *image) {
-    const double share = (double)(c->rows * c->columns) / (double)(rows * columns);
     const double *from = squares ? c->spread : c->value;
-    const double least = squares ? MIN_SHARE * c->spread[0] / sqrt((double)(c->rows * c->columns)) : 0;
     const int64_t across_kept = squares ? (c->columns < BROAD ? c->columns : BROAD) : c->kept[0],
                   down_kept = squares ? (c->rows < BROAD ? c->rows : BROAD) : c->kept[1];
     double *across = NULL, *down = NULL, *half = NULL;
@@ -249,14 +273,8 @@ skg_status skg_cosines_show(const skg_cosines *c, int squares, int64_t rows, int
         for (int64_t m = 0; m < across_kept; m++)
             for (int64_t i = 0; i < columns; i++)
                 half[n * columns + i] += from[n * c->columns + m] * across[m * columns + i];
-    for (int64_t r = 0; r < rows; r++) { /* a row at a time: its sums do not wait for one another */
-        double *row = image + r * columns;
-        memset(row, 0, (size_t)columns * sizeof *row);
-        for (int64_t n = 0; n < down_kept; n++)
-            for (int64_t i = 0; i < columns; i++) row[i] += half[n * columns + i] * down[n * rows + r];
-        for (int64_t i = 0; i < columns; i++)
-            row[i] = squares ? (skg_greater(row[i], least) + c->bias) * share * share : row[i] * share;
-    }
+    shown s = {c, squares, down_kept, rows, columns, half, down, image};
+    status = skg_parallel(rows, show_row, &s);
 cleanup:
     skg_free(&across);
     skg_free(&down);

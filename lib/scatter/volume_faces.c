@@ -62,6 +62,6 @@ skg_status skg_plant_copies(skg_planting *p) {
         settle(p, c);
         SKG_TRY(copy(p, c, &next));
     }
-    p->cells->face_count = next;
+    p->face_count = next;
     return SKG_OK;
 }

@@ -120,6 +120,17 @@ skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cell
 skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK], double limit,
                            skg_cells *cells);
 
+/* The same for one limit after another: what a cell needs at any of them is made once, and stays in the cells. What is given has to stay
+ * until the end, from which on the cells are on their own. Without cells there is no planting. */
+typedef struct skg_planting skg_planting;
+skg_status skg_planting_begin(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK],
+                              skg_cells *cells, skg_planting **planting);
+skg_status skg_planting_to(skg_planting *planting, double limit);
+
+/* So many cells would hold mixtures by choice. */
+int64_t skg_planting_smears(const skg_planting *planting, double limit);
+void skg_planting_end(skg_planting **planting);
+
 /* The sum of the coefficients times mm from one place to another, in mm from the lowest corner, as photons read the cells. */
 void skg_cells_along(const skg_cells *cells, const double from[3], const double to[3],
                      double mm[SKG_SCATTER_RANK]);
@@ -152,9 +163,14 @@ typedef struct {
     double all;   /* with the materials themselves through the surfaces */
     double rough; /* what rough cells are off by on single rays, root mean square over that of the cells */
 } skg_judged;
-skg_status skg_cells_judge(const skg_cell_parts *parts, const skg_scatter_physics *physics,
-                           const skg_beam_lines *lines, const skg_view *view, const skg_cells *cells,
-                           skg_judged *judged);
+
+/* The ways through the surfaces are walked once, at the begin; what is given has to stay until the end. */
+typedef struct skg_judging skg_judging;
+skg_status skg_judging_begin(const skg_cell_parts *parts, const skg_scatter_physics *physics,
+                             const skg_beam_lines *lines, const skg_view *view, const skg_cells *cells,
+                             skg_judging **judging);
+skg_status skg_judging_of(skg_judging *judging, skg_judged *judged);
+void skg_judging_end(skg_judging **judging);
 
 /* --- What stands in the beam, as cells. */
 
