@@ -133,6 +133,9 @@ static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, s
     SKG_TRY(skg_mesh_file_unit(path, stream, size, arrays->unit_mm > 0, &arrays->file_unit_mm));
     skg_assimp_files(&files);
     const struct aiScene *scene = aiImportFileEx(path, 0, &files);
+    if (!scene && skg_archive_is(stream))
+        return skg_fail(SKG_ERR_FORMAT,
+                        "%s: is a ZIP archive, as only 3MF may be; unpack it, and give the file in it", path);
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
     struct aiMatrix4x4 at;
     aiIdentityMatrix4(&at);

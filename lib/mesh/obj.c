@@ -21,16 +21,16 @@ static skg_status fail(const cursor *here, const char *reason) {
 /* The length of a backslash with the end of line that it cancels; 0 if there is none here. */
 static int continuation(const char *c) {
     if (c[0] != '\\') return 0;
-    if (c[1] == '\n') return 2;
-    return c[1] == '\r' && c[2] == '\n' ? 3 : 0;
+    if (c[1] == '\r') return c[2] == '\n' ? 3 : 2;
+    return c[1] == '\n' ? 2 : 0;
 }
 
-/* Goes to the next word of the line, across continuations. Returns 0 if there is none. */
+/* Goes to the next word of the line, across continuations. Returns 0 if there is none. A line ends by LF, CR LF, or CR alone. */
 static int next_word(cursor *here) {
     for (;;) {
         const char *c = here->at;
         const int length = continuation(c);
-        if (!length && *c != ' ' && *c != '\t' && *c != '\r') return *c != '\0' && *c != '\n' && *c != '#';
+        if (!length && *c != ' ' && *c != '\t') return *c != '\0' && *c != '\n' && *c != '\r' && *c != '#';
         here->at += length ? length : 1;
         here->line += length != 0;
     }
@@ -44,8 +44,9 @@ static void skip_line(cursor *here) {
     while (next_word(here)) do {
             here->at++; /* a word has at least one character, which may be a backslash */
         } while (!is_end(*here->at) || (*here->at == '\\' && !continuation(here->at)));
-    while (*here->at != '\0' && *here->at != '\n') here->at++; /* a comment */
-    if (*here->at == '\n') here->at++;
+    here->at += strcspn(here->at, "\r\n"); /* a comment */
+    if (here->at[0] == '\r' && here->at[1] == '\n') here->at++;
+    if (*here->at != '\0') here->at++;
     here->line++;
 }
 

@@ -210,6 +210,7 @@ START_TEST(objects_of_3mf_lie_anywhere) {
     snprintf(text, sizeof text, build, "2");
     make_archive_of(&a, 2, names, (const char *const[]){relations, text});
     ck_archive(&a, "a.3mf", SKG_ERR_FORMAT, "a.model\", which is not there");
+    ck_archive(&a, "a.amf", SKG_ERR_FORMAT, "a.amf: is a ZIP archive, as only 3MF may be; unpack it");
 }
 END_TEST
 

@@ -220,6 +220,8 @@ START_TEST(files_that_are_none) {
 }
 END_TEST
 
+#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
+
 START_TEST(obj_keeps_its_numbering) {
     skg_mesh *mesh =
         load(file_of("a.obj", "# two squares and a triangle\r\nmtllib none.mtl\r\n"
@@ -234,6 +236,26 @@ START_TEST(obj_keeps_its_numbering) {
     ck_assert_mem_eq(mesh->corners, corners, sizeof corners);
     ck_assert_ptr_nonnull(strstr(last_warning, "a.obj: 1 points or lines left out"));
     skg_mesh_release(&mesh);
+}
+END_TEST
+
+/* Of LF, CR LF, and CR alone, as old programs write, also behind a comment and a line that goes on. */
+START_TEST(obj_ends_lines_by_any_of_three) {
+    static const char *const ends[] = {"\n", "\r\n", "\r"};
+    static const double positions[] = {0, 0, 0, 1, 0, 0, 1, 1, 0, 0, 1, 0};
+    static const int32_t corners[] = {0, 1, 2, 0, 2, 3};
+    for (int e = 0; e < 3; e++) {
+        char text[256] = "";
+        for (const char *c = "# by hand\n" SQUARE "f 1 2 \\\n3 # first\nf 1 3 4\n"; *c; c++)
+            strcat(text, *c == '\n' ? ends[e] : (const char[]){*c, '\0'});
+        skg_mesh *mesh = load(file_of("lines.obj", text));
+        ck_assert_int_eq(mesh->vertices, 4);
+        ck_assert_int_eq(mesh->triangles, 2);
+        ck_assert_mem_eq(mesh->positions, positions, sizeof positions);
+        ck_assert_mem_eq(mesh->corners, corners, sizeof corners);
+        skg_mesh_release(&mesh);
+        refuse(file_of("bad.obj", strcat(text, "f 1 2")), SKG_ERR_FORMAT, "line 9: a face");
+    }
 }
 END_TEST
 
@@ -268,8 +290,6 @@ START_TEST(vertices_of_no_triangle) {
     }
 }
 END_TEST
-
-#define SQUARE "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\n"
 
 START_TEST(damaged_obj_is_refused) {
     refuse(file_of("a.obj", SQUARE "f 1 2"), SKG_ERR_FORMAT, "line 5: a face of fewer than three corners");
@@ -414,6 +434,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, strips_of_ply);
     tcase_add_test(tests, files_that_are_none);
     tcase_add_test(tests, obj_keeps_its_numbering);
+    tcase_add_test(tests, obj_ends_lines_by_any_of_three);
     tcase_add_test(tests, vertices_of_no_triangle);
     tcase_add_test(tests, damaged_obj_is_refused);
     tcase_add_test(tests, ply_of_every_kind);
