@@ -1,7 +1,7 @@
-"""Three numbers in which gVXR 2.1.0 and Skiagraph differ, beside what is right: python gvxr_differences.py gvxrPython3|skiagraph
+"""Three numbers in which gVXR 2.1.0 and Skiagraph differ, beside what is right: python gvxr_differences.py gvxrPython3|skiagraph [OFF.npy]
 
 The length through a turned cube, in closed form; the attenuation of a formula with brackets, by the sum over its elements; and that of
-bone by Hounsfield numbers, beside those of its neighbours.
+bone by Hounsfield numbers, beside those of its neighbours. OFF.npy receives how far each pixel of the cube is off, in mm.
 """
 import importlib
 import sys
@@ -46,6 +46,8 @@ inside = ends.max(0).min(-1) - ends.min(0).max(-1)
 true = np.maximum(inside, 0) * np.linalg.norm(ray, axis=-1)
 shadow = true > 0
 error = np.abs(lengths - true)[shadow]
+if len(sys.argv) > 2:
+    np.save(sys.argv[2], np.where(shadow, lengths - true, np.nan))
 print(f"length of a turned cube: rms error {np.sqrt((error ** 2).mean()):.2g} mm, in {100 * (error > 0.1).mean():.3g} % of the pixels of "
       f"its shadow more than 0.1 mm, greatest {error.max():.2g} mm; an image takes {1e3 * cpu:.3g} ms of the processors")
 

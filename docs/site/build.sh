@@ -40,6 +40,7 @@ mkdir -p "$site/doxygen" "$site/extra"
 skiagraph thorax -o "$site/thorax" --quiet
 skiagraph view "$site/thorax/thorax.json" --seconds 4 -o "$site/extra/thorax.html" --quiet
 skiagraph image "$site/thorax/thorax.json" -o "$site/extra/thorax.png" --quiet
+cp "$source/docs/turned-cube.png" "$source/docs/turned-cube-gvxr.png" "$site/extra"
 
 SKG_SITE_VERSION=$(skiagraph --version | awk '{ print $2; exit }') SKG_SITE_XML=$site/doxygen/xml SKG_SITE_CACHE=$site/notebooks \
     SKG_SITE_EXTRA=$site/extra \
