@@ -5,6 +5,8 @@
 #include "affinity/affinity.h"
 
 #include <math.h>
+#include <skiagraph/readout.h>
+
 #include <stdlib.h>
 
 static const char usage[] = "[--quick] [--size N] [--repeats N] [--device CONFIG] [--affinity] [--csv FILE]";
@@ -16,6 +18,8 @@ typedef struct {
     scene_changes changes;
     int precision, strategy, quantity, type, profile;
     int counts; /* 1: the detector counts photons; 2: with pile-up and two thresholds */
+    int lags;   /* 1: frames are a sequence of a detector with lag */
+    int layer;  /* of 600 um CsI: 1: it keeps all energy; 2: what Compton scattering leaves it */
     void (*ask)(skg_plan_options *options); /* sets further options; may be NULL */
 } effect;
 
@@ -25,6 +29,14 @@ static void ask_spot(skg_plan_options *options) {
     spot.shape = SKG_SPOT_RECTANGLE;
     spot.extent[0] = spot.extent[1] = 1;
     spot.samples = 16;
+    options->spot = &spot;
+}
+
+static void ask_off_focal(skg_plan_options *options) {
+    static skg_spot spot;
+    ask_spot(options);
+    spot = *options->spot;
+    spot.off_focal = 0.1, spot.off_focal_mm = 20;
     options->spot = &spot;
 }
 
@@ -75,6 +87,25 @@ static skg_counter *make_counter(const skg_view *view, int pile_up) {
     return counter;
 }
 
+static skg_response *make_layer(int transports) {
+    skg_material *csi = NULL;
+    skg_response *layer = NULL, *transporting = NULL;
+    bench_try(skg_material_create_named("CsI", &csi), "CsI");
+    bench_try(skg_response_create_scintillator(csi, 0.6, 0.8, &layer), "scintillator");
+    skg_material_release(&csi);
+    if (!transports) return layer;
+    bench_try(skg_response_create_transporting(layer, &transporting), "scintillator");
+    skg_response_release(&layer);
+    return transporting;
+}
+
+static skg_lag *make_lag(long size) {
+    static const double terms[] = {0.03, 1.5, 0.005, 40};
+    skg_lag *lag = NULL;
+    bench_try(skg_lag_create(size * size, 2, terms, &lag), "lag");
+    return lag;
+}
+
 static const effect effects[] = {
     {"base", "61 closed parts without parents, one energy", {.flat = 1}, .ask = NULL},
     {"nesting", "60 parts displace their parent", {.flat = 0}, .ask = NULL},
@@ -88,6 +119,10 @@ static const effect effects[] = {
     {"tiles", "strategy tiles", {.flat = 1}, .strategy = SKG_STRATEGY_TILES},
     {"atomics", "strategy atomics", {.flat = 1}, .strategy = SKG_STRATEGY_ATOMICS},
     {"extended source", "16 samples of a rectangle", {.flat = 1}, .ask = ask_spot},
+    {"off-focal radiation",
+     "the same, a tenth of the photons from 20 mm around it",
+     {.flat = 1},
+     .ask = ask_off_focal},
     {"supersampling", "2 x 2 rays a pixel", {.flat = 1}, .ask = ask_supersampling},
     {"falloff", "inverse square and obliquity", {.flat = 1}, .ask = ask_falloff},
     {"quantum noise", "of the photons of a pixel", {.flat = 1}, .ask = ask_noise},
@@ -104,6 +139,9 @@ static const effect effects[] = {
      {.flat = 1},
      .quantity = SKG_QUANTITY_PHOTONS,
      .counts = 2},
+    {"scintillator", "600 um of CsI that keep all energy", {.flat = 1}, .layer = 1},
+    {"deposition", "the same, less what Compton scattering takes out of it", {.flat = 1}, .layer = 2},
+    {"lag", "two terms, of a sequence; by the host, behind each frame", {.flat = 1}, .lags = 1},
 };
 enum { EFFECTS = sizeof effects / sizeof *effects };
 
@@ -117,6 +155,7 @@ typedef struct {
     skg_plan *plan; /* NULL: the device lacks what it needs */
     double plan_ms;
     skg_output output;
+    skg_lag *lag; /* NULL: none */
 } contender;
 
 static void read_settings(int count, char **words, settings *out) {
@@ -141,6 +180,9 @@ static void read_settings(int count, char **words, settings *out) {
 static void frame(void *who) {
     contender *self = who;
     bench_try(skg_plan_image(self->plan, &self->output), "image");
+    if (self->lag)
+        bench_try(skg_lag_apply(self->lag, self->output.type, self->output.data, 1, self->output.data),
+                  "lag");
 }
 
 static void make_plan(skg_context *context, const effect *kind, long size, contender *out) {
@@ -155,10 +197,14 @@ static void make_plan(skg_context *context, const effect *kind, long size, conte
     skg_counter *counter = kind->counts ? make_counter(&scene.view, kind->counts > 1) : NULL;
     scene.options.counter = counter;
     const double start = bench_now();
+    skg_response *layer = kind->layer ? make_layer(kind->layer > 1) : NULL;
+    if (layer) scene.options.response = layer;
+    out->lag = kind->lags ? make_lag(size) : NULL;
     const skg_status status =
         skg_plan_create(context, scene.scene, &scene.view, scene.beam, &scene.options, &out->plan);
     out->plan_ms = bench_now() - start;
     skg_counter_release(&counter);
+    skg_response_release(&layer);
     if (status == SKG_ERR_UNSUPPORTED)
         fprintf(stderr, "%s: left out: %s\n", kind->name, skg_last_error());
     else
@@ -188,6 +234,7 @@ static void measure(const settings *set, skg_context *context, contender *base, 
                     bench_median(&times[0]), with, bench_median(&times[1]), with / without);
     }
     skg_plan_release(&self->plan);
+    skg_lag_release(&self->lag);
     free(self->output.data);
     free(self);
 }

@@ -9,6 +9,7 @@ import warnings
 
 import attenuation
 import body
+import deposition
 import images
 import lengths
 import packages
@@ -41,6 +42,7 @@ def main() -> int:
     page = Page()
     attenuation.add(page)
     tubes.add(page)
+    deposition.add(page)
     lengths.add(page)
     precision.add(page)
     images.add(page)
