@@ -1,4 +1,4 @@
-"""The lag of a detector: what its pixels hold back of the frames of a sequence."""
+"""The lag of a detector: what its pixels hold back of the frames of a sequence, and how these change its sensitivity."""
 from __future__ import annotations
 
 from collections.abc import Sequence
@@ -12,12 +12,23 @@ from ._interface import ENUMS, ArgumentError
 from ._library import call, doubles, ffi, make, owned
 
 
+def _rows(given: Any, name: str, first: str) -> NDArray[np.float64]:
+    rows = np.array(_arrays.numbers(given, name), dtype=np.float64)
+    if rows.size and (rows.ndim != 2 or rows.shape[1] != 2):
+        raise ArgumentError(f"{name} has {_arrays.describe(rows)}; give rows of a {first} and its frames")
+    return rows.reshape(-1, 2)
+
+
 class Lag:
     """The lag of a detector that begins at rest. Frames go through it in their order, whatever makes them.
 
     terms: [[share, frames], ...]: shares of the signal that a frame leaves to the next ones, all together below 1, and the time
     constants of their release. The n-th frame after a long exposure shows the sum of share exp(-(n - 1) / frames) of it; a steady
     signal is shown as it is.
+
+    ghosting: [[change, frames], ...]: changes of the sensitivity after a long exposure to the open beam, whose signal in a frame is
+    `full`, and the time constants with which they build up and go. The sensitivity is 1 + the sum of change q, where q goes by
+    1 - exp(-1 / frames) of the way to signal / full in each frame.
 
     >>> lag = Lag([[0.1, 2]])
     >>> lag(np.ones((1, 1))).tolist()
@@ -26,10 +37,10 @@ class Lag:
     0.0393
     """
 
-    def __init__(self, terms: Sequence[Sequence[float]] | NDArray[Any]) -> None:
-        self.terms = np.array(_arrays.numbers(terms, "terms"), dtype=np.float64)
-        if self.terms.ndim != 2 or self.terms.shape[1] != 2:
-            raise ArgumentError(f"terms has {_arrays.describe(self.terms)}; give rows of a share and its frames")
+    def __init__(self, terms: Sequence[Sequence[float]] | NDArray[Any] = (), *,
+                 ghosting: Sequence[Sequence[float]] | NDArray[Any] = (), full: float = 1) -> None:
+        self.terms, self.ghosting = _rows(terms, "terms", "share"), _rows(ghosting, "ghosting", "change")
+        self.full = float(full)
         self._handle: Any = None
         self._shape: tuple[int, ...] = ()
 
@@ -41,6 +52,8 @@ class Lag:
             keep: list[Any] = []
             pointer = doubles(self.terms, "terms", keep)
             self._handle = owned("skg_lag", make("skg_lag_create", "skg_lag", frame.size, len(self.terms), pointer))
+            if len(self.ghosting):
+                call("skg_lag_ghosting_set", self._handle, self.full, len(self.ghosting), doubles(self.ghosting, "ghosting", keep))
             self._shape = frame.shape
         if frame.shape != self._shape:
             raise ArgumentError(f"image has {_arrays.describe(frame)}; the frames before had the shape {self._shape}")

@@ -97,6 +97,23 @@ START_TEST(projections_leave_a_lag) {
     ck_run_fails(2, "shards: the detector has Lag", "scan scene.json %s -o other.mha --shard 1/2", settings);
     ck_run(0, "scan scene.json %s -o other.mha --to 5 --quiet", settings);
     ck_run_fails(2, "remove the output and begin anew", "scan scene.json %s -o other.mha", settings);
+    ck_run(0, "scan scene.json %s --set 'Detector.GreyValues.Ghosting=[[-0.1,2]]' -o ghost.mha --quiet",
+           settings);
+    const size_t with = read_file("ghost.mha", bytes);
+    for (int k = 0; k < 3;
+         k++) { /* 0.1 of the light is held, and what comes is less by the ghost of the open beam */
+        float shown;
+        memcpy(&shown, bytes + with - (size_t)(COUNT - k) * IMAGE, sizeof shown);
+        const double q = 1 - pow(stays, k), earlier = k < 1 ? 0 : 1 - 0.1 * (k < 2 ? 0 : 1 - stays);
+        const double first =
+            k < 2 ? 0 : 0.1 * stays; /* of the first projection, still held before the third */
+        held = 60000 * (0.1 * earlier + first);
+        ck_assert_double_eq_tol((double)shown, 0.9 * 60000 * (1 - 0.1 * q) + held * (1 - stays), 0.05);
+    }
+    ck_run_fails(
+        2, "--from: the detector has Ghosting",
+        "scan scene.json %s --set Detector.GreyValues='{\"Ghosting\":[[-0.1,2]]}' -o other.mha --from 3",
+        settings);
     ck_run_fails(3, "add up to 1", "scan scene.json %s --set 'Detector.GreyValues.Lag=[[1,2]]' -o bad.mha",
                  settings);
 }

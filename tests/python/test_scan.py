@@ -431,3 +431,8 @@ def test_lag_of_frames():
         lag(np.zeros((3, 3)))
     with pytest.raises(sk.ArgumentError, match="less than 1"):
         sk.Lag([[1.5, 2]])(light)
+    ghost = sk.Lag(ghosting=[[-0.02, 5]], full=5)
+    for n in range(4):
+        np.testing.assert_allclose(ghost(light), 5 * (1 - 0.02 * (1 - np.exp(-n / 5))), rtol=1e-12)
+    with pytest.raises(sk.ArgumentError, match="rows of a change"):
+        sk.Lag(ghosting=[0.1])

@@ -203,6 +203,39 @@ START_TEST(test_signals_come_later) {
 }
 END_TEST
 
+/* A long exposure changes the sensitivity by c (1 - exp(-n/t)), it goes as it came, and a dark pixel keeps its own. */
+START_TEST(test_ghosts_fade) {
+    enum { EXPOSED = 50, DARK = 30 };
+    const double terms[4] = {-0.04, 20, 0.01, 3}, open[2] = {80, 0}, half[2] = {40, 40};
+    double frame[2];
+    skg_lag *lag = NULL;
+    ck_skg(skg_lag_create(2, 0, NULL, &lag));
+    ck_skg(skg_lag_ghosting_set(lag, 80, 2, terms));
+    for (int n = 0; n < EXPOSED; n++) {
+        ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, open, 1, frame));
+        const double sensitivity = 1 - 0.04 * (1 - exp(-n / 20.0)) + 0.01 * (1 - exp(-n / 3.0));
+        ck_assert_double_eq_tol(frame[0], 80 * sensitivity, 1e-12 * 80); /* rounding of some 50 sums of 1 */
+        ck_assert_double_eq(frame[1], 0);
+    }
+    for (int n = 0; n < DARK; n++) ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, NULL, 1, frame));
+    ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, half, 1, frame));
+    const double left = 1 - 0.04 * (1 - exp(-EXPOSED / 20.0)) * exp(-DARK / 20.0) +
+                        0.01 * (1 - exp(-EXPOSED / 3.0)) * exp(-DARK / 3.0);
+    ck_assert_double_eq_tol(frame[0], 40 * left, 1e-12 * 40);
+    ck_assert_double_eq(frame[1], 40);
+    ck_skg(skg_lag_clear(lag));
+    ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, half, 1, frame));
+    ck_assert_double_eq(frame[0], 40);
+    const double dead[4] = {-0.6, 5, -0.4, 5}, wild[2] = {-1.5, 5}, still[2] = {0.1, 0};
+    ck_skg_fails(skg_lag_ghosting_set(lag, 80, 2, dead), SKG_ERR_ARGUMENT, "add up to -1");
+    ck_skg_fails(skg_lag_ghosting_set(lag, 80, 1, wild), SKG_ERR_ARGUMENT, "sensitivity -1.5");
+    ck_skg_fails(skg_lag_ghosting_set(lag, 80, 1, still), SKG_ERR_ARGUMENT, "0 frames");
+    ck_skg_fails(skg_lag_ghosting_set(lag, 0, 1, terms), SKG_ERR_ARGUMENT, "open beam is 0");
+    ck_skg_fails(skg_lag_ghosting_set(lag, 80, 0, NULL), SKG_ERR_ARGUMENT, "0 terms");
+    skg_lag_release(&lag);
+}
+END_TEST
+
 START_TEST(test_wrong_fields_are_refused) {
     const double falling[4] = {1, 1, 0, 2};
     float grey[1];
@@ -250,6 +283,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, test_bad_pixels_have_their_value);
     tcase_add_test(tests, test_pixels_differ);
     tcase_add_test(tests, test_signals_come_later);
+    tcase_add_test(tests, test_ghosts_fade);
     tcase_add_test(tests, test_wrong_fields_are_refused);
 }
 

@@ -26,8 +26,10 @@ int fluoroscopy_open_lag(fluoroscopy *f) {
     skg_readout readout;
     skg_readout_init(&readout);
     skg_status status = skg_setup_readout_get(f->session.setup, &readout);
-    if (status == SKG_OK && readout.lag_count > 0)
+    if (status == SKG_OK && (readout.lag_count > 0 || readout.ghosting_count > 0))
         status = skg_lag_create(f->pixels, readout.lag_count, readout.lag, &f->lag);
+    if (status == SKG_OK && readout.ghosting_count > 0) /* of transmissions */
+        status = skg_lag_ghosting_set(f->lag, 1, readout.ghosting_count, readout.ghosting);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

@@ -5,9 +5,18 @@
 
 #include <stdlib.h>
 
+/* 1: a projection depends on those before it. */
+static int has_past(const cli_acquisition *a) {
+    return a->is_grey && (a->readout.lag_count > 0 || a->readout.ghosting_count > 0);
+}
+
+static const char *name_of(const cli_acquisition *a) {
+    return a->readout.lag_count > 0 ? "Lag" : "Ghosting";
+}
+
 int lag_check(const cli_arguments *arguments, const cli_acquisition *a) {
     const char *what = NULL;
-    if (!a->is_grey || a->readout.lag_count == 0) return CLI_DONE;
+    if (!has_past(a)) return CLI_DONE;
     if (cli_given(arguments, &cli_flag_scan_shard) || cli_given(arguments, &cli_flag_scan_join))
         what = "shards";
     if (cli_given(arguments, &cli_flag_scan_only)) what = "--only";
@@ -16,23 +25,26 @@ int lag_check(const cli_arguments *arguments, const cli_acquisition *a) {
     if (!what) return CLI_DONE;
     return cli_error(
         CLI_USAGE,
-        "%s: the detector has Lag, so that each projection needs all before it; compute the scan in one run from its "
-        "first projection on, or leave out GreyValues.Lag",
-        what);
+        "%s: the detector has %s, so that each projection needs all before it; compute the scan in one run from its "
+        "first projection on, or leave out GreyValues.%s",
+        what, name_of(a), name_of(a));
 }
 
 int lag_open(cli_acquisition *a) {
-    if (!a->is_grey || a->readout.lag_count == 0 || a->found == a->projections) return CLI_DONE;
+    if (!has_past(a) || a->found == a->projections) return CLI_DONE;
     if (a->found > 0)
         return cli_error(
             CLI_USAGE,
-            "%s: the detector has Lag, and what it held when the scan was stopped is not known; remove the output and "
+            "%s: the detector has %s, and what it held when the scan was stopped is not known; remove the output and "
             "begin anew",
-            a->place);
+            a->place, name_of(a));
     const int64_t pixels = a->session.view.columns * a->session.view.rows;
     a->lagged = malloc((size_t)pixels * sizeof(double));
     if (!a->lagged) return cli_error(CLI_DEVICE, "out of host memory");
-    const skg_status status = skg_lag_create(pixels, a->readout.lag_count, a->readout.lag, &a->lag);
+    skg_status status = skg_lag_create(pixels, a->readout.lag_count, a->readout.lag, &a->lag);
+    if (status == SKG_OK && a->readout.ghosting_count > 0)
+        status =
+            skg_lag_ghosting_set(a->lag, a->readout.full_kev, a->readout.ghosting_count, a->readout.ghosting);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

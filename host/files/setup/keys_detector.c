@@ -123,6 +123,9 @@ static const skg_json_key grey_values[] = {
     SKG_KEY(
         "Lag", "rows 2",
         "shares of the signal that a projection leaves to the next ones, and their constants in projections"),
+    SKG_KEY(
+        "Ghosting", "rows 2",
+        "changes of the sensitivity after a long exposure to the open beam, and their constants in projections"),
     SKG_KEY("BadPixels", "object PixelMap",
             "an image with -1 for a good pixel, and the grey value of a bad one"),
     SKG_KEY("Seed", "integer 0..", "of the noise; 0 by default"),

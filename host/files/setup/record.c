@@ -162,18 +162,23 @@ static skg_status read_maps(skg_setup_reader *reader, const skg_json_object *obj
     return SKG_OK;
 }
 
-/* [[share, frames], ...] */
+/* Lag: [[share, frames], ...], and Ghosting: [[change, frames], ...]. A lag of one pixel checks them. */
 static skg_status read_lag(const skg_json_object *object, skg_grey_section *grey) {
-    const skg_json_node node = skg_json_member(object, "Lag");
+    const skg_json_node lag = skg_json_member(object, "Lag"), ghosting = skg_json_member(object, "Ghosting");
+    skg_readout *r = &grey->readout;
     skg_lag *made = NULL;
-    if (!node.value) return SKG_OK;
-    SKG_TRY(skg_setup_read_rows(&node, 2, "[[0.03, 1.5], [0.005, 40]], shares and frames",
-                                &grey->readout.lag_count, &grey->lag));
-    grey->readout.lag = grey->lag;
-    const skg_status status =
-        skg_lag_create(1, grey->readout.lag_count, grey->lag, &made); /* it checks them */
+    if (lag.value)
+        SKG_TRY(skg_setup_read_rows(&lag, 2, "[[0.03, 1.5], [0.005, 40]], shares and frames", &r->lag_count,
+                                    &grey->lag));
+    if (ghosting.value)
+        SKG_TRY(skg_setup_read_rows(&ghosting, 2, "[[-0.01, 200]], changes of the sensitivity and frames",
+                                    &r->ghosting_count, &grey->ghosting));
+    r->lag = grey->lag, r->ghosting = grey->ghosting;
+    skg_status status = skg_json_at(&lag, skg_lag_create(1, r->lag_count, r->lag, &made));
+    if (status == SKG_OK && r->ghosting_count > 0)
+        status = skg_json_at(&ghosting, skg_lag_ghosting_set(made, 1, r->ghosting_count, r->ghosting));
     skg_lag_release(&made);
-    return skg_json_at(&node, status);
+    return status;
 }
 
 skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_object *detector) {
@@ -209,6 +214,7 @@ void skg_grey_section_free(skg_grey_section *section) {
     skg_free(&section->curve);
     skg_free(&section->noise);
     skg_free(&section->lag);
+    skg_free(&section->ghosting);
     skg_free(&section->bad_pixels);
     skg_free(&section->gain);
     skg_free(&section->offset);

@@ -31,7 +31,7 @@ typedef struct {
 typedef struct {
     int32_t is_given;
     skg_readout readout; /* points to the arrays below */
-    double *curve, *noise, *lag;
+    double *curve, *noise, *lag, *ghosting;
     float *bad_pixels, *gain, *offset;
 } skg_grey_section;
 

@@ -56,6 +56,10 @@ typedef struct {
     int64_t lag_count;
     /** [lag_count][2] of a sequence, as of skg_lag_create. skg_readout_image, which has no past, does without. */
     const double *lag;
+    /** Number of terms of `ghosting`; 0: none. */
+    int64_t ghosting_count;
+    /** [ghosting_count][2] likewise, as of skg_lag_ghosting_set with full_kev. */
+    const double *ghosting;
 } skg_readout;
 
 SKG_INIT(skg_readout)
@@ -73,26 +77,37 @@ SKG_INIT(skg_readout)
 SKG_API skg_status skg_readout_image(const skg_readout *readout, int64_t pixels, int32_t type,
                                      const void *energies, double share, int64_t index, void *grey);
 
-/** The lag of a detector: what its pixels hold back of the frames of a sequence. */
+/** The lag of a detector: what its pixels hold back of the frames of a sequence, and how these change their sensitivity. */
 typedef struct skg_lag skg_lag;
 
 /** Makes the lag of a detector at rest.
  *
  *     pixels   number of pixels, at least 1
- *     count    number of terms, 1 to 8
+ *     count    number of terms, 0 to 8
  *     terms    [count][2] share of the signal that is held back, 0 or more, all together below 1; and the time constant of its
  *              release in frames, above 0
  *     lag      result; the caller releases it
  *     errors   SKG_ERR_ARGUMENT
  *     method   In each frame a share s of the signal is caught, and of what was held before, 1 - exp(-1/t) is set free. So the n-th frame
  *              after a long exposure shows the sum of s exp(-(n - 1) / t) of its signal; a steady signal is shown as it is; and no signal is
- *              lost. The sensitivity does not change (no ghosting). */
+ *              lost. The sensitivity does not change without skg_lag_ghosting_set. */
 SKG_API skg_status skg_lag_create(int64_t pixels, int64_t count, const double *terms, skg_lag **lag);
+
+/** Gives a detector ghosting: what its pixels received changes their sensitivity to what comes next.
+ *
+ *     full     signal of the open beam in a frame, in the unit of the frames, above 0
+ *     count    number of terms, 1 to 8
+ *     terms    [count][2] change of the sensitivity after a long exposure to `full`, above -1 together and finite; and the time constant,
+ *              in frames, with which it builds up and goes, above 0
+ *     errors   SKG_ERR_ARGUMENT
+ *     method   The sensitivity is 1 + sum c q, where each q goes in each frame by 1 - exp(-1/t) of the way to signal / full. What a pixel
+ *              receives is multiplied by it before the lag. Flat fields of a rested detector do not take it away. */
+SKG_API skg_status skg_lag_ghosting_set(skg_lag *lag, double full, int64_t count, const double *terms);
 
 /** Frees a lag. */
 SKG_API void skg_lag_release(skg_lag **lag);
 
-/** Lets the detector come to rest. */
+/** Lets the detector come to rest: nothing is held, and the sensitivity is 1. */
 SKG_API skg_status skg_lag_clear(skg_lag *lag);
 
 /** Shows the next frame of a sequence.

@@ -11,35 +11,43 @@
 enum { TERMS_MAX = 8 };
 
 struct skg_lag {
-    int64_t pixels, count;
+    int64_t pixels, count, ghosts;
     double share[TERMS_MAX], stays[TERMS_MAX]; /* stays: of what is held, from one frame to the next */
-    double *held;                              /* [count][pixels] keV */
+    double change[TERMS_MAX],
+        keeps[TERMS_MAX]; /* of the sensitivity; keeps: of what was received, likewise */
+    double full;
+    double *held;     /* [count][pixels] keV */
+    double *received; /* [ghosts][pixels] mean of late frames, over the open beam */
 };
 
-static skg_status check_terms(int64_t pixels, int64_t count, const double *terms) {
-    double sum = 0;
-    if (pixels < 1 || count < 1 || count > TERMS_MAX || !terms)
-        return skg_fail(SKG_ERR_ARGUMENT,
-                        "lag: %" PRId64 " pixels and %" PRId64 " terms; give pixels, and 1 to %d terms",
-                        pixels, count, TERMS_MAX);
+/* least: of a share. what: "share" or "change of the sensitivity" */
+static skg_status check_terms(const char *what, double least, int64_t fewest, int64_t count,
+                              const double *terms, double *sum) {
+    *sum = 0;
+    if (count < fewest || count > TERMS_MAX || (count > 0 && !terms))
+        return skg_fail(SKG_ERR_ARGUMENT, "lag: %" PRId64 " terms of a %s; give %" PRId64 " to %d", count,
+                        what, fewest, TERMS_MAX);
     for (int64_t i = 0; i < count; i++) {
-        if (!(terms[2 * i] >= 0) || !(terms[2 * i + 1] > 0 && isfinite(terms[2 * i + 1])))
+        if (!(terms[2 * i] >= least && isfinite(terms[2 * i])) ||
+            !(terms[2 * i + 1] > 0 && isfinite(terms[2 * i + 1])))
             return skg_fail(SKG_ERR_ARGUMENT,
                             "lag: term %" PRId64
-                            " has the share %g and %g frames; give 0 or more, and more than 0",
-                            i, terms[2 * i], terms[2 * i + 1]);
-        sum += terms[2 * i];
+                            " has the %s %g and %g frames; give %g or more, and more than 0",
+                            i, what, terms[2 * i], terms[2 * i + 1], least);
+        *sum += terms[2 * i];
     }
-    return sum < 1 ? SKG_OK
-                   : skg_fail(SKG_ERR_ARGUMENT, "lag: the shares add up to %g; give less than 1", sum);
+    return SKG_OK;
 }
 
 skg_status skg_lag_create(int64_t pixels, int64_t count, const double *terms, skg_lag **lag) {
     SKG_PLAIN;
     skg_lag *made = NULL;
+    double sum = 0;
     SKG_NEEDS(lag);
     *lag = NULL;
-    SKG_TRY(check_terms(pixels, count, terms));
+    if (pixels < 1) return skg_fail(SKG_ERR_ARGUMENT, "lag: %" PRId64 " pixels; give 1 or more", pixels);
+    SKG_TRY(check_terms("share", 0, 0, count, terms, &sum));
+    if (!(sum < 1)) return skg_fail(SKG_ERR_ARGUMENT, "lag: the shares add up to %g; give less than 1", sum);
     SKG_TRY(skg_alloc(1, sizeof *made, "lag", &made));
     made->pixels = pixels, made->count = count;
     for (int64_t i = 0; i < count; i++)
@@ -50,16 +58,47 @@ skg_status skg_lag_create(int64_t pixels, int64_t count, const double *terms, sk
     return status;
 }
 
+skg_status skg_lag_ghosting_set(skg_lag *lag, double full, int64_t count, const double *terms) {
+    SKG_PLAIN;
+    double sum = 0, *received = NULL;
+    SKG_NEEDS(lag);
+    if (!(full > 0) || !isfinite(full))
+        return skg_fail(SKG_ERR_ARGUMENT, "lag: the open beam is %g; give a signal above 0", full);
+    SKG_TRY(check_terms("change of the sensitivity", -1, 1, count, terms, &sum));
+    if (!(sum > -1))
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "lag: the changes of the sensitivity add up to %g; give more than -1", sum);
+    SKG_TRY(skg_alloc(count * lag->pixels, sizeof *received, "lag", &received));
+    skg_free(&lag->received);
+    lag->received = received, lag->ghosts = count, lag->full = full;
+    for (int64_t i = 0; i < count; i++)
+        lag->change[i] = terms[2 * i], lag->keeps[i] = exp(-1 / terms[2 * i + 1]);
+    return SKG_OK;
+}
+
 void skg_lag_release(skg_lag **lag) {
     if (!lag || !*lag) return;
     skg_free(&(*lag)->held);
+    skg_free(&(*lag)->received);
     skg_free(lag);
 }
 
 skg_status skg_lag_clear(skg_lag *lag) {
     SKG_NEEDS(lag);
     memset(lag->held, 0, (size_t)(lag->count * lag->pixels) * sizeof *lag->held);
+    if (lag->received) memset(lag->received, 0, (size_t)(lag->ghosts * lag->pixels) * sizeof *lag->received);
     return SKG_OK;
+}
+
+/* What a pixel makes of a signal by the sensitivity that earlier ones left it. */
+static double sense(skg_lag *lag, int64_t pixel, double signal) {
+    double sensitivity = 1;
+    for (int64_t k = 0; k < lag->ghosts; k++) {
+        double *received = &lag->received[k * lag->pixels + pixel];
+        sensitivity += lag->change[k] * *received;
+        *received += (1 - lag->keeps[k]) * (signal / lag->full - *received);
+    }
+    return signal * fmax(sensitivity, 0);
 }
 
 /* What a pixel shows of a signal: what is not held, and what is set free of what was. */
@@ -85,7 +124,7 @@ skg_status skg_lag_apply(skg_lag *lag, int32_t type, const void *energies, doubl
         const double given = !energies                  ? 0
                              : type == SKG_TYPE_FLOAT64 ? ((const double *)energies)[i]
                                                         : (double)((const float *)energies)[i];
-        const double shown = pass(lag, i, factor * given);
+        const double shown = pass(lag, i, sense(lag, i, factor * given));
         if (type == SKG_TYPE_FLOAT64)
             ((double *)result)[i] = shown;
         else
