@@ -12,10 +12,10 @@ skg_optional_packages="libhdf5-dev libgif-dev ffmpeg libmeshoptimizer-dev libciv
 skg_mpi_packages="libopenmpi-dev openmpi-bin"
 
 # What tests need. libxrl-dev: an independent table of cross sections. chromium: pages work in it. groff-base: the pages of the
-# manual.
+# manual. ninja-build: looks at all files in a tenth of a second.
 # shellcheck disable=SC2034
 skg_test_packages="check gfortran g++ python3 python3-numpy python3-cffi python3-pytest python3-scipy python3-venv oclgrind libxrl-dev \
-doxygen chromium groff-base locales dcmtk python3-pydicom python3-jsonschema"
+doxygen chromium groff-base locales dcmtk python3-pydicom python3-jsonschema ninja-build"
 
 # skg_need PACKAGE...: installs those that are missing, or prints the line that does and stops.
 skg_need() {
@@ -71,11 +71,14 @@ skg_python_packages() {
     echo "The Python package ctsimu cannot be installed: $(cat build/venv.missing); the whole log is in build/venv.log"
 }
 
-# skg_build PRESET [TARGET...]: configures one of CMakePresets.json, and builds these targets or all.
+# skg_build PRESET [TARGET...]: configures one of CMakePresets.json, and builds these targets or all. A new folder is for Ninja, if it is
+# there; others keep what they were configured for.
 skg_build() {
-    preset=$1
+    preset=$1 ninja=""
     shift
-    if ! { cmake --preset "$preset" && cmake --build --preset "$preset" -j "${skg_jobs:-$(nproc)}" ${1:+--target "$@"}; } \
+    case $preset in dev) folder=build ;; *) folder=build-$preset ;; esac
+    if [ ! -e "$folder/CMakeCache.txt" ] && command -v ninja >/dev/null 2>&1; then ninja=yes; fi
+    if ! { cmake --preset "$preset" ${ninja:+-G Ninja} && cmake --build --preset "$preset" -j "${skg_jobs:-$(nproc)}" ${1:+--target "$@"}; } \
         >"build-$preset.log" 2>&1; then
         tail -n 40 "build-$preset.log"
         echo "The build failed; the whole log is in build-$preset.log"

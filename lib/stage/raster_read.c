@@ -8,7 +8,10 @@ static skg_status get_bad_kernels(skg_raster *raster) {
     static const char *const files[] = {"counts.cl"};
     cl_program program = NULL;
     if (raster->bad) return SKG_OK;
-    SKG_TRY(skg_kernels_get(raster->context, &raster->options.kernels, 1, files, NULL, &program));
+    /* What sums are: other options change no word of these kernels, so that scenes share the program. */
+    const skg_kernel_options *all = &raster->options.kernels,
+                             sums = {.precision = all->precision, .bits = all->bits, .half = all->half};
+    SKG_TRY(skg_kernels_get(raster->context, &sums, 1, files, NULL, &program));
     if (!raster->bad_rows) SKG_TRY(skg_kernel_create(program, "skg_count_bad_rows", &raster->bad_rows));
     return skg_kernel_create(program, "skg_count_bad",
                              &raster->bad); /* last: its presence means that both are made */

@@ -252,7 +252,10 @@ skg_status skg_volume_program(const skg_placed_volume *placed, const skg_pass *p
                                   {"SKG_VOLUME_WIDE", placed->volume->wide},
                                   {"SKG_VOLUME_LINEAR", placed->volume->linear},
                                   {"SKG_SLOTS", skg_priority_slots(&pass->priority)}};
-    return skg_kernels_get(context, &pass->kernels, count, files, SKG_DEFINES(defines), program);
+    /* What triangles alone have changes no word of these kernels, so that scenes share the program. */
+    skg_kernel_options options = pass->kernels;
+    options.seams = options.source_plane = options.listed = 0;
+    return skg_kernels_get(context, &options, count, files, SKG_DEFINES(defines), program);
 }
 
 static skg_status get_program(const skg_placed_volume *placed, const skg_pass *pass, skg_context *context,

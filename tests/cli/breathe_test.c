@@ -14,13 +14,28 @@
 
 enum { BYTES_MAX = 1 << 20 };
 
-static void set_up_thorax(void) {
+static char made[64]; /* the folder of the thorax, made once: each test has a copy of its files */
+
+static void make_thorax(void) {
     set_up();
+    strcpy(made, folder);
     ck_run(0, "thorax -o . --simple --triangles 10000 --json");
     json_t *object = said_json();
     ck_assert_int_gt(json_integer_value(member(object, "parts")), 60);
     ck_assert_int_gt(json_integer_value(member(object, "triangles")), 8000);
     json_decref(object);
+}
+
+static void remove_thorax(void) {
+    strcpy(folder, made);
+    tear_down();
+}
+
+static void set_up_thorax(void) {
+    char line[256];
+    set_up();
+    snprintf(line, sizeof line, "cp %s/* %s", made, folder);
+    ck_assert_int_eq(system(line), 0);
 }
 
 /* Folders that breathe made, and what is in them. */
@@ -269,10 +284,8 @@ START_TEST(a_film_adds_up_its_dose) {
         ck_assert_double_eq_tol(all[k] / (3 * one[k]), 1, 1e-6);
     ck_run(0, "breathe thorax.json %s %s %s --fps 1 --seconds 3 -o g", SMALL, PLAIN, mas);
     ck_assert_msg(strstr(said, "all frames together: air kerma ") != NULL, "%s", said);
-    ck_run(
-        0,
-        "breathe thorax.json %s %s --set Source.Beam='{\"kVp\":80}' --fps 1 --seconds 3 -o m --json",
-        SMALL, PLAIN);
+    ck_run(0, "breathe thorax.json %s %s --set Source.Beam='{\"kVp\":80}' --fps 1 --seconds 3 -o m --json",
+           SMALL, PLAIN);
     object = said_json();
     ck_assert(json_is_null(member(object, "dose"))); /* a tube without mAs */
     json_decref(object);
@@ -374,6 +387,7 @@ START_TEST(what_cannot_be_is_refused) {
 END_TEST
 
 static void add_tests(TCase *tests) {
+    tcase_add_unchecked_fixture(tests, make_thorax, remove_thorax);
     tcase_add_checked_fixture(tests, set_up_thorax, tear_down_thorax);
     tcase_add_test(tests, the_liver_is_on_the_left);
     tcase_add_test(tests, the_needle_passes_in_silence);

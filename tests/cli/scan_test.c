@@ -509,7 +509,7 @@ START_TEST(each_projection_has_its_own_time) {
     enum { SIDE = 40, IMAGE = SIDE * SIDE * sizeof(float) };
     static const char beam[] = "--set Detector.NumberOfPixels=[40,40] --set "
                                "Source.Beam='[{\"Energy\":60,\"Unit\":\"keV\",\"PhotonCount\":1}]'";
-    ck_run(0, "thorax -o . --triangles 10000 --quiet");
+    ck_run(0, "thorax -o . --simple --triangles 10000 --quiet");
     ck_run(0,
            "scan thorax.json %s --breathing --quantity attenuation -o scan.mha --quiet --set "
            "Scan='{\"NumberOfProjections\":3,\"StartTime\":0.5,\"Interval\":1.5}'",
@@ -526,7 +526,7 @@ END_TEST
 /* A breath lasts 4 s, and projections are 0.5 s apart from 0.1 s on: each of four phases has two of every eight. */
 START_TEST(phases_have_their_projections) {
     enum { SIDE = 16, IMAGE = SIDE * SIDE * sizeof(float), ALL = 16 };
-    ck_run(0, "thorax -o . --triangles 10000 --quiet");
+    ck_run(0, "thorax -o . --simple --triangles 10000 --quiet");
     ck_run(
         0,
         "scan thorax.json --breathing --phases 4 -o scan.mha --quiet --set Detector.NumberOfPixels=[16,16] "

@@ -3,16 +3,23 @@
 
 #include "suite.h"
 
+#include <stdlib.h>
 #include <string.h>
 
 skg_context *run_context;
 
+/* Whether Check runs each test in a process of its own; tests/CMakeLists.txt has the list of suites in which it does not. */
+static int is_forked(void) {
+    const char *fork = getenv("CK_FORK");
+    return !fork || strcmp(fork, "no") != 0;
+}
+
 void run_open(void) {
-    ck_skg(skg_context_create(NULL, &run_context));
+    if (!run_context) ck_skg(skg_context_create(NULL, &run_context));
 }
 
 void run_close(void) {
-    skg_context_release(&run_context);
+    if (is_forked()) skg_context_release(&run_context);
 }
 
 int run_has_double(void) {

@@ -7,7 +7,7 @@
 
 #include <skiagraph/skiagraph.h>
 
-/* The device, opened by a checked fixture: tcase_add_checked_fixture(tests, run_open, run_close). */
+/* The device, opened by a checked fixture: tcase_add_checked_fixture(tests, run_open, run_close). Tests that run in one process share it. */
 extern skg_context *run_context;
 void run_open(void);
 void run_close(void);
