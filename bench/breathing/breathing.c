@@ -113,7 +113,7 @@ static void steps(long triangles, int turns, FILE *csv) {
     thorax_make(triangles, THORAX_CLOSED, &thorax);
     breather b = {thorax_body(&thorax), 0};
     for (int64_t i = 0; i < b.body->organs; i++)
-        if (b.body->organ[i].chain) deformable += b.body->organ[i].vertices;
+        if (b.body->organ[i].soft.chain) deformable += b.body->organ[i].vertices;
     printf("\nThe generated thorax, %ld triangles, %ld deformable vertices, a breath of 120 steps.\n",
            triangles, (long)deformable);
     int most = omp_get_max_threads();
