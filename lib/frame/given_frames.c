@@ -1,5 +1,5 @@
 /* Frames of the caller, read and copied, so that they may be enqueued later. */
-#include "frame/given.h"
+#include "frame/frames.h"
 
 #include "plan/decisions.h"
 
