@@ -149,7 +149,7 @@ static void pose_alone(void *what) {
 static void one_after_the_other(void *what) {
     fluoroscope *f = what;
     breathe(f->breather);
-    bench_try(skg_plan_submit(f->plan, 1, NULL, f->output, &f->job), "image");
+    bench_try(skg_plan_submit(f->plan, 1, NULL, 1, f->output, &f->job), "image");
     bench_try(skg_job_wait(&f->job), "image");
 }
 
@@ -159,7 +159,7 @@ static void one_after_the_other(void *what) {
  * alone takes 3.7). */
 static void overlapped(void *what) {
     fluoroscope *f = what;
-    bench_try(skg_plan_submit(f->plan, 1, NULL, f->output, &f->job), "image");
+    bench_try(skg_plan_submit(f->plan, 1, NULL, 1, f->output, &f->job), "image");
     breathe(f->breather);
     bench_try(skg_job_wait(&f->job), "image");
 }

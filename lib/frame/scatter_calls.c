@@ -145,7 +145,7 @@ static skg_status render(void *user, const skg_view *view, const skg_plan_option
     SKG_TRY_CLEANUP(skg_plan_create(plan->context, recipe->scene, view, recipe->spectrum, options, &made));
     SKG_TRY_CLEANUP(skg_plan_channel_get(made, 0, &channel));
     r->open = channel.flat_field;
-    SKG_TRY_CLEANUP(skg_plan_outputs_submit(made, 1, NULL, 2, outputs, &job));
+    SKG_TRY_CLEANUP(skg_plan_submit(made, 1, NULL, 2, outputs, &job));
     status = skg_job_wait(&job);
 cleanup:
     skg_plan_release(&made);

@@ -86,19 +86,12 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
     return SKG_OK;
 }
 
-skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
-                           skg_job **job) {
+skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, int64_t output_count,
+                           const skg_output *outputs, skg_job **job) {
     const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     return skg_call_end(
-        begun, skg_feeder_start(submit("skg_plan_submit", plan, count, frames, 1, output, NULL, job), job));
-}
-
-skg_status skg_plan_outputs_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
-                                   int64_t output_count, const skg_output *outputs, skg_job **job) {
-    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(begun, skg_feeder_start(submit("skg_plan_outputs_submit", plan, count, frames,
-                                                       output_count, outputs, NULL, job),
-                                                job));
+        begun, skg_feeder_start(
+                   submit("skg_plan_submit", plan, count, frames, output_count, outputs, NULL, job), job));
 }
 
 skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames, int64_t output_count,

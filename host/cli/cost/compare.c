@@ -93,7 +93,7 @@ static skg_status lengths_of(skg_plan *plan, int64_t part, int32_t type, int64_t
     output.kind = SKG_OUTPUT_LENGTHS;
     output.part = part;
     output.lengths = SKG_LENGTHS_SURFACE;
-    skg_status status = skg_plan_submit(plan, 1, NULL, &output, &job);
+    skg_status status = skg_plan_submit(plan, 1, NULL, 1, &output, &job);
     if (!SKG_FAILED(status)) status = skg_job_wait(&job);
     if (!SKG_FAILED(status)) cost_widen(type, pixels, data);
     return status;

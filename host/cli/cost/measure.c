@@ -145,7 +145,7 @@ typedef struct {
 static skg_status make_still(void *user) {
     still *its = user;
     skg_job *job = NULL;
-    skg_status status = skg_plan_submit(its->plan, its->frames, NULL, &its->output, &job);
+    skg_status status = skg_plan_submit(its->plan, its->frames, NULL, 1, &its->output, &job);
     return !SKG_FAILED(status) ? skg_job_wait(&job) : status;
 }
 

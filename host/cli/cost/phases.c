@@ -49,7 +49,7 @@ static skg_status run(void *user) {
     skg_frame_init(&frame);
     skg_status status = skg_motion_pose_at_phase(b->motion, (double)b->phase / COST_PHASES);
     if (status == SKG_OK) status = skg_motion_fill(b->motion, &frame);
-    if (status == SKG_OK) status = skg_plan_submit(b->plan, 1, &frame, &b->output, &job);
+    if (status == SKG_OK) status = skg_plan_submit(b->plan, 1, &frame, 1, &b->output, &job);
     if (!SKG_FAILED(status)) status = skg_job_wait(&job);
     b->phase = (b->phase + 1) % COST_PHASES;
     return status;

@@ -7,6 +7,8 @@
 #include "session/sensitivity.h"
 #include "session/session.h"
 
+#include <skiagraph/breathing.h>
+
 enum {
     COST_SCENE,
     COST_PRECISION,
