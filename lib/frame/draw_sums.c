@@ -143,6 +143,7 @@ skg_status skg_draw_sums(skg_job *job, const skg_frame_work *work, const skg_pas
                                    .strategy = recipe->leaky_strategy,
                                    .tile = recipe->options.tile};
     cl_int *extents = NULL;
+    SKG_ASSERT(pass->main.raster != NULL);
     const cl_kernel projection = skg_raster_projection(pass->main.raster);
     SKG_TRY(skg_frame_update_meshes(job));
     SKG_TRY(skg_geometry_weigh(machine->context, &machine->geometry, &pass->camera, pass->parts,

@@ -63,6 +63,7 @@ skg_status skg_job_divide(skg_job *job, int64_t steps) {
 skg_status skg_job_step(skg_job *job, int64_t end, skg_frame_work *work) {
     const int64_t index = job->enqueued / job->steps, step = job->enqueued % job->steps;
     cl_event last = NULL;
+    SKG_ASSERT(job->enqueued < skg_job_steps(job) && job->enqueued < end);
     work->end = &last;
     work->followed = job->steps == 1 && job->enqueued + 1 < end;
     skg_status status = job->kind->step(job, index, step, work);

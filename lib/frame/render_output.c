@@ -79,6 +79,8 @@ skg_status skg_render_output(skg_job *job, const skg_frame_output *output, int64
                              skg_frame_work *work) {
     const skg_recipe *recipe = job->recipe;
     const int32_t kind = output->to.kind;
+    SKG_ASSERT(0 <= index && index < job->count && 0 <= work->step &&
+               work->step < skg_frame_steps(recipe, kind, work->each));
     work->kind = kind;
     work->part = output->to.part;
     work->which = kind == SKG_OUTPUT_LENGTHS ? output->to.lengths : output->to.component;

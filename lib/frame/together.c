@@ -20,6 +20,7 @@ static skg_status make_room(const skg_pass *pass, skg_waiting *g) {
 }
 
 skg_status skg_waiting_add(skg_job *job, const skg_pass *pass, skg_waiting *g) {
+    SKG_ASSERT(g->count == 0 || g->count < g->room);
     if (g->count == 0) SKG_TRY(make_room(pass, g));
     SKG_TRY(skg_frame_update_meshes(job));
     SKG_TRY(skg_geometry_weigh_pass(&job->machine->geometry, &pass->camera, pass->parts, pass->scale.scale,

@@ -89,6 +89,7 @@ skg_status skg_kernel_launch(skg_context *context, cl_kernel kernel, const char 
                              skg_stage_log *log) {
     size_t global[3], local[3];
     cl_event event = NULL;
+    SKG_ASSERT(1 <= work->dimensions && work->dimensions <= 3);
     for (int32_t i = 0; i < count; i++)
         SKG_TRY(skg_kernel_set(kernel, arguments[i].position, arguments[i].size, arguments[i].value));
     for (cl_uint d = 0; d < work->dimensions; d++) {
