@@ -5,6 +5,8 @@
 
 #include "affinity/affinity.h"
 
+#include <skiagraph/scanning.h>
+
 #include <fcntl.h>
 #include <math.h>
 #include <stdlib.h>
@@ -76,7 +78,7 @@ static void image_loop(void *contender) {
             self->frames[f].view = &self->views[f];
             self->frames[f].index = k + f;
         }
-        bench_try(skg_plan_submit(self->plan, count, self->frames, &output, &job), "batch");
+        bench_try(skg_plan_submit(self->plan, count, self->frames, 1, &output, &job), "batch");
         bench_try(skg_job_wait(&job), "batch");
     }
 }

@@ -70,7 +70,7 @@ static void batch(void *contender) {
     series *self = contender;
     skg_job *job = NULL;
     const double begun = thread_us();
-    bench_try(skg_plan_submit(self->plan, self->count, self->frames, &self->output, &job), "batch");
+    bench_try(skg_plan_submit(self->plan, self->count, self->frames, 1, &self->output, &job), "batch");
     bench_try(skg_job_wait(&job), "batch");
     note_host(self, begun);
 }
@@ -82,7 +82,7 @@ static void one_by_one(void *contender) {
         skg_job *job = NULL;
         skg_output output = self->output;
         output.data = (float *)self->output.data + k * self->pixels;
-        bench_try(skg_plan_submit(self->plan, 1, &self->frames[k], &output, &job), "frame");
+        bench_try(skg_plan_submit(self->plan, 1, &self->frames[k], 1, &output, &job), "frame");
         bench_try(skg_job_wait(&job), "frame");
     }
     note_host(self, begun);

@@ -54,7 +54,7 @@ static void read_settings(int count, char **words, settings *out) {
 static void batch(void *contender) {
     series *self = contender;
     skg_job *job = NULL;
-    bench_try(skg_plan_submit(self->plan, self->views, self->frames, &self->output, &job), "batch");
+    bench_try(skg_plan_submit(self->plan, self->views, self->frames, 1, &self->output, &job), "batch");
     bench_try(skg_job_wait(&job), "batch");
 }
 
@@ -64,7 +64,7 @@ static void one_by_one(void *contender) {
         skg_job *job = NULL;
         skg_output output = self->output;
         output.data = (float *)self->output.data + k * self->pixels;
-        bench_try(skg_plan_submit(self->plan, 1, &self->frames[k], &output, &job), "frame");
+        bench_try(skg_plan_submit(self->plan, 1, &self->frames[k], 1, &output, &job), "frame");
         bench_try(skg_job_wait(&job), "frame");
     }
 }

@@ -37,7 +37,7 @@ program first_image
     output%kind = SKG_OUTPUT_LENGTHS
     output%lengths = SKG_LENGTHS_SURFACE
     output%part = id
-    call skg_check(skg_plan_submit(plan, 1_c_int64_t, output=output, job=job))
+    call skg_check(skg_plan_submit(plan, 1_c_int64_t, output_count=1_c_int64_t, outputs=[output], job=job))
     call skg_check(skg_job_wait(job))
     middle = lengths(side / 2, side / 2)
     print '(a, f9.5, a)', 'path length through the middle: ', middle, ' mm'

@@ -71,7 +71,7 @@ check(skg.skg_plan_image(plan, c.byref(output)))
 
 lengths = (c.c_double * (SIDE * SIDE))()
 output.type, output.data, output.kind, output.part = 1, c.addressof(lengths), 1, number  # SKG_OUTPUT_LENGTHS
-job = make("skg_plan_submit", plan, c.c_int64(1), None, c.byref(output))
+job = make("skg_plan_submit", plan, c.c_int64(1), None, c.c_int64(1), c.byref(output))
 check(skg.skg_job_wait(c.byref(job)))
 
 middle = SIDE // 2 * SIDE + SIDE // 2

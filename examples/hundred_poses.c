@@ -38,7 +38,7 @@ static int run(skg_plan *plan, int64_t part, float *images) {
         skg_output_init(&output);
         output.data = images + (size_t)first * SIDE * SIDE;
         skg_job *job = NULL;
-        if (failed(skg_plan_submit(plan, BATCH, frames, &output, &job)) || failed(skg_job_wait(&job)))
+        if (failed(skg_plan_submit(plan, BATCH, frames, 1, &output, &job)) || failed(skg_job_wait(&job)))
             return 1;
     }
     return 0;

@@ -44,7 +44,7 @@ static int render(const problem *p, int count, const double (*moved)[AXES], floa
     }
     skg_output_init(&output);
     output.data = images;
-    return failed(skg_plan_submit(p->plan, count, frames, &output, &job)) || failed(skg_job_wait(&job));
+    return failed(skg_plan_submit(p->plan, count, frames, 1, &output, &job)) || failed(skg_job_wait(&job));
 }
 
 /* Solves a x = b in place by elimination. */

@@ -44,7 +44,7 @@ static int run(skg_plan *plan, skg_scene *scene, int64_t id, const skg_view *vie
     for (int step = 0; step < STEPS; step++, pose[3] += STEP) {
         skg_job *job = NULL;
         if (failed(skg_scene_part_pose_set(scene, id, pose)) ||
-            failed(skg_plan_submit(plan, 1, NULL, &output, &job)) || failed(skg_job_wait(&job)))
+            failed(skg_plan_submit(plan, 1, NULL, 1, &output, &job)) || failed(skg_job_wait(&job)))
             return 1;
         look(lengths, view, &longest, &column);
         if (step == 0) first = column;

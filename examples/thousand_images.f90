@@ -51,7 +51,7 @@ program thousand_images
             end do
             call skg_init(output)
             output%data = c_loc(images(1, 1, 1, which))
-            call skg_check(skg_plan_submit(plan, batch, frames, output, job(which)))
+            call skg_check(skg_plan_submit(plan, batch, frames, 1_c_int64_t, [output], job(which)))
         end if
         which = 3 - which
         if (b > 0) then

@@ -113,7 +113,7 @@ static void steps(long triangles, int turns, FILE *csv) {
     thorax_make(triangles, THORAX_CLOSED, &thorax);
     breather b = {thorax_body(&thorax), 0};
     for (int64_t i = 0; i < b.body->organs; i++)
-        if (b.body->organ[i].chain) deformable += b.body->organ[i].vertices;
+        if (b.body->organ[i].soft.chain) deformable += b.body->organ[i].vertices;
     printf("\nThe generated thorax, %ld triangles, %ld deformable vertices, a breath of 120 steps.\n",
            triangles, (long)deformable);
     int most = omp_get_max_threads();
@@ -149,7 +149,7 @@ static void pose_alone(void *what) {
 static void one_after_the_other(void *what) {
     fluoroscope *f = what;
     breathe(f->breather);
-    bench_try(skg_plan_submit(f->plan, 1, NULL, f->output, &f->job), "image");
+    bench_try(skg_plan_submit(f->plan, 1, NULL, 1, f->output, &f->job), "image");
     bench_try(skg_job_wait(&f->job), "image");
 }
 
@@ -159,7 +159,7 @@ static void one_after_the_other(void *what) {
  * alone takes 3.7). */
 static void overlapped(void *what) {
     fluoroscope *f = what;
-    bench_try(skg_plan_submit(f->plan, 1, NULL, f->output, &f->job), "image");
+    bench_try(skg_plan_submit(f->plan, 1, NULL, 1, f->output, &f->job), "image");
     breathe(f->breather);
     bench_try(skg_job_wait(&f->job), "image");
 }

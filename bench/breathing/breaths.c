@@ -2,6 +2,8 @@
  * what drives an organ contradicts itself, folded facets, the liver's volume, broken links, and the time of a pose. */
 #include "common/bench.h"
 
+#include <skiagraph/breathing.h>
+
 #include <math.h>
 #include <omp.h>
 #include <stdlib.h>

@@ -2,6 +2,8 @@
  * parameters drawn from the middle 70 % of each range; its liver and diaphragm at end-inspiration are the targets. */
 #include "common/bench.h"
 
+#include <skiagraph/breathing.h>
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

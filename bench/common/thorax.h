@@ -4,6 +4,8 @@
 
 #include "bench.h"
 
+#include <skiagraph/breathing.h>
+
 typedef struct {
     skg_thorax *thorax;
     int64_t parts, triangles;

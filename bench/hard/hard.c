@@ -97,7 +97,7 @@ static void lengths_of(const tools *t, const solid *s, const skg_view *view, int
     output.data = lengths;
     output.kind = SKG_OUTPUT_LENGTHS;
     output.lengths = SKG_LENGTHS_SURFACE;
-    bench_try(skg_plan_submit(plan, 1, &frame, &output, &job), "lengths");
+    bench_try(skg_plan_submit(plan, 1, &frame, 1, &output, &job), "lengths");
     bench_try(skg_job_wait(&job), "lengths");
     skg_plan_release(&plan);
 }

@@ -81,7 +81,7 @@ static ray trace(const paper_study *study, skg_material *bone, skg_material *sof
             output.kind = SKG_OUTPUT_LENGTHS;
             output.part = part;
             output.lengths = SKG_LENGTHS_SURFACE;
-            bench_try(skg_plan_submit(plan, 1, NULL, &output, &job), "lengths");
+            bench_try(skg_plan_submit(plan, 1, NULL, 1, &output, &job), "lengths");
             bench_try(skg_job_wait(&job), "lengths");
             out.lengths[part] = pixels[MIDDLE];
         }

@@ -198,7 +198,7 @@ static void breathe(void *what) {
     skg_breath_state_init(&state);
     if (f->job) bench_try(skg_job_wait(&f->job), "image");
     if (f->picture.plan)
-        bench_try(skg_plan_submit(f->picture.plan, 1, NULL, &f->picture.output, &f->job), "image");
+        bench_try(skg_plan_submit(f->picture.plan, 1, NULL, 1, &f->picture.output, &f->job), "image");
     bench_try(skg_breath_state_at_phase(&breath, (double)(f->step++ % STEPS) / STEPS, &state), "breath");
     bench_try(skg_body_pose(f->body, &state), "body");
 }

@@ -51,7 +51,7 @@ void library_frame(void *contender) {
     skg_job *job = NULL;
     self->output.kind = SKG_OUTPUT_LENGTHS;
     self->output.lengths = SKG_LENGTHS_SURFACE;
-    bench_try(skg_plan_submit(self->plan, 1, &self->frame, &self->output, &job), "lengths");
+    bench_try(skg_plan_submit(self->plan, 1, &self->frame, 1, &self->output, &job), "lengths");
     bench_try(skg_job_wait(&job), "lengths");
 }
 

@@ -2,6 +2,8 @@
  * of what its model lacks. */
 #include "register/subject.h"
 
+#include <skiagraph/registration.h>
+
 #include <math.h>
 #include <stdint.h>
 #include <stdlib.h>

@@ -1,6 +1,8 @@
 /* Makes the thorax and its radiographs. */
 #include "register/subject.h"
 
+#include <skiagraph/breathing.h>
+
 #include <dirent.h>
 #include <fnmatch.h>
 #include <math.h>
@@ -215,7 +217,7 @@ static void tell_scatter(skg_plan *plan, const skg_frame *frame, int view, int64
     skg_output_init(&output);
     output.kind = SKG_OUTPUT_SCATTER;
     output.data = scattered;
-    bench_try(skg_plan_submit(plan, 1, frame, &output, &job), "scatter");
+    bench_try(skg_plan_submit(plan, 1, frame, 1, &output, &job), "scatter");
     bench_try(skg_job_wait(&job), "scatter");
     for (int64_t p = 0; p < count; p++)
         sum += (double)scattered[p] / fmax(whole[p] - (double)scattered[p], 1e-4) / (double)count;
@@ -252,7 +254,7 @@ double *subject_radiograph(const subject *s, int view, int kind) {
               "radiograph");
     skg_output_init(&output);
     output.data = values;
-    bench_try(skg_plan_submit(plan, 1, &frame, &output, &job), "radiograph");
+    bench_try(skg_plan_submit(plan, 1, &frame, 1, &output, &job), "radiograph");
     bench_try(skg_job_wait(&job), "radiograph");
     for (int64_t p = 0; p < count; p++) transmission[p] = (double)values[p];
     if (kind & SUBJECT_SCATTER) tell_scatter(plan, &frame, view, count, transmission);

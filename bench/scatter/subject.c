@@ -127,7 +127,7 @@ static double *output_of(const subject *s, skg_plan *plan, int32_t kind) {
     skg_job *job = NULL;
     skg_output_init(&output);
     output.data = narrow, output.kind = kind;
-    bench_try(skg_plan_submit(plan, 1, NULL, &output, &job), s->name);
+    bench_try(skg_plan_submit(plan, 1, NULL, 1, &output, &job), s->name);
     bench_try(skg_job_wait(&job), s->name);
     for (size_t i = 0; i < count; i++) image[i] = (double)narrow[i];
     free(narrow);

@@ -3,6 +3,8 @@
 
 #include "support/random.h"
 
+#include <skiagraph/scanning.h>
+
 #include <errno.h>
 #include <fcntl.h>
 #include <signal.h>

@@ -3,6 +3,8 @@
 
 #include "support/random.h"
 
+#include <skiagraph/scanning.h>
+
 #include <stdlib.h>
 #include <string.h>
 
@@ -38,7 +40,7 @@ void soak_frames(soak *s, int64_t number) {
     skg_output_init(&output);
     output.data = bench_alloc(bytes_of(&c), 1);
     set_frames(&c, 0, SOAK_PROJECTIONS, frames);
-    bench_try(skg_plan_submit(plan, SOAK_PROJECTIONS, frames, &output, &job), "frames");
+    bench_try(skg_plan_submit(plan, SOAK_PROJECTIONS, frames, 1, &output, &job), "frames");
     bench_try(skg_job_wait(&job), "frames");
     if (s->fault == FAULT_BITS)
         ((unsigned char *)output.data)[draw_below(&s->state, (int64_t)bytes_of(&c))] ^= 1;
@@ -62,7 +64,7 @@ void soak_jobs(soak *s, int64_t number) {
         set_frames(&c, k, 1, &frame);
         skg_output_init(&output);
         output.data = images + k * c.pixels;
-        bench_try(skg_plan_submit(plan, 1, &frame, &output, &jobs[k]), "job");
+        bench_try(skg_plan_submit(plan, 1, &frame, 1, &output, &jobs[k]), "job");
     }
     skg_plan_release(&plan);
     soak_case_free(&c);

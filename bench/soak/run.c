@@ -5,6 +5,8 @@
 
 #include "support/random.h"
 
+#include <skiagraph/scanning.h>
+
 #include <stdlib.h>
 #include <string.h>
 #include <sys/wait.h>

@@ -40,7 +40,7 @@ static void *work(void *argument) {
         skg_output_init(&output);
         output.data = images + k * c.pixels;
         lock(w);
-        bench_try(skg_plan_submit(plan, 1, &frame, &output, &job), "thread");
+        bench_try(skg_plan_submit(plan, 1, &frame, 1, &output, &job), "thread");
         unlock(w);
         lock(w);
         bench_try(skg_job_wait(&job), "thread");

@@ -56,7 +56,7 @@ END {
     box("k", 780, 140, 170, 80, "machine", "frame/assemble.c|buffers, kernels,|cache of rasters")
     box("k", 970, 140, 170, 80, "outcome", "plan/outcome.c|report, times,|warnings given")
     arrow(675, 104, 675, 138); arrow(865, 104, 865, 138); arrow(1055, 104, 1055, 138)
-    box("g", 590, 262, 270, 44, "skg_plan_submit", "frame/submit.c, submission.c, frame.c")
+    box("g", 590, 262, 270, 44, "skg_plan_submit", "frame/submit.c, submit_frames.c")
     arrow(675, 220, 675, 260); arrow(820, 220, 820, 260)
     box("k", 920, 262, 220, 44, "pass", "frame/parts.c: one sample")
     arrow(860, 284, 918, 284)

@@ -1,5 +1,6 @@
 /* Draws breathing-modes.png and diaphragm-displacement.png into a folder: the simple thorax, breathing
  * with the diaphragm, with the ribs and with both, as Figures 7 and 11 of Vidal and Villard (2016). */
+#include <skiagraph/breathing.h>
 #include <skiagraph/skiagraph.h>
 
 #include <cairo.h>

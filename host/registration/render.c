@@ -61,7 +61,7 @@ static skg_status draw(skg_registration *r, skg_plan *plan, const reg_scene *sce
     }
     skg_output_init(&output);
     output.data = images;
-    SKG_TRY_CLEANUP(skg_plan_submit(plan, count, frames, &output, &job));
+    SKG_TRY_CLEANUP(skg_plan_submit(plan, count, frames, 1, &output, &job));
     SKG_TRY_CLEANUP(finish(&job));
     r->result.images += count;
 cleanup:

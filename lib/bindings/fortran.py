@@ -89,7 +89,7 @@ def parameter(name, kind, before, structs):
         many = "const * const" in kind or kind.count("const") == 2
         return f"type(c_ptr), {'intent(in)' if many else 'intent(inout)'}, optional :: {name}" + ("(*)" if many else "")
     if plain in structs:
-        array = constant and before == "count"
+        array = constant and before.endswith("count")
         return f"type({plain}), {intent}, optional :: {name}" + ("(*)" if array else "")
     array = constant or name in ARRAYS or plain == "char"
     return f"{SCALARS[plain]}, {intent}, optional :: {name}" + ("(*)" if array else "")

@@ -148,8 +148,9 @@ def measure(found, includes, folder):
                          f'sizeof((({name} *)0)->{field["name"]}));')
     program = f"{folder}/measure"
     with open(program + ".c", "w") as file:
-        file.write("#include <skiagraph/opencl.h>\n#include <skiagraph/skiagraph.h>\n#include <stddef.h>\n"
-                   "#include <stdio.h>\nint main(void) {\n" + "\n".join(lines) + "\nreturn 0;\n}\n")
+        headers = [f"skiagraph/{header}.h" for header in ("breathing", "opencl", "registration", "scanning", "skiagraph")]
+        file.write("".join(f"#include <{header}>\n" for header in headers + ["stddef.h", "stdio.h"]) +
+                   "int main(void) {\n" + "\n".join(lines) + "\nreturn 0;\n}\n")
     command = [os.environ.get("CC", "cc"), "-std=c11", "-Wno-unused-function"]
     command += [f"-I{path}" for path in includes] + ["-c", program + ".c", "-o", program + ".o"]
     subprocess.run(command, check=True)

@@ -96,7 +96,7 @@ static skg_status draw(const skg_plan *plan, const skg_plan_options *options, sk
     SKG_TRY_CLEANUP(
         skg_spectrum_create_counts(recipe->spectrum, skg_recipe_exposure(recipe, &recipe->view), &beam));
     SKG_TRY_CLEANUP(skg_plan_create(plan->context, recipe->scene, &recipe->view, beam, options, &made));
-    SKG_TRY_CLEANUP(skg_plan_outputs_submit(made, 1, &frame, options->scatter ? 2 : 1, outputs, &job));
+    SKG_TRY_CLEANUP(skg_plan_submit(made, 1, &frame, options->scatter ? 2 : 1, outputs, &job));
     status = skg_job_wait(&job);
 cleanup:
     skg_plan_release(&made);
@@ -213,7 +213,7 @@ static skg_status find_darkest(skg_plan *plan, const picture *p, float *variance
     for (int k = 0; k < 2; k++) skg_output_init(&outputs[k]);
     outputs[0].kind = SKG_OUTPUT_MEAN, outputs[0].data = p->mean;
     outputs[1].kind = SKG_OUTPUT_VARIANCE, outputs[1].data = variance;
-    SKG_TRY(skg_plan_outputs_submit(plan, 1, NULL, 2, outputs, &job));
+    SKG_TRY(skg_plan_submit(plan, 1, NULL, 2, outputs, &job));
     const skg_status status = skg_job_wait(&job);
     if (status != SKG_OK && status != SKG_RANGE) return status;
     for (int64_t r = p->window[2]; r < p->window[3]; r++)

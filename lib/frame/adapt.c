@@ -1,5 +1,5 @@
 /* Adaptive sampling of an extended source: doubles the samples until the image stays. */
-#include "frame/jobs.h"
+#include "frame/frames.h"
 #include "frame/plans.h"
 #include "spectral/model.h"
 
@@ -44,7 +44,7 @@ static skg_status render(const skg_recipe *recipe, skg_machine *machine, skg_out
     SKG_TRY_CLEANUP(
         skg_job_create("skg_plan_create", &skg_job_images, linear, machine, outcome, 1, 1, &output, &job));
     job->of_plan = 1;
-    SKG_TRY_CLEANUP(skg_frames_submit(&job, NULL, 0));
+    SKG_TRY_CLEANUP(skg_submit_frames(&job, NULL, 0));
     status = skg_job_complete(&job);
     if (status == SKG_ERR_CANCELLED)
         status = skg_fail(status, "interrupted while the number of samples of the source was found, at %d",

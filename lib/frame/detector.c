@@ -71,7 +71,7 @@ skg_status skg_frame_detect(skg_job *job, const skg_frame_work *work, const skg_
                                 rows, recipe->model.channels, log));
     if (!machine->detector || recipe->linear) return SKG_OK;
     SKG_TRY(find_factor(job, work, &factor));
-    return skg_detector_run(machine->detector, &work->noise, work->shows == SKG_OUTPUT_MEAN, factor,
+    return skg_detector_run(machine->detector, &work->noise, work->kind == SKG_OUTPUT_MEAN, factor,
                             machine->flat_field.image.memory, &work->place, columns, rows, log);
 }
 

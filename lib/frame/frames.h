@@ -16,9 +16,16 @@ void skg_frame_prefetch(const skg_recipe *recipe, const skg_machine *machine);
 /* Compiles and allocates for images of the recipe's view. */
 skg_status skg_frame_prepare(const skg_recipe *recipe, skg_machine *machine, skg_outcome *outcome);
 
-/* Fills a pass and draws its sums, by itself; release it with skg_pass_release, also after a failure. number: of the pass, below 0:
- * the only one */
-skg_status skg_frame_draw_sums(skg_job *job, const skg_frame_work *work, int64_t number, skg_pass *pass);
+/* Fills a pass and pins the raster that it calls for; release it with skg_pass_release, also after a failure. number: of the pass, below
+ * 0: the only one. alone: 1: it is drawn by itself */
+skg_status skg_pass_begin(skg_job *job, const skg_frame_work *work, int64_t number, int alone,
+                          skg_pass *pass);
+
+/* The job's report is that of this pass from now on. Warns if the pass shows nothing. */
+void skg_pass_note(skg_job *job, const skg_pass *pass);
+
+/* Enqueues the sums of a pass that has begun: the raster of all parts, and what priorities, volumes and leaky parts change in its sums. */
+skg_status skg_draw_sums(skg_job *job, const skg_frame_work *work, const skg_pass *pass);
 
 /* The sums of a pass that was drawn, as the attenuation reads them, with what it reads beside them. place: of the pass among those of
  * its raster */
@@ -29,8 +36,8 @@ double skg_frame_factor(const skg_recipe *recipe, const skg_frame_work *work, co
 
 /* Draws the path lengths through a part along every ray of a pass into a buffer, [rows][columns] of the pass's precision; of a volume,
  * what its cells add to a plane of the model. The pass is made for it alone; release it with skg_pass_release, also after a failure. */
-skg_status skg_frame_draw_lengths(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
-                                  int32_t plane, skg_buffer *lengths, skg_pass *pass);
+skg_status skg_draw_lengths(skg_job *job, const skg_frame_work *work, int64_t number, int64_t part,
+                            int32_t plane, skg_buffer *lengths, skg_pass *pass);
 
 /* The number of the first pass of an image; -1: its only one, which is averaged with none. */
 static inline int64_t skg_frame_first_pass(const skg_recipe *recipe) {
@@ -48,13 +55,18 @@ skg_status skg_frame_pin_together(const skg_job *job, skg_pass *pass);
 skg_status skg_frame_update_meshes(skg_job *job);
 
 /* Enqueues the passes from number `first` on, before `end`; of a frame that was drawn already (work->drawn) its share of the image. */
-skg_status skg_frame_draw_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end);
+skg_status skg_draw_passes(skg_job *job, const skg_frame_work *work, int64_t first, int64_t end);
 
 /* The steps of an output (enum skg_output_kind) of which an image's have `each` passes; 0: all. */
-int64_t skg_frame_steps(const skg_recipe *recipe, int32_t shows, int64_t each);
+int64_t skg_frame_steps(const skg_recipe *recipe, int32_t kind, int64_t each);
 
-/* Enqueues a step of a frame. When the device is done with the last one the result is in its place. */
-skg_status skg_frame_render(skg_job *job, const skg_frame_work *work);
+/* The kind of job whose frames are images, and other outputs. */
+extern const skg_job_kind skg_job_images;
+
+/* Enqueues a step of one output of a frame; of an undivided job all of it. When the device is done with the last step the result is in
+ * its place. index: of the frame */
+skg_status skg_render_output(skg_job *job, const skg_frame_output *output, int64_t index,
+                             skg_frame_work *work);
 
 /* --- Passes that one launch draws */
 
@@ -87,6 +99,20 @@ skg_status skg_pass_fill(const skg_recipe *recipe, const skg_frame_work *work, i
 /* Widens the extents of the raster's planes, [planes][4], all 0 before, to what those of their parts cover. */
 void skg_pass_extents(const skg_pass *pass, cl_int *extents);
 
+/* --- Frames in which parts have another density or fill fraction than planned: air that thins a lung, contrast medium that fills
+ * a duct */
+
+/* What every part of such a frame contributes; both arrays are freed by the caller.
+ *
+ * contributions   part p has first[p] to first[p + 1] - 1
+ * first           [parts + 1] */
+skg_status skg_overrides_apply(const skg_recipe *recipe, const skg_frame *given,
+                               skg_contribution **contributions, int64_t **first);
+
+/* The matter of all parts in a frame: density over that of the material, and the share that is there. [parts] each */
+skg_status skg_overrides_matter(const skg_recipe *recipe, const skg_frame *given, double *density,
+                                double *fill);
+
 /* --- Scattered photons of a frame */
 
 /* Whether images of the job hold scattered photons. */
@@ -109,7 +135,7 @@ skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work);
 
 /* Whether a frame shows what photons are expected, without noise, or how much noise varies. */
 static inline int skg_frame_is_expected(const skg_recipe *recipe, const skg_frame_work *work) {
-    return recipe->linear || work->shows == SKG_OUTPUT_MEAN || work->shows == SKG_OUTPUT_VARIANCE;
+    return recipe->linear || work->kind == SKG_OUTPUT_MEAN || work->kind == SKG_OUTPUT_VARIANCE;
 }
 
 /* What the weights of the model are multiplied by for a view: those of a ratio hold for any. */

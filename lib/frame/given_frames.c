@@ -1,5 +1,5 @@
 /* Frames of the caller, read and copied, so that they may be enqueued later. */
-#include "frame/given.h"
+#include "frame/frames.h"
 
 #include "plan/decisions.h"
 
@@ -42,6 +42,7 @@ skg_status skg_held_frame_place(const skg_recipe *recipe, int64_t index, const s
 skg_status skg_held_frame_read(const skg_job *job, const skg_frame *frames, int64_t index, skg_frame *frame,
                                skg_view *view, const double **poses, skg_noise_args *noise) {
     const skg_recipe *recipe = job->recipe;
+    SKG_ASSERT(job->then.first <= index && index < job->count);
     skg_frame_init(frame);
     *view = recipe->view;
     *noise = skg_noise_key(recipe->options.noise_seed, index, 1);

@@ -1,4 +1,4 @@
-/* A job: what a submission holds until it is waited for, and its references. */
+/* A job: what a submission holds until it is waited for, its steps, and its references. */
 #include "frame/jobs.h"
 
 #include <inttypes.h>
@@ -58,6 +58,26 @@ skg_status skg_job_divide(skg_job *job, int64_t steps) {
     SKG_ASSERT(job->enqueued == 0 && steps >= 1);
     job->steps = steps;
     return skg_staging_take(&job->staging, job->count * steps, sizeof *job->ends, "events", &job->ends);
+}
+
+skg_status skg_job_step(skg_job *job, int64_t end, skg_frame_work *work) {
+    const int64_t index = job->enqueued / job->steps, step = job->enqueued % job->steps;
+    cl_event last = NULL;
+    SKG_ASSERT(job->enqueued < skg_job_steps(job) && job->enqueued < end);
+    work->end = &last;
+    work->followed = job->steps == 1 && job->enqueued + 1 < end;
+    skg_status status = job->kind->step(job, index, step, work);
+    if (status == SKG_OK && !last) {
+        const cl_int code = clEnqueueMarkerWithWaitList(job->machine->context->device->queue, 0, NULL, &last);
+        if (code != CL_SUCCESS) status = skg_cl_fail(code, "clEnqueueMarkerWithWaitList", __FILE__, __LINE__);
+    }
+    if (status != SKG_OK) {
+        if (last) clReleaseEvent(last);
+        return status;
+    }
+    job->followed = work->followed;
+    job->ends[job->enqueued++] = last;
+    return SKG_OK;
 }
 
 void skg_job_empty(skg_job *done) {

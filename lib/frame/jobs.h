@@ -2,6 +2,7 @@
 #ifndef SKG_JOBS_H
 #define SKG_JOBS_H
 
+#include "device/device.h"
 #include "frame/plans.h"
 #include "frame/work.h"
 #include "plan/results.h"
@@ -22,7 +23,7 @@ typedef struct {
     int64_t first;     /* number of frames[0] */
 } skg_job_scene;
 
-/* What the steps of a job are. frame/submission.c has the kind whose frames are images; rooms above have others. */
+/* What the steps of a job are. frame/render_output.c has the kind whose frames are images; rooms above have others. */
 typedef struct {
     /* Enqueues what comes before the steps. These then follow one by one, when the job is asked or waited for, on vertices that are
      * copied. NULL: there is nothing before. frames: the caller's; poses: [parts] memory */
@@ -79,6 +80,9 @@ skg_status skg_job_create(const char *call, const skg_job_kind *kind, const skg_
 /* Has each frame given in so many steps. Before any is enqueued. */
 skg_status skg_job_divide(skg_job *job, int64_t steps);
 
+/* Enqueues the step of a frame that was read, which comes next. end: the number before which others follow at once */
+skg_status skg_job_step(skg_job *job, int64_t end, skg_frame_work *work);
+
 static inline int skg_job_is_cancelled(const skg_job *job) {
     return atomic_load(&job->cancelled) || (job->of_plan && atomic_load(&job->machine->context->interrupted));
 }
@@ -95,19 +99,21 @@ void skg_job_end(skg_job **job);
 /* The same without giving up a reference. */
 void skg_job_empty(skg_job *job);
 
-/* --- Frames of a job: checked and enqueued, all at once or one after another */
+/* --- Frames of a job: checked and enqueued, all at once or one after another (frame/submit_frames.c) */
 
 /* Checks the frames and enqueues them. Of frames that keep the device busy for long, only the first ones are enqueued, so that a
  * job can be cancelled; the others follow while it is asked or waited for. frames: [job->count] the caller's; NULL: each as
  * plan and scene stand. at_once: 1: all are enqueued. After a failure nothing is under way, and the job is released. */
-skg_status skg_frames_submit(skg_job **job, const skg_frame *frames, int at_once);
+skg_status skg_submit_frames(skg_job **job, const skg_frame *frames, int at_once);
 
-/* The kind of job whose frames are images, and other outputs. */
-extern const skg_job_kind skg_job_images;
+/* Enqueues frames that the device can be given by now, unless the job was cancelled. A failure is reported by skg_job_wait. */
+void skg_submission_continue(skg_job *job);
 
-/* Enqueues a step of one output of a frame; of an undivided job all of it. index: of the frame */
-skg_status skg_frame_render_output(skg_job *job, const skg_frame_output *output, int64_t index,
-                                   skg_frame_work *work);
+/* Enqueues what is left of a context's earlier job, so that its jobs run in order. */
+void skg_submission_flush(const skg_context *context);
+
+/* Enqueues the reads of what is reported, of which the last is waited for, if that was not done. */
+skg_status skg_submission_finish(skg_job *job);
 
 /* --- Small frames, of which one launch draws several (frame/together.c) */
 
@@ -124,27 +130,50 @@ int32_t skg_job_room(const skg_job *job);
 
 /* Enqueues frames from job->enqueued on, before number `end`: as many as one launch draws. submitted: how many; 0: the next one has to be
  * drawn by itself. */
-skg_status skg_together_submit(skg_job *job, const skg_frame *frames, const double **poses, int64_t end,
+skg_status skg_submit_together(skg_job *job, const skg_frame *frames, const double **poses, int64_t end,
                                int64_t *submitted);
 
-/* Enqueues the step of a frame that was read, which comes next. end: the number before which others follow at once */
-skg_status skg_submit_step(skg_job *job, int64_t end, skg_frame_work *work);
+/* --- Waiting for a job, and giving the device its frames meanwhile (frame/wait.c) */
 
 /* Counts the steps that are done, and gives the device others. */
 skg_status skg_job_look(skg_job *job);
 
-/* Enqueues frames that the device can be given by now, unless the job was cancelled. A failure is reported by skg_job_wait. */
-void skg_submission_continue(skg_job *job);
-
-/* Enqueues what is left of a context's earlier job, so that its jobs run in order. */
-void skg_submission_flush(const skg_context *context);
-
-/* Enqueues the reads of what is reported, of which the last is waited for, if that was not done. */
-skg_status skg_submission_finish(skg_job *job);
-
-/* --- Waiting for a job, and giving the device its frames meanwhile */
-
 /* Waits, reports and releases. */
 skg_status skg_job_complete(skg_job **job);
+
+/* The last thing that a public call does which submits a job and does not wait for it. Starts a thread if some steps of the job are
+ * not enqueued yet. The thread takes turns with the calls of the program, and ends when all steps are enqueued, or the job failed or was
+ * cancelled. If there is no thread to be had, the device may be idle until the job is asked for. Returns status, that of the submission;
+ * after a failure there is no job. */
+skg_status skg_feeder_start(skg_status status, skg_job *const *job);
+
+/* --- Frames that the caller describes: read and checked, and copied if they are enqueued later */
+
+/* Reads and checks a frame: itself, its view, its poses ([parts], NULL: the scene's) and the key of its noise. frames: the
+ * caller's, or those of job->then; NULL: as plan and scene stand. */
+skg_status skg_held_frame_read(const skg_job *job, const skg_frame *frames, int64_t index, skg_frame *frame,
+                               skg_view *view, const double **poses, skg_noise_args *noise);
+
+/* Reads and checks the view and the poses of a frame, over those that are given. index: for the message */
+skg_status skg_held_frame_place(const skg_recipe *recipe, int64_t index, const skg_frame *frame,
+                                skg_view *view, const double **poses);
+
+/* Copies what the frames from job->enqueued on need of scene and caller. From then on the job looks at neither. */
+skg_status skg_held_frames_copy(skg_job *job, const skg_frame *frames);
+
+/* --- OpenCL objects of the caller */
+
+/* The events that a call is given, and where the caller wants one of its own. */
+typedef struct {
+    int32_t waits;
+    const cl_event *wait_list; /* [waits] */
+    cl_event *done;            /* may be NULL */
+} skg_caller_events;
+
+/* Sets *done to NULL, and checks the list. call: the name of the function, for the message. */
+skg_status skg_caller_events_check(const char *call, const skg_caller_events *events);
+
+/* Enqueues that the caller's events are waited for. */
+skg_status skg_caller_events_wait(skg_context *context, const skg_caller_events *events);
 
 #endif

@@ -2,7 +2,6 @@
 #include "frame/work.h"
 
 #include "beam/counter.h"
-#include "frame/given.h"
 #include "spectral/model.h"
 
 #include <inttypes.h>
@@ -234,4 +233,20 @@ skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_
                                    (size_t)(output->channels * size * element), first, 0, NULL, wanted));
     if (end) SKG_CL_TRY(clRetainEvent(*end = event));
     return skg_stage_log_add(log, "read back", event);
+}
+
+skg_status skg_caller_buffer_check(const char *call, const skg_context *context, cl_mem buffer,
+                                   int64_t *bytes) {
+    cl_context of = NULL;
+    size_t size = 0;
+    if (!buffer) return skg_fail(SKG_ERR_ARGUMENT, "%s: no buffer", call);
+    SKG_CL_TRY(clGetMemObjectInfo(buffer, CL_MEM_CONTEXT, sizeof of, &of, NULL));
+    if (of != context->device->cl)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: the buffer is another OpenCL context's; make it in that of the plan "
+                        "(skg_context_create_cl)",
+                        call);
+    SKG_CL_TRY(clGetMemObjectInfo(buffer, CL_MEM_SIZE, sizeof size, &size, NULL));
+    *bytes = (int64_t)size;
+    return SKG_OK;
 }

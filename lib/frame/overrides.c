@@ -1,5 +1,5 @@
 /* Densities and fill fractions of parts in single frames. */
-#include "frame/given.h"
+#include "frame/frames.h"
 
 #include <inttypes.h>
 #include <string.h>

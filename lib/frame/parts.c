@@ -1,6 +1,5 @@
 /* Fills a pass: what parts contribute, where they lie, and the scale of the sums. */
 #include "frame/frames.h"
-#include "frame/given.h"
 #include "geometry/optics.h"
 #include "stage/volumes.h"
 
@@ -15,20 +14,20 @@ static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *wor
     SKG_TRY(skg_alloc(scene->count + 1, sizeof *pass->own_first, "parts of a frame", &pass->own_first));
     int64_t count = 0;
     for (int64_t p = 0; p < scene->count; p++) {
-        const int is_child = work->kind == SKG_LENGTHS_NET && scene->parts[p].inside == work->part;
+        const int is_child = work->which == SKG_LENGTHS_NET && scene->parts[p].inside == work->part;
         pass->own_first[p] = count;
         if (p == work->part || is_child)
             pass->own_contributions[count++] =
-                (skg_contribution){.weight = is_child                          ? -1
-                                             : work->kind == SKG_LENGTHS_CELLS ? 0
-                                                                               : 1};
+                (skg_contribution){.weight = is_child                           ? -1
+                                             : work->which == SKG_LENGTHS_CELLS ? 0
+                                                                                : 1};
     }
     pass->own_first[scene->count] = count;
     return SKG_OK;
 }
 
 static skg_status list_contributions(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
-    const int is_length = work->shows == SKG_OUTPUT_LENGTHS;
+    const int is_length = work->kind == SKG_OUTPUT_LENGTHS;
     pass->planes = is_length ? 1 : recipe->model.planes;
     if (is_length)
         SKG_TRY(list_lengths(recipe->scene, work, pass));
@@ -41,7 +40,7 @@ static skg_status list_contributions(const skg_recipe *recipe, const skg_frame_w
 
 /* Parts that contribute alike share an accumulator, if that pays and there are not more kinds than planned. */
 static skg_status mix_planes(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
-    if (work->shows == SKG_OUTPUT_LENGTHS || !recipe->mixed) return SKG_OK;
+    if (work->kind == SKG_OUTPUT_LENGTHS || !recipe->mixed) return SKG_OK;
     SKG_TRY(skg_mix_find(recipe->scene->count, recipe->model.planes, pass->contributions, pass->first,
                          recipe->mixed, &pass->mix));
     if (!pass->mix.sums) return SKG_OK; /* the overrides of this frame make more kinds of parts */
@@ -98,7 +97,7 @@ static void place_parts(const skg_recipe *recipe, const skg_frame_work *work, co
                                 .contribution = pass->contributions + pass->first[p]};
         if (count == 0) continue;
         extent->scale.weight = largest_weight(pass, p);
-        if (work->shows != SKG_OUTPUT_LENGTHS || work->kind == SKG_LENGTHS_CELLS)
+        if (work->kind != SKG_OUTPUT_LENGTHS || work->which == SKG_LENGTHS_CELLS)
             extent->scale.weight += skg_volumes_most(memory->volumes, p);
         memory->scales[contributing++] = extent->scale;
         pass->kernels.source_plane |= extent->near_source && extent->on_detector;
@@ -173,7 +172,7 @@ static int competitors_contribute(const skg_pass *pass) {
 static skg_status find_priorities(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
     pass->rules = skg_priority_rules(recipe->options.clip, recipe->options.unite);
     if (!recipe->priority_possible ||
-        (work->shows == SKG_OUTPUT_LENGTHS && work->kind == SKG_LENGTHS_SURFACE))
+        (work->kind == SKG_OUTPUT_LENGTHS && work->which == SKG_LENGTHS_SURFACE))
         return SKG_OK;
     SKG_TRY(skg_priority_find(recipe->scene, pass->rules, &pass->camera, pass->extents, &pass->priority));
     if (!competitors_contribute(pass)) skg_priority_release(&pass->priority);
@@ -200,7 +199,7 @@ static skg_status check_curved(const skg_pass *pass) {
 static skg_status find_window(const skg_recipe *recipe, const skg_frame_work *work, skg_pass *pass) {
     const skg_collimation *collimation = recipe->options.collimation;
     skg_field field;
-    if (work->shows == SKG_OUTPUT_LENGTHS || !skg_collimation_limits(collimation)) return SKG_OK;
+    if (work->kind == SKG_OUTPUT_LENGTHS || !skg_collimation_limits(collimation)) return SKG_OK;
     SKG_TRY(skg_field_make(collimation, work->view, &field));
     return skg_field_window(&field, &pass->camera, pass->window);
 }

@@ -1,7 +1,6 @@
 /* Takes positions of vertices from the caller's device memory. */
 #include "core/text.h"
 #include "device/self_tests.h"
-#include "frame/given.h"
 #include "frame/jobs.h"
 
 #include <skiagraph/opencl.h>

@@ -1,8 +1,6 @@
 /* Scattered photons of a frame. */
 #include "frame/frames.h"
 
-#include "frame/given.h"
-
 #include <inttypes.h>
 
 int skg_frame_scatters(const skg_job *job) {
@@ -80,8 +78,8 @@ skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const
     SKG_TRY(compute(job, work, -1));
     const skg_scatterer *s = job->scatterer;
     const skg_plan_options *options = &job->recipe->options;
-    const int noise = options->noise && work->shows == SKG_OUTPUT_IMAGE;
-    const int of_variance = work->shows == SKG_OUTPUT_VARIANCE;
+    const int noise = options->noise && work->kind == SKG_OUTPUT_IMAGE;
+    const int of_variance = work->kind == SKG_OUTPUT_VARIANCE;
     const skg_scattered_image what = {.mean = of_variance ? s->images.variance.memory : s->images.mean.memory,
                                       .variance = noise ? s->images.variance.memory : NULL,
                                       .channels = skg_model_sums(&job->recipe->model),
@@ -93,12 +91,12 @@ skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const
 }
 
 skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work) {
-    const int is_component = work->shows == SKG_OUTPUT_SCATTER_COMPONENT;
-    SKG_TRY(compute(job, work, is_component ? work->kind : -1));
+    const int is_component = work->kind == SKG_OUTPUT_SCATTER_COMPONENT;
+    SKG_TRY(compute(job, work, is_component ? work->which : -1));
     const skg_scatter_images *images = &job->scatterer->images;
-    const skg_scattered_image what = {.mean = is_component                        ? images->component.memory
-                                              : work->shows == SKG_OUTPUT_SCATTER ? images->shown.memory
-                                                                                  : images->sigma.memory,
+    const skg_scattered_image what = {.mean = is_component                       ? images->component.memory
+                                              : work->kind == SKG_OUTPUT_SCATTER ? images->shown.memory
+                                                                                 : images->sigma.memory,
                                       .channels = job->recipe->model.channels,
                                       .scale = 1};
     return run(job, work, &what, &work->place);

@@ -1,10 +1,26 @@
 /* The public calls that submit frames. */
 #include "core/text.h"
 #include "device/self_tests.h"
-#include "frame/feeder.h"
-#include "frame/given.h"
+#include "frame/frames.h"
 
 #include <skiagraph/opencl.h>
+
+#include <inttypes.h>
+
+skg_status skg_caller_events_check(const char *call, const skg_caller_events *events) {
+    if (events->done) *events->done = NULL;
+    if (events->waits < 0 || (events->waits > 0 && !events->wait_list))
+        return skg_fail(SKG_ERR_ARGUMENT, "%s: %" PRId32 " events to wait for, but no list", call,
+                        events->waits);
+    return SKG_OK;
+}
+
+skg_status skg_caller_events_wait(skg_context *context, const skg_caller_events *events) {
+    if (events->waits > 0)
+        SKG_CL_TRY(clEnqueueBarrierWithWaitList(context->device->queue, (cl_uint)events->waits,
+                                                events->wait_list, NULL));
+    return SKG_OK;
+}
 
 /* What every submission begins with. */
 static skg_status begin(const char *call, skg_plan *plan, skg_job **job) {
@@ -59,7 +75,7 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
         if (status != SKG_OK) skg_job_end(&made);
         SKG_TRY(status);
     }
-    SKG_TRY(skg_frames_submit(&made, frames, events != NULL));
+    SKG_TRY(skg_submit_frames(&made, frames, events != NULL));
     skg_ref(&plan->refs);
     made->plan = plan;
     *job = made;
@@ -70,19 +86,12 @@ static skg_status submit(const char *call, skg_plan *plan, int64_t count, const 
     return SKG_OK;
 }
 
-skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, const skg_output *output,
-                           skg_job **job) {
+skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames, int64_t output_count,
+                           const skg_output *outputs, skg_job **job) {
     const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     return skg_call_end(
-        begun, skg_feeder_start(submit("skg_plan_submit", plan, count, frames, 1, output, NULL, job), job));
-}
-
-skg_status skg_plan_outputs_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
-                                   int64_t output_count, const skg_output *outputs, skg_job **job) {
-    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(begun, skg_feeder_start(submit("skg_plan_outputs_submit", plan, count, frames,
-                                                       output_count, outputs, NULL, job),
-                                                job));
+        begun, skg_feeder_start(
+                   submit("skg_plan_submit", plan, count, frames, output_count, outputs, NULL, job), job));
 }
 
 skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *frames, int64_t output_count,
@@ -94,13 +103,10 @@ skg_status skg_plan_submit_cl(skg_plan *plan, int64_t count, const skg_frame *fr
         begun, submit("skg_plan_submit_cl", plan, count, frames, output_count, outputs, &events, job));
 }
 
-static skg_status make_image(skg_plan *plan, const skg_output *output) {
-    skg_job *job = NULL;
-    SKG_TRY(submit("skg_plan_image", plan, 1, NULL, 1, output, NULL, &job));
-    return skg_job_wait(&job);
-}
-
 skg_status skg_plan_image(skg_plan *plan, const skg_output *output) {
     const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
-    return skg_call_end(begun, make_image(plan, output));
+    skg_job *job = NULL;
+    skg_status status = submit("skg_plan_image", plan, 1, NULL, 1, output, NULL, &job);
+    if (status == SKG_OK) status = skg_job_wait(&job);
+    return skg_call_end(begun, status);
 }

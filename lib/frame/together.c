@@ -1,8 +1,53 @@
-/* Small frames of a job, of which one launch draws several: each worker takes whole frames, so that launches, and waiting for each other
- * after every stage, come once for all of them. What follows the sums of a frame is enqueued as for any. */
+/* Passes that one launch draws: samples of the source of one frame, or small frames of a job. Of small frames each worker takes whole ones,
+ * so that launches, and waiting for each other after every stage, come once for all of them. What follows the sums of a frame is enqueued as
+ * for any. */
 #include "frame/frames.h"
-#include "frame/given.h"
 #include "plan/decisions.h"
+
+/* --- passes */
+
+/* Numbers before the extents of the passes: the pass that is claimed next. */
+enum { CLAIM = 1 };
+
+static skg_status make_room(const skg_pass *pass, skg_waiting *g) {
+    const int32_t room = skg_raster_passes(pass->main.raster);
+    g->tables = (skg_pass_tables){0};
+    SKG_TRY(skg_staging_take(g->staging, CLAIM + 4 * room * pass->planes, sizeof *g->placed, "extents",
+                             &g->placed));
+    SKG_TRY(skg_realloc(room, sizeof *g->passes, "passes", &g->passes));
+    g->room = room;
+    return SKG_OK;
+}
+
+skg_status skg_waiting_add(skg_job *job, const skg_pass *pass, skg_waiting *g) {
+    SKG_ASSERT(g->count == 0 || g->count < g->room);
+    if (g->count == 0) SKG_TRY(make_room(pass, g));
+    SKG_TRY(skg_frame_update_meshes(job));
+    SKG_TRY(skg_geometry_weigh_pass(&job->machine->geometry, &pass->camera, pass->parts, pass->scale.scale,
+                                    g->room, &g->tables, g->staging));
+    skg_pass_extents(pass, g->placed + CLAIM + 4 * g->count * pass->planes);
+    g->passes[g->count++] = *pass;
+    return SKG_OK;
+}
+
+skg_status skg_waiting_draw(skg_job *job, const skg_waiting *g, cl_event *read) {
+    skg_machine *machine = job->machine;
+    if (g->count == 0) return SKG_OK;
+    SKG_TRY(skg_geometry_send_passes(machine->context, &machine->geometry, &g->tables));
+    return skg_raster_run_passes(g->passes->main.raster, &machine->geometry, g->count, g->placed, read,
+                                 &job->staging.log);
+}
+
+void skg_waiting_empty(skg_waiting *g) {
+    while (g->count > 0) skg_pass_release(&g->passes[--g->count]);
+}
+
+void skg_waiting_release(skg_waiting *g) {
+    skg_waiting_empty(g);
+    skg_free(&g->passes);
+}
+
+/* --- frames */
 
 /* Frames that a launch draws. */
 typedef struct {
@@ -50,7 +95,7 @@ static skg_frame_work work_of(const skg_job *job, const group *g, int32_t place,
     return (skg_frame_work){.view = &g->views[place],
                             .poses = poses,
                             .frame = &g->frames[place],
-                            .shows = job->outputs->to.kind,
+                            .kind = job->outputs->to.kind,
                             .noise = g->noise[place]};
 }
 
@@ -81,8 +126,7 @@ static skg_status add(skg_job *job, const skg_frame *frames, const double **pose
     SKG_TRY_CLEANUP(skg_pass_fill(recipe, &work, skg_frame_first_pass(recipe), &job->machine->pass, &pass));
     SKG_TRY_CLEANUP(skg_frame_pin_together(job, &pass));
     if (!fits_in(g, &pass)) goto cleanup;
-    skg_raster_pin_copy(&pass.main, &job->main);
-    skg_warn_unseen(job->machine->context, pass.scene, &pass.camera, pass.extents, pass.fine, job->outcome);
+    skg_pass_note(job, &pass);
     SKG_TRY_CLEANUP(skg_waiting_add(job, &pass, &g->drawn));
     *fits = 1;
     return SKG_OK;
@@ -108,12 +152,12 @@ static skg_status submit_group(skg_job *job, const double **poses, int64_t end, 
         skg_frame_work work = work_of(job, g, place, poses);
         work.drawn = &g->drawn.passes[place];
         work.drawn_place = place;
-        SKG_TRY(skg_submit_step(job, end, &work));
+        SKG_TRY(skg_job_step(job, end, &work));
     }
     return SKG_OK;
 }
 
-skg_status skg_together_submit(skg_job *job, const skg_frame *frames, const double **poses, int64_t end,
+skg_status skg_submit_together(skg_job *job, const skg_frame *frames, const double **poses, int64_t end,
                                int64_t *submitted) {
     skg_together_slot *slot = NULL;
     group g;

@@ -1,7 +1,8 @@
-/* Jobs are asked, cancelled and waited for. */
+/* Jobs are asked, cancelled and waited for; while nobody does so, a thread goes on with them, so that the device is not idle. */
 #include "frame/jobs.h"
 
 #include "core/text.h"
+#include "device/device.h"
 #include "driver/driver.h"
 
 /* Waits until every frame that will be made is, and gives the device those that were held back. */
@@ -129,4 +130,30 @@ static skg_status wait_for(skg_job **job) {
 skg_status skg_job_wait(skg_job **job) {
     const skg_call begun = skg_call_begin(job ? context_of(*job) : NULL);
     return skg_call_end(begun, wait_for(job));
+}
+
+/* --- while nobody asks */
+
+/* Gives the device what it can be given by now. Returns the event of the oldest step that is not done, retained; NULL: nothing is
+ * left to do. A failure is that of the job, or skg_job_wait meets it again. */
+static void *go_on(void *user) {
+    skg_job *job = user;
+    if (skg_job_look(job) != SKG_OK || job->failure != SKG_OK || job->last || skg_job_is_cancelled(job))
+        return NULL;
+    cl_event oldest = job->ends[job->done];
+    return clRetainEvent(oldest) == CL_SUCCESS ? oldest : NULL;
+}
+
+static int wait_for_step(void *oldest) {
+    const cl_int code = skg_event_wait(oldest);
+    clReleaseEvent(oldest);
+    return code == CL_SUCCESS;
+}
+
+skg_status skg_feeder_start(skg_status status, skg_job *const *job) {
+    static const skg_aside_work work = {go_on, wait_for_step};
+    if (SKG_FAILED(status) || !*job) return status;
+    skg_context *context = (*job)->machine->context;
+    if (context->held == *job) skg_aside_begin(context->turn, work, *job, &(*job)->feeder);
+    return status;
 }

@@ -16,15 +16,17 @@ typedef struct {
     const skg_view *view;
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
     const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
-    int32_t shows;              /* enum skg_output_kind */
-    int32_t kind;               /* of lengths: SKG_LENGTHS_...; of a component of the scatter: which */
-    int64_t part;               /* whose lengths are shown */
-    int32_t plane;              /* of SKG_LENGTHS_CELLS */
-    /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
-    int32_t reuses;
-    int64_t step, each;   /* of an image: which step is made, of so many passes; each: 0: all its passes */
-    skg_noise_args noise; /* its key */
+    skg_noise_args noise;       /* its key */
+    /* What is shown, and where. */
+    int32_t kind;  /* enum skg_output_kind */
+    int32_t which; /* of lengths: SKG_LENGTHS_...; of a component of the scatter: which */
+    int64_t part;  /* whose lengths are shown */
+    int32_t plane; /* of SKG_LENGTHS_CELLS */
     skg_image_place place;
+    /* How it is made. */
+    int32_t
+        reuses; /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
+    int64_t step, each; /* of an image: which step is made, of so many passes; each: 0: all its passes */
     const struct skg_pass *
         drawn; /* its sums, which were drawn together with those of other frames; NULL: they are to be drawn */
     int32_t drawn_place; /* of that pass, among those of its raster */
@@ -68,5 +70,9 @@ skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view
 skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_view *view,
                                       const skg_machine *machine, int64_t frame, skg_stage_log *log,
                                       cl_event *end);
+
+/* Checks that a buffer is of the context's, and gets its size. */
+skg_status skg_caller_buffer_check(const char *call, const skg_context *context, cl_mem buffer,
+                                   int64_t *bytes);
 
 #endif

@@ -1,7 +1,6 @@
 /* From d loss / d image to d loss / d intensities: the transpose of what the detector does. */
 #include "gradient/adjoint.h"
 
-#include "frame/given.h"
 #include "plan/decisions.h"
 #include "spectral/model.h"
 

@@ -1,7 +1,7 @@
 /* Derivatives of a plan's image along directions: the public calls. */
 #include "core/text.h"
 #include "device/self_tests.h"
-#include "frame/feeder.h"
+#include "frame/jobs.h"
 #include "gradient/refusals.h"
 #include "gradient/submit.h"
 #include "plan/rules.h"

@@ -1,7 +1,7 @@
 /* Gradients of a plan: the public calls. */
 #include "core/text.h"
 #include "device/self_tests.h"
-#include "frame/feeder.h"
+#include "frame/jobs.h"
 #include "gradient/adjoint.h"
 #include "gradient/refusals.h"
 #include "gradient/submit.h"

@@ -3,7 +3,6 @@
 #include "gradient/kind.h"
 
 #include "frame/frames.h"
-#include "frame/given.h"
 #include "frame/jobs.h"
 #include "gradient/adjoint.h"
 #include "gradient/density.h"
@@ -18,6 +17,13 @@
 
 /* --- what comes before the first pass */
 
+/* Enqueues the sums of a pass, which is drawn by itself; release it with skg_pass_release, also after a failure. */
+static skg_status draw(skg_job *job, const skg_frame_work *work, int64_t number, skg_pass *pass) {
+    SKG_TRY(skg_pass_begin(job, work, number, 1, pass));
+    skg_pass_note(job, pass);
+    return skg_draw_sums(job, work, pass);
+}
+
 /* Enqueues the image, if it has to be known, or the sums of the first pass, which finds them where they stand. */
 static skg_status begin(skg_job *job, const skg_frame *frames, const double **poses) {
     skg_gradient_work *gradient = skg_gradient_of(job);
@@ -28,10 +34,10 @@ static skg_status begin(skg_job *job, const skg_frame *frames, const double **po
     SKG_TRY(skg_held_frame_read(job, frames, 0, &frame, &gradient->of_frame, poses, &work.noise));
     if (gradient->image) {
         SKG_TRY(skg_geometry_reset_bad(machine->context, &machine->geometry));
-        SKG_TRY(skg_frame_render_output(job, &gradient->shown, 0, &work));
+        SKG_TRY(skg_render_output(job, &gradient->shown, 0, &work));
     } else {
         SKG_TRY(skg_geometry_continue(machine->context, &machine->geometry));
-        const skg_status status = skg_frame_draw_sums(job, &work, skg_frame_first_pass(job->recipe), &pass);
+        const skg_status status = draw(job, &work, skg_frame_first_pass(job->recipe), &pass);
         skg_pass_release(&pass);
         SKG_TRY(status);
     }
@@ -80,7 +86,7 @@ static skg_status add_density(skg_job *job, const skg_frame_work *work, int64_t 
                               int32_t plane) {
     skg_pass pass;
     skg_status status =
-        skg_frame_draw_lengths(job, work, number, part, plane, &skg_gradient_of(job)->memory->lengths, &pass);
+        skg_draw_lengths(job, work, number, part, plane, &skg_gradient_of(job)->memory->lengths, &pass);
     if (status == SKG_OK) status = skg_gradient_add_density(job, &pass, part, plane);
     skg_pass_release(&pass);
     return status;
@@ -108,7 +114,7 @@ static skg_status add_pass(skg_job *job, const skg_frame_work *work, int64_t num
     skg_pass pass;
     skg_sums sums;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_frame_draw_sums(job, work, number, &pass));
+    SKG_TRY_CLEANUP(draw(job, work, number, &pass));
     SKG_TRY_CLEANUP(skg_frame_sums(job, &pass, 0, &sums));
     status = add(job, work, number, &pass, &sums, skg_frame_factor(job->recipe, work, &pass));
 cleanup:

@@ -52,7 +52,7 @@ skg_status skg_gradient_begin(const char *call, skg_plan *plan, skg_job **job, s
 }
 
 skg_status skg_gradient_start(skg_plan *plan, const skg_frame *frame, skg_job **made, skg_job **job) {
-    SKG_TRY(skg_frames_submit(made, frame, 0));
+    SKG_TRY(skg_submit_frames(made, frame, 0));
     skg_ref(&plan->refs);
     (*made)->plan = plan;
     *job = *made;

@@ -68,7 +68,7 @@ static skg_status measure_paths(skg_plan *plan, int64_t i, float *lengths, skg_p
     output.kind = SKG_OUTPUT_LENGTHS;
     output.part = i;
     output.data = lengths;
-    SKG_TRY(skg_plan_submit(plan, 1, &frame, &output, &job));
+    SKG_TRY(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     const skg_status status = skg_job_wait(&job);
     if (status != SKG_OK && status != SKG_RANGE) return status;
     for (int64_t k = 0; k < pixels; k++) {

@@ -81,7 +81,7 @@ typedef struct {
     const char *adjoint;
     /* Leaves it out of the options. NULL: it cannot be left out, or is off by itself. */
     void (*leave_out)(skg_plan_options *options);
-    int32_t predicted; /* 1: the prediction of scatter keeps it (lib/frame/predict.c) */
+    int32_t predicted; /* 1: the prediction of scatter keeps it (lib/scatter/prediction.c) */
     int32_t reserved;
     /* Calls skg_effect_set. */
     void (*find)(const skg_effect_facts *facts, skg_effect_state *state);

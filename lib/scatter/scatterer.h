@@ -37,4 +37,20 @@ skg_status skg_scatterer_component(skg_context *context, skg_scatterer *scattere
 void skg_scatterer_release(skg_scatterer *scatterer);
 int64_t skg_scatterer_bytes(const skg_scatterer *scatterer);
 
+/* --- What scatter to expect, before it is computed */
+
+/* What a plan of its own renders of a scene. */
+typedef struct {
+    float *image, *scatter; /* [rows][columns] all photons, and the scattered ones */
+    double open;            /* the open beam, in their unit */
+} skg_scatter_rendering;
+
+/* Renders a view with other options than the plan's. user: as given to skg_scatter_predict */
+typedef skg_status (*skg_scatter_render)(void *user, const skg_view *view, const skg_plan_options *options,
+                                         skg_scatter_rendering *rendering);
+
+/* Fills a prediction but for its seconds: from one rendering, or from two where there is a grid. */
+skg_status skg_scatter_predict(const skg_recipe *recipe, skg_scatter_render render, void *user,
+                               skg_scatter_prediction *prediction);
+
 #endif

@@ -82,7 +82,7 @@ static skg_status render(skg_context *context, int32_t strategy, exact_run *run)
     SKG_TRY(skg_plan_create(context, run->scene, &run->view, run->beam, &options, &run->plan));
     output.kind = SKG_OUTPUT_LENGTHS;
     output.lengths = SKG_LENGTHS_SURFACE;
-    SKG_TRY(skg_plan_submit(run->plan, 1, NULL, &output, &job));
+    SKG_TRY(skg_plan_submit(run->plan, 1, NULL, 1, &output, &job));
     const skg_status status = skg_job_wait(&job);
     return SKG_FAILED(status) ? status : SKG_OK;
 }

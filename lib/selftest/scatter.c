@@ -60,7 +60,7 @@ static skg_status render(skg_context *context, const double *edges, const skg_vi
         outputs[k].data = run->image[k];
     }
     outputs[1].kind = SKG_OUTPUT_SCATTER;
-    SKG_TRY(skg_plan_outputs_submit(run->plan, 1, NULL, 2, outputs, &job));
+    SKG_TRY(skg_plan_submit(run->plan, 1, NULL, 2, outputs, &job));
     return skg_job_wait(&job);
 }
 

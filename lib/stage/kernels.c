@@ -84,10 +84,14 @@ void skg_arguments_round(const void *twice, size_t reals, size_t size, void *sin
     memcpy(to + count, from + count, size - reals);
 }
 
-static skg_status enqueue(skg_context *context, cl_kernel kernel, const char *stage,
-                          const skg_work_size *work, skg_stage_log *log) {
+skg_status skg_kernel_launch(skg_context *context, cl_kernel kernel, const char *stage,
+                             const skg_work_size *work, int32_t count, const skg_argument *arguments,
+                             skg_stage_log *log) {
     size_t global[3], local[3];
     cl_event event = NULL;
+    SKG_ASSERT(1 <= work->dimensions && work->dimensions <= 3);
+    for (int32_t i = 0; i < count; i++)
+        SKG_TRY(skg_kernel_set(kernel, arguments[i].position, arguments[i].size, arguments[i].value));
     for (cl_uint d = 0; d < work->dimensions; d++) {
         global[d] = (size_t)skg_round_up(work->items[d], work->group[d]);
         local[d] = (size_t)work->group[d];
@@ -105,14 +109,6 @@ static skg_status enqueue(skg_context *context, cl_kernel kernel, const char *st
                         "stage %s: %s", stage, skg_cl_name(code));
     }
     return skg_stage_log_add(log, stage, event);
-}
-
-skg_status skg_kernel_launch(skg_context *context, cl_kernel kernel, const char *stage,
-                             const skg_work_size *work, int32_t count, const skg_argument *arguments,
-                             skg_stage_log *log) {
-    for (int32_t i = 0; i < count; i++)
-        SKG_TRY(skg_kernel_set(kernel, arguments[i].position, arguments[i].size, arguments[i].value));
-    return enqueue(context, kernel, stage, work, log);
 }
 
 skg_status skg_program_launch(skg_context *context, cl_program program, const char *function,

@@ -84,7 +84,7 @@ def render(state: State, batch: Batch, out: Any, progress: Progress, one: bool, 
                             f"{', '.join(map(repr, _KEV))}, and for energy alone")
 
     def submit(plan: Any) -> Any:
-        return lambda count, frames, output, job: lib.skg_plan_submit(plan, count, frames, output, job)
+        return lambda count, frames, output, job: lib.skg_plan_submit(plan, count, frames, 1, output, job)
 
     banded = channels_of(state, options) is not None
     with state.calls():
@@ -151,7 +151,7 @@ def together(targets: Sequence[NDArray[Any]], choose: Callable[[Any, int], None]
                 outputs[i] = output[0]
                 outputs[i].data = ffi.cast("void *", place + offset)
                 choose(outputs[i], i)
-            return int(lib.skg_plan_outputs_submit(plan, count, frames, len(places), outputs, job))
+            return int(lib.skg_plan_submit(plan, count, frames, len(places), outputs, job))
 
         return start
 

@@ -400,7 +400,7 @@ START_TEST(views_before_the_jaws_are_refused) {
     frame.view = &near;
     output.data = pixels;
     skg_job *job = NULL;
-    skg_status status = skg_plan_submit(plan, 1, &frame, &output, &job);
+    skg_status status = skg_plan_submit(plan, 1, &frame, 1, &output, &job);
     if (status == SKG_OK) status = skg_job_wait(&job);
     ck_skg_fails(status, SKG_ERR_SCENE, "behind the detector at 300 mm");
     skg_plan_release(&plan);

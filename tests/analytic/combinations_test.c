@@ -185,7 +185,7 @@ static void find_rays(skg_plan *plan, int32_t precision, const skg_view *from, r
         output.data = precision == SKG_PRECISION_DOUBLE ? (void *)found->lengths[p] : single;
         output.kind = SKG_OUTPUT_LENGTHS;
         output.part = p;
-        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int k = 0; k < PIXELS && output.type == SKG_TYPE_FLOAT32; k++)
             found->lengths[p][k] = (double)single[k];

@@ -213,7 +213,7 @@ START_TEST(leaving_the_verified_range) {
     const float before = pixels[SIDE * SIDE / 2 + SIDE / 2];
     skg_frame_init(&frame);
     frame.pose_count = 1, frame.pose_parts = &part, frame.poses = larger;
-    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     ck_skg_fails(skg_job_wait(&job), SKG_RANGE, "bound");
     ck_assert_ptr_null(job);
     const float after = pixels[SIDE * SIDE / 2 + SIDE / 2];
@@ -222,7 +222,7 @@ START_TEST(leaving_the_verified_range) {
     ck_skg(skg_plan_report_get(plan, &report));
     ck_assert_int_gt(report.outside_pixels, SIDE);
     larger[10] = 1.2; /* within the quarter more */
-    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     ck_skg(skg_plan_report_get(plan, &report));
     ck_assert_int_eq(report.outside_pixels, 0);
@@ -409,7 +409,7 @@ START_TEST(a_part_beside_the_view_may_move_in) {
     const float without = pixels[SIDE * SIDE / 2 + SIDE / 2];
     skg_frame_init(&frame);
     frame.pose_count = 1, frame.pose_parts = &part, frame.poses = home;
-    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     ck_assert(pixels[SIDE * SIDE / 2 + SIDE / 2] < without);
     skg_plan_release(&plan);

@@ -64,7 +64,7 @@ static double *frames_of(const skg_spectrum *beam, int beside, int64_t count) {
     for (int64_t i = 0; i < count; i++) skg_frame_init(&frames[i]), frames[i].index = i;
     skg_output_init(&output);
     output.type = SKG_TYPE_FLOAT64, output.data = images;
-    ck_skg(skg_plan_submit(plan, count, frames, &output, &job));
+    ck_skg(skg_plan_submit(plan, count, frames, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     skg_plan_release(&plan);
     free(frames);

@@ -67,7 +67,7 @@ void take(const skg_spectrum *spectrum, const skg_plan_options *options, int64_t
     ck_skg(skg_plan_create(context, scene, &view, (skg_spectrum *)spectrum, options, &plan));
     skg_output_init(&output);
     output.type = SKG_TYPE_FLOAT64, output.data = images;
-    ck_skg(skg_plan_submit(plan, count, frames, &output, &job));
+    ck_skg(skg_plan_submit(plan, count, frames, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     skg_plan_release(&plan);
 }

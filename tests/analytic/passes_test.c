@@ -93,7 +93,7 @@ static void take(skg_plan *plan, float *images) {
         frames[f].pose_count = f > 0, frames[f].pose_parts = moves, frames[f].poses = poses[f];
         frames[f].noise_seed = f;
     }
-    ck_skg(skg_plan_submit(plan, FRAMES, frames, &output, &job));
+    ck_skg(skg_plan_submit(plan, FRAMES, frames, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

@@ -210,7 +210,7 @@ static void take(skg_plan *plan, const skg_frame *frame, picture image) {
     skg_job *job = NULL;
     skg_output_init(&output);
     output.type = SKG_TYPE_FLOAT64, output.data = image;
-    ck_skg(skg_plan_submit(plan, 1, frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 
@@ -406,11 +406,11 @@ START_TEST(lengths) {
         output.type = SKG_TYPE_FLOAT64, output.data = net;
         output.kind = SKG_OUTPUT_LENGTHS;
         output.part = p;
-        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         output.data = surface;
         output.lengths = SKG_LENGTHS_SURFACE;
-        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int r = 0; r < SIDE; r++)
             for (int c = 0; c < SIDE; c++) {

@@ -226,7 +226,7 @@ START_TEST(lengths_have_one_ray_a_pixel) {
         output.kind = SKG_OUTPUT_LENGTHS;
         output.part = 1;
         output.lengths = SKG_LENGTHS_SURFACE;
-        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         skg_plan_release(&plan);
     }

@@ -114,7 +114,7 @@ static void expect(skg_plan *plan, int32_t subframes, double *mean, double *vari
         outputs[k].kind = k ? SKG_OUTPUT_VARIANCE : SKG_OUTPUT_MEAN;
         outputs[k].data = k ? variance : mean;
     }
-    ck_skg(skg_plan_outputs_submit(plan, 1, &frame, 2, outputs, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 2, outputs, &job));
     ck_skg(skg_job_wait(&job));
 }
 
@@ -140,7 +140,7 @@ static void check_plan(int32_t subframes) {
     skg_output_init(&output);
     output.type = SKG_TYPE_FLOAT64;
     output.data = frames;
-    ck_skg(skg_plan_submit(plan, FRAMES, list, &output, &job));
+    ck_skg(skg_plan_submit(plan, FRAMES, list, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     expect(plan, subframes, mean, variance);
     for (int group = 0; group < 3; group++) check_group(group, values, frames, mean, variance);
@@ -361,7 +361,7 @@ START_TEST(plans_without_noise) {
         ck_skg(skg_plan_image(plan, &output));
         ck_assert_mem_eq(image, mean, ROWS * COLUMNS * sizeof *image);
         output.kind = SKG_OUTPUT_VARIANCE;
-        ck_skg_fails(skg_plan_submit(plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT,
+        ck_skg_fails(skg_plan_submit(plan, 1, NULL, 1, &output, &job), SKG_ERR_ARGUMENT,
                      "the variance of the noise is asked for, but the plan has none; set "
                      "skg_plan_options.noise (Noise)");
         skg_plan_release(&plan);
@@ -408,7 +408,7 @@ START_TEST(beside_an_image) {
         ck_skg(skg_plan_image(plan, &outputs[k]));
         outputs[k].data = together[k];
     }
-    ck_skg(skg_plan_outputs_submit(plan, 1, NULL, 3, outputs, &job));
+    ck_skg(skg_plan_submit(plan, 1, NULL, 3, outputs, &job));
     ck_skg(skg_job_wait(&job));
     ck_assert_mem_eq(alone, together, sizeof alone);
     skg_plan_release(&plan);

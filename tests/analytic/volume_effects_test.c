@@ -93,7 +93,7 @@ static void render(skg_plan *plan, const skg_frame *frame, int32_t kind, double 
     skg_job *job = NULL;
     skg_output_init(&output);
     output.type = SKG_TYPE_FLOAT64, output.data = image, output.kind = kind;
-    ck_skg(skg_plan_submit(plan, 1, frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

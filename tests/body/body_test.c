@@ -87,8 +87,8 @@ START_TEST(ribs_turn_as_wilson_measured) {
             skg_body_organ *rib = body->organ + find(label);
             double before[2], after[2];
             skg_rib_plane(rib, NULL, before, before + 1);
-            skg_rotation(rib->axis, rib->rigid.rotation);
-            memcpy(rib->rigid.centre, rib->head, sizeof rib->head);
+            skg_rotation(rib->turn.axis, rib->rigid.rotation);
+            memcpy(rib->rigid.centre, rib->turn.head, sizeof rib->turn.head);
             memset(rib->rigid.shift, 0, sizeof rib->rigid.shift);
             double tip = 0, worst = 0;
             for (int64_t i = 0; i < rib->vertices; i++) {
@@ -246,11 +246,11 @@ START_TEST(parts_stay_in_place) { /* over a quiet breath */
         const skg_body_organ *n = body->organ + needle;
         double tissue[3], least = HUGE_VAL;
         for (int64_t v = 0; v < n->vertices; v++)
-            if (memcmp(n->rest + 3 * v, n->tip, sizeof n->tip) == 0) {
+            if (memcmp(n->rest + 3 * v, n->needle.tip, sizeof n->needle.tip) == 0) {
                 skg_carried_vertex(body, n, v, tissue);
                 least = 0;
                 for (int k = 0; k < 3; k++)
-                    least = fmax(least, fabs(s[needle].position[3 * v + k] - n->tip[k] - tissue[k]));
+                    least = fmax(least, fabs(s[needle].position[3 * v + k] - n->needle.tip[k] - tissue[k]));
             }
         /* The tip goes with its tissue: floats of 100 mm. */
         ck_assert_double_le(least, 8 * (double)FLT_EPSILON * 100);

@@ -39,7 +39,7 @@ START_TEST(ribs_carry_the_rim) { /* and the tendon goes as it is told */
     double lifted = 0, lowest = HUGE_VAL;
     ck_assert_ptr_nonnull(rib);
     for (int64_t i = 0; i < d->vertices; i++) {
-        const double share = d->share[d->node_of[i]];
+        const double share = d->coupling.share[d->node_of[i]];
         ck_assert(share >= 0 && share <= 1);
         if (share == 1) {
             tendon++; /* the product of -15 mm and 2.5 */
@@ -94,9 +94,9 @@ static void make_strip(skg_body_organ *o, double share) {
     memset(moved, 0, sizeof moved);
     for (int i = 0; i < 4; i++) shares[i] = i < 2 ? 0 : share;
     *o = (skg_body_organ){.label = "strip", .role = ROLE_DIAPHRAGM, .vertices = 4, .triangles = 2};
-    o->rest = rest, o->moved = moved, o->share = shares, o->corner = corners, o->node_of = nodes;
+    o->rest = rest, o->moved = moved, o->coupling.share = shares, o->corner = corners, o->node_of = nodes;
     ck_skg(skg_thin_find(o));
-    ck_assert_int_eq(o->thins, 1);
+    ck_assert_int_eq(o->coupling.thins, 1);
 }
 
 /* The product of a facet's normals at rest and as moved, over that at rest. */
@@ -133,7 +133,7 @@ START_TEST(thin_facets_open) { /* one by one, and with all others */
         /* mm: that corner moved along the edge, and the edge turns a little. */
         ck_assert_double_eq_tol(o.moved[3 * i + 1], i == 2 ? -0.5 + first : others, 0.004);
     }
-    skg_free(&o.thin);
+    skg_free(&o.coupling.thin);
 }
 END_TEST
 
@@ -145,7 +145,7 @@ START_TEST(other_facets_open) { /* only on request */
     ck_assert(skg_thin_open(&o, 1));
     ck_assert_double_lt(o.moved[10] - o.moved[1], 8);
     ck_assert(!skg_thin_open(&o, 1));
-    skg_free(&o.thin);
+    skg_free(&o.coupling.thin);
 }
 END_TEST
 
@@ -158,7 +158,7 @@ START_TEST(the_papers_model_stays) { /* on request, and with its hysteresis and 
         if (way == 2) options.relaxation = 1;
         breather_make(&thorax, 10000, 1, &options);
         for (int64_t i = 0; i < thorax.body->organs; i++) ck_assert_int_eq(thorax.body->organ[i].coupled, 0);
-        ck_assert_int_gt(organ_of(ROLE_DIAPHRAGM, NULL)->links, 20);
+        ck_assert_int_gt(organ_of(ROLE_DIAPHRAGM, NULL)->soft.links, 20);
         breather_drop(&thorax);
     }
     skg_body_options_init(&options);
@@ -180,7 +180,7 @@ START_TEST(a_plane_of_the_caller) { /* says where the tendon is */
     breather_pose(&thorax, 0, 1);
     const skg_body_organ *d = organ_of(ROLE_DIAPHRAGM, NULL);
     for (int64_t i = 0; i < d->vertices; i++)
-        if (d->rest[3 * i + 2] > -15) ck_assert_double_eq(d->share[d->node_of[i]], 1);
+        if (d->rest[3 * i + 2] > -15) ck_assert_double_eq(d->coupling.share[d->node_of[i]], 1);
     breather_drop(&thorax);
 }
 END_TEST

@@ -123,14 +123,14 @@ START_TEST(boxes_turn_with_the_drivers) {
     ck_skg(add_ball("ball", 30, muscle, &link, 1));
     ck_skg(skg_body_link(body));
     skg_body_organ *ball = organ_named("ball");
-    ck_assert_int_gt(ball->links, 20);
-    ck_assert_int_lt(ball->links, ball->vertices / 2);
-    ck_assert_int_eq(ball->corotates, 1);
+    ck_assert_int_gt(ball->soft.links, 20);
+    ck_assert_int_lt(ball->soft.links, ball->vertices / 2);
+    ck_assert_int_eq(ball->soft.corotates, 1);
     ck_assert_int_eq(pose(1, 0).broken_links, 0);
     const skg_rigid *rigid = &organ_named("block")->rigid;
     /* A ball within 100 mm of the centre. */
     ck_assert_double_le(off_rigid(ball, rigid), 16 * DBL_EPSILON * 100);
-    ball->corotates = 0;
+    ball->soft.corotates = 0;
     ck_assert_int_eq(pose(1, 0).broken_links, 0);
     ck_assert_double_gt(off_rigid(ball, rigid), 0.5);
     pose(0, 0);
@@ -154,25 +154,25 @@ START_TEST(links_hold_and_give) {
     ck_skg(skg_body_link(body));
     ck_assert_int_eq(times_told, 0);
     skg_body_organ *ball = organ_named("ball");
-    ck_assert_int_eq(ball->corotates, 0); /* it is held */
+    ck_assert_int_eq(ball->soft.corotates, 0); /* it is held */
     skg_body_measure m = pose(1, 0);
     ck_assert_int_eq(m.broken_links, 0);
     ck_assert_double_eq(m.conflict_mm, 0);
-    int64_t hanging = ball->chain->nodes - ball->vertices, rigid = 0, gave = 0, held = 0;
+    int64_t hanging = ball->soft.chain->nodes - ball->vertices, rigid = 0, gave = 0, held = 0;
     ck_assert_int_gt(hanging, 10);
-    for (int64_t d = 0; d < ball->links; d++) {
+    for (int64_t d = 0; d < ball->soft.links; d++) {
         double there[3], most = 0;
-        const int64_t node = ball->chain->driver[d];
-        skg_link_follow(body, ball->link + d, there);
+        const int64_t node = ball->soft.chain->driver[d];
+        skg_link_follow(body, ball->soft.link + d, there);
         for (int k = 0; k < 3; k++) /* every driver is met, at the far end of its link or at the vertex */
-            ck_assert_double_eq_tol(ball->state[k * ball->chain->nodes + node], there[k], far);
+            ck_assert_double_eq_tol(ball->soft.state[k * ball->soft.chain->nodes + node], there[k], far);
         if (node < ball->vertices) {
-            rigid += ball->link[d].organ == 0, held += ball->link[d].organ == 1;
+            rigid += ball->soft.link[d].organ == 0, held += ball->soft.link[d].organ == 1;
             continue;
         }
-        for (int64_t e = ball->chain->first[node]; e < ball->chain->first[node + 1]; e++)
+        for (int64_t e = ball->soft.chain->first[node]; e < ball->soft.chain->first[node + 1]; e++)
             for (int k = 0; k < 3; k++)
-                most = fmax(most, fabs(ball->moved[3 * ball->chain->node[e] + k] - there[k]));
+                most = fmax(most, fabs(ball->moved[3 * ball->soft.chain->node[e] + k] - there[k]));
         gave += most > 0.05;
     }
     ck_assert(rigid > 0 && held > 0 && gave > 0);
@@ -200,8 +200,9 @@ START_TEST(contradictions_are_named) {
         ck_assert_int_eq(m.broken_links, 0);
         for (int k = 0; k < 3; k++) {
             double low = HUGE_VAL, high = -HUGE_VAL;
-            for (int64_t d = 0; d < ball->links; d++)
-                low = fmin(low, ball->target[3 * d + k]), high = fmax(high, ball->target[3 * d + k]);
+            for (int64_t d = 0; d < ball->soft.links; d++)
+                low = fmin(low, ball->soft.target[3 * d + k]),
+                high = fmax(high, ball->soft.target[3 * d + k]);
             widest = fmax(widest, high - low);
         }
         ck_assert_double_gt(widest, 15);
@@ -228,13 +229,13 @@ START_TEST(ties_are_posed_in_order) { /* however they were added; not in a circl
     ck_skg(skg_body_link(body));
     pose(1, 0);
     const skg_body_organ *inner = organ_named("inner"), *outer = organ_named("outer");
-    ck_assert_int_gt(outer->stage, inner->stage);
+    ck_assert_int_gt(outer->soft.stage, inner->soft.stage);
     double farthest = 0;
-    for (int64_t d = 0; d < outer->links; d++) { /* with where the inner one is now, not where it was */
+    for (int64_t d = 0; d < outer->soft.links; d++) { /* with where the inner one is now, not where it was */
         double there[3];
-        skg_link_follow(body, outer->link + d, there);
+        skg_link_follow(body, outer->soft.link + d, there);
         for (int k = 0; k < 3; k++) {
-            ck_assert_double_eq_tol(outer->moved[3 * outer->chain->driver[d] + k], there[k],
+            ck_assert_double_eq_tol(outer->moved[3 * outer->soft.chain->driver[d] + k], there[k],
                                     64 * DBL_EPSILON * 100);
             farthest = fmax(farthest, fabs(there[k]));
         }
@@ -332,13 +333,14 @@ START_TEST(axes_by_inertia) { /* there is no vertebra by itself: the posterior e
             skg_body_organ *rib = organ_named(label);
             const double *bounds = rib->mesh->health.bounds;
             if (n <= 10)
-                ck_assert_double_gt(rib->head[1], bounds[1] + 0.6 * (bounds[4] - bounds[1])); /* behind */
-            const double inner = side > 0 ? rib->head[0] - bounds[0] : bounds[3] - rib->head[0];
+                ck_assert_double_gt(rib->turn.head[1],
+                                    bounds[1] + 0.6 * (bounds[4] - bounds[1])); /* behind */
+            const double inner = side > 0 ? rib->turn.head[0] - bounds[0] : bounds[3] - rib->turn.head[0];
             ck_assert_double_lt(inner, 0.8 * (bounds[3] - bounds[0]));
             if (n < 3 || n > 7) continue;
             skg_rib_plane(rib, NULL, before, before + 1);
-            skg_rotation(rib->axis, rib->rigid.rotation);
-            memcpy(rib->rigid.centre, rib->head, sizeof rib->head);
+            skg_rotation(rib->turn.axis, rib->rigid.rotation);
+            memcpy(rib->rigid.centre, rib->turn.head, sizeof rib->turn.head);
             for (int64_t i = 0; i < rib->vertices; i++)
                 skg_rigid_displace(&rib->rigid, rib->rest + 3 * i, rib->moved + 3 * i);
             skg_rib_plane(rib, rib->moved, after, after + 1);
@@ -384,23 +386,23 @@ START_TEST(an_organ_is_what_it_is_set_to_be) {
     liver = organ_named("liver");
     for (int64_t i = 0; i < 3 * liver->vertices; i++) apart = fmax(apart, fabs(plain[i] - liver->moved[i]));
     ck_assert_double_gt(apart, 0.1);
-    for (int64_t d = 0; d < liver->links; d++) /* and every driver is met to what they contradict */
+    for (int64_t d = 0; d < liver->soft.links; d++) /* and every driver is met to what they contradict */
         for (int k = 0; k < 3; k++)
             ck_assert_double_le(
-                fabs(liver->moved[3 * liver->chain->driver[d] + k] - liver->target[3 * d + k]),
+                fabs(liver->moved[3 * liver->soft.chain->driver[d] + k] - liver->soft.target[3 * d + k]),
                 0.5 * m.conflict_mm + 1e-9);
     const skg_body_organ *rib = organ_named("rib 5 left"), *other = organ_named("rib 5 right");
     const skg_body_organ *cartilage = organ_named("cartilage 5 left"), *stomach = organ_named("stomach");
-    const double length = sqrt(rib->axis[0] * rib->axis[0] + rib->axis[1] * rib->axis[1]);
+    const double length = sqrt(rib->turn.axis[0] * rib->turn.axis[0] + rib->turn.axis[1] * rib->turn.axis[1]);
     ck_assert_double_eq_tol(length, hypot(3, 2) * degree, 4 * DBL_EPSILON);
-    ck_assert_double_eq_tol(rib->head[0], -other->head[0], 1e-9); /* still about its head */
-    ck_assert_int_ge(cartilage->links, 3);                        /* of a coarse mesh */
-    ck_assert_int_eq(cartilage->corotates, 1);
+    ck_assert_double_eq_tol(rib->turn.head[0], -other->turn.head[0], 1e-9); /* still about its head */
+    ck_assert_int_ge(cartilage->soft.links, 3);                             /* of a coarse mesh */
+    ck_assert_int_eq(cartilage->soft.corotates, 1);
     for (int64_t i = 0; i < 3 * stomach->vertices; i++) ck_assert(stomach->moved[i] == 0);
     const skg_body_organ *lung = organ_named("lung left");
-    ck_assert_int_gt(lung->links, 10);
-    for (int64_t d = 0; d < lung->links; d++)
-        ck_assert_int_eq(body->organ[lung->link[d].organ].role, ROLE_RIB);
+    ck_assert_int_gt(lung->soft.links, 10);
+    for (int64_t d = 0; d < lung->soft.links; d++)
+        ck_assert_int_eq(body->organ[lung->soft.link[d].organ].role, ROLE_RIB);
     free(plain);
     skg_body_release(&body);
 }

@@ -88,13 +88,13 @@ START_TEST(real_organs_breathe) {
     for (int64_t i = 0; i < body->organs; i++) { /* the same head on both sides, near the spine */
         const skg_body_organ *o = body->organ + i;
         if (!strncmp(o->label, "cartilage", 9)) { /* a whole side in one: from ribs to sternum, turning */
-            ck_assert_int_gt(o->links, 100);
-            ck_assert_int_eq(o->corotates, 1);
+            ck_assert_int_gt(o->soft.links, 100);
+            ck_assert_int_eq(o->soft.corotates, 1);
         }
         if (o->role != ROLE_RIB) continue;
         ribs++;
-        ck_assert_msg(o->side * o->head[0] > 5 && o->side * o->head[0] < 45, "%s: head at x %g", o->label,
-                      o->head[0]);
+        ck_assert_msg(o->side * o->turn.head[0] > 5 && o->side * o->turn.head[0] < 45, "%s: head at x %g",
+                      o->label, o->turn.head[0]);
     }
     ck_assert_int_eq(ribs, 24);
     skg_body_release(&body);
@@ -116,7 +116,7 @@ START_TEST(axes_from_bones) {
         double head[3], along[3];
         if (o->role != ROLE_RIB) continue;
         if (o->number <= 10) ck_assert_msg(skg_rib_bone_axis(body, o, head, along), "%s", o->label);
-        const double *a = o->axis;
+        const double *a = o->turn.axis;
         const double turn = atan2(fabs(a[0]), fabs(a[1])) / degree;
         ck_assert_double_gt(-a[0], 0);           /* raises the front: about the axis from left to right */
         ck_assert_double_gt(-o->side * a[1], 0); /* and the side */

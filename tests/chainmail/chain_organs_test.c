@@ -5,6 +5,7 @@
 #include "data.h"
 #include "suite.h"
 
+#include <skiagraph/breathing.h>
 #include <skiagraph/skiagraph.h>
 
 #include <math.h>

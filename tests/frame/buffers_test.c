@@ -21,7 +21,7 @@ START_TEST(lengths_in_device_memory) {
         output = output_of(expected);
         output.kind = SKG_OUTPUT_LENGTHS;
         output.lengths = kind;
-        ck_skg(skg_plan_submit(c.plan, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(c.plan, 1, NULL, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         output.data = NULL;
         output.buffer = c.buffer;

@@ -90,7 +90,7 @@ START_TEST(cancelled_in_the_middle) {
         cancel_from(_i, job);
         static float again[PIXELS];
         const skg_output output = jobs_output(again);
-        ck_skg(skg_plan_submit(jobs_plan, 1, NULL, &output, &later));
+        ck_skg(skg_plan_submit(jobs_plan, 1, NULL, 1, &output, &later));
         ck_skg(skg_job_wait(&later));
         ck_assert_mem_eq(again, jobs_reference, sizeof again);
         ck_skg(skg_job_progress(job, &done, NULL));
@@ -156,7 +156,7 @@ END_TEST
 static skg_job *submit_one(void) {
     const skg_output output = jobs_output(jobs_pixels);
     skg_job *job = NULL;
-    ck_skg(skg_plan_submit(jobs_plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(jobs_plan, 1, NULL, 1, &output, &job));
     return job;
 }
 
@@ -212,7 +212,7 @@ START_TEST(cancelled_within_a_frame) {
         skg_job *job = NULL;
         int64_t done = 0, total = 0, before = 0;
         for (int64_t i = 0; i < PIXELS; i++) jobs_pixels[i] = UNTOUCHED;
-        ck_skg(skg_plan_submit(slow, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(slow, 1, NULL, 1, &output, &job));
         while (_i && done == 0) ck_skg(skg_job_progress(job, &done, &total));
         ck_skg(skg_job_cancel(job));
         before = done;

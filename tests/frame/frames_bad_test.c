@@ -44,36 +44,36 @@ static void close_plan(void) {
 /* The frame is refused, and the output is as it was. */
 static void refused(int64_t count, skg_status status, const char *text) {
     for (int p = 0; p < 2 * PIXELS; p++) pixels[p] = -5;
-    ck_skg_fails(skg_plan_submit(plan, count, &frame, &output, &job), status, text);
+    ck_skg_fails(skg_plan_submit(plan, count, &frame, 1, &output, &job), status, text);
     ck_assert_ptr_null(job);
     for (int p = 0; p < 2 * PIXELS; p++) ck_assert(pixels[p] == -5);
 }
 
 /* A good frame still works. */
 static void still_good(void) {
-    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     ck_assert(pixels[PIXELS / 2] > 0);
 }
 
 START_TEST(arguments) {
-    ck_skg_fails(skg_plan_submit(NULL, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "plan");
-    ck_skg_fails(skg_plan_submit(plan, 1, &frame, NULL, &job), SKG_ERR_ARGUMENT, "output");
-    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, NULL), SKG_ERR_ARGUMENT, "job");
+    ck_skg_fails(skg_plan_submit(NULL, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT, "plan");
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 1, NULL, &job), SKG_ERR_ARGUMENT, "output");
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 1, &output, NULL), SKG_ERR_ARGUMENT, "job");
     ck_skg_fails(skg_plan_image(plan, NULL), SKG_ERR_ARGUMENT, "output");
     output.kind = SKG_OUTPUT_LENGTHS;
     output.part = 1;
-    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "part");
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT, "part");
     output.part = -1;
-    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "part");
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT, "part");
     output.part = 0;
     output.lengths = 7;
-    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "kind 7");
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT, "kind 7");
     output.kind = 99;
-    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT,
                  "kind 99 is no SKG_OUTPUT_");
     output.kind = SKG_OUTPUT_IMAGE;
-    ck_skg_fails(skg_plan_outputs_submit(plan, 1, &frame, 0, &output, &job), SKG_ERR_ARGUMENT, "no output");
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 0, &output, &job), SKG_ERR_ARGUMENT, "no output");
     refused(0, SKG_ERR_ARGUMENT, "frames");
     refused(-3, SKG_ERR_ARGUMENT, "frames");
     const skg_output good = output;
@@ -148,7 +148,7 @@ START_TEST(a_vertex_that_is_not_finite) {
     const float kept = offsets[3 * 5 + 1];
     offsets[3 * 5 + 1] = NAN;
     (void)skg_mesh_offsets_moved(box);
-    skg_status status = skg_plan_submit(plan, 1, &frame, &output, &job);
+    skg_status status = skg_plan_submit(plan, 1, &frame, 1, &output, &job);
     if (status == SKG_OK) status = skg_job_wait(&job); /* found by the host or by the device */
     ck_assert_int_eq(status, SKG_ERR_MESH);
     ck_assert_msg(strstr(skg_last_error(), "box") && strstr(skg_last_error(), "5"), "%s", skg_last_error());
@@ -182,18 +182,18 @@ START_TEST(one_bad_frame_in_a_thousand) {
     static double poses[MANY][16];
     turn(frames, poses, 0);
     output.data = good;
-    ck_skg(skg_plan_submit(plan, MANY, frames, &output, &job));
+    ck_skg(skg_plan_submit(plan, MANY, frames, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     turn(frames, poses, 1e60);
     output.data = with;
-    ck_skg(skg_plan_submit(plan, MANY, frames, &output, &job));
+    ck_skg(skg_plan_submit(plan, MANY, frames, 1, &output, &job));
     ck_skg_fails(skg_job_wait(&job), SKG_ERR_MESH, "frame 617: part box: vertex 0 ");
     for (int n = 0; n < MANY; n++)
         if (n != BAD) ck_assert_msg(memcmp(with[n], good[n], sizeof good[n]) == 0, "frame %d", n);
     output.data = pixels;
-    ck_skg(skg_plan_submit(plan, 1, &frames[BAD], &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frames[BAD], 1, &output, &job));
     ck_skg_fails(skg_job_wait(&job), SKG_ERR_MESH, "part box: vertex 0 ");
-    ck_skg(skg_plan_submit(plan, 1, &frames[0], &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frames[0], 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     ck_assert_int_eq(memcmp(pixels, good[0], sizeof good[0]), 0);
 }
@@ -203,7 +203,7 @@ END_TEST
 START_TEST(a_fork) {
     const pid_t child = fork();
     if (child == 0) {
-        const skg_status status = skg_plan_submit(plan, 1, &frame, &output, &job);
+        const skg_status status = skg_plan_submit(plan, 1, &frame, 1, &output, &job);
         _exit(status == SKG_ERR_FORK && job == NULL ? 0 : 1);
     }
     int status = -1;
@@ -267,7 +267,7 @@ START_TEST(nested_parts_and_quantities) {
             output.kind = SKG_OUTPUT_LENGTHS;
             output.part = n % 2;
             output.lengths = kinds[n];
-            ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+            ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
             ck_skg(skg_job_wait(&job));
         }
         output.kind = SKG_OUTPUT_IMAGE;

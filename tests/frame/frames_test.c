@@ -76,7 +76,7 @@ START_TEST(strides_of_a_batch) {
     output.row_stride = ROW;
     output.channel_stride = CHANNEL;
     output.frame_stride = FRAME;
-    ck_skg(skg_plan_submit(plan, FRAMES, frames, &output, &job));
+    ck_skg(skg_plan_submit(plan, FRAMES, frames, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     ck_assert_ptr_null(job);
     for (int n = 0; n < FRAMES * FRAME; n++) {
@@ -124,9 +124,9 @@ START_TEST(two_jobs) {
         memset(first, 0, sizeof first);
         memset(second, 0, sizeof second);
         frame.view = &view;
-        ck_skg(skg_plan_submit(plan, 1, &frame, &to_first, &jobs[swapped]));
+        ck_skg(skg_plan_submit(plan, 1, &frame, 1, &to_first, &jobs[swapped]));
         frame.view = &aside;
-        ck_skg(skg_plan_submit(plan, 1, &frame, &to_second, &jobs[!swapped]));
+        ck_skg(skg_plan_submit(plan, 1, &frame, 1, &to_second, &jobs[!swapped]));
         for (int n = 0; n < 2; n++) ck_skg(skg_job_wait(&jobs[n]));
         ck_assert_mem_eq(first, expected[0], sizeof first);
         ck_assert_mem_eq(second, expected[1], sizeof second);
@@ -152,7 +152,7 @@ START_TEST(poses_of_a_frame) {
     frame.pose_count = 2;
     frame.pose_parts = ids;
     frame.poses = poses;
-    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     image(plan, after); /* the frame's poses were its own */
     ck_assert_mem_eq(after, plain, sizeof plain);
@@ -189,7 +189,7 @@ START_TEST(snapshots) {
             aside.source[1] = 30 * n;
             skg_frame_init(&frame);
             frame.view = &aside;
-            ck_skg(skg_plan_submit(plan, 1, &frame, &output, &jobs[n]));
+            ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &jobs[n]));
             memset(pose, 0,
                    sizeof pose); /* neither the caller's arrays nor its structs are looked at again */
             memset(&aside, 0, sizeof aside);

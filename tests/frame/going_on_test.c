@@ -46,17 +46,17 @@ START_TEST(the_frames_of_the_submission) {
     }
     for (int64_t f = 0; f < jobs_frames && f < 35; f++) { /* then they repeat */
         output.data = expected + f * PIXELS;
-        ck_skg(skg_plan_submit(jobs_plan, 1, given + f, &output, &job));
+        ck_skg(skg_plan_submit(jobs_plan, 1, given + f, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
     }
     output = jobs_output(jobs_pixels);
-    ck_skg(skg_plan_submit(jobs_plan, jobs_frames, given, &output, &job));
+    ck_skg(skg_plan_submit(jobs_plan, jobs_frames, given, 1, &output, &job));
     memset(given, 0, (size_t)jobs_frames * sizeof *given);
     memset(views, 0, (size_t)jobs_frames * sizeof *views);
     memset(poses, 0, (size_t)jobs_frames * 16 * sizeof *poses);
     static float again[PIXELS];
     output = jobs_output(again); /* the frames that were held back come before this one */
-    ck_skg(skg_plan_submit(jobs_plan, 1, NULL, &output, &later));
+    ck_skg(skg_plan_submit(jobs_plan, 1, NULL, 1, &output, &later));
     ck_skg(skg_job_wait(&later));
     ck_assert_mem_eq(again, jobs_reference, sizeof again);
     ck_skg(skg_job_wait(&job));
@@ -89,7 +89,7 @@ START_TEST(a_part_that_is_added_later) {
     jobs_check(jobs_frames);
     {
         const skg_output output = jobs_output(jobs_pixels);
-        ck_skg_fails(skg_plan_submit(jobs_plan, 1, NULL, &output, &job), SKG_STALE, "make a new plan");
+        ck_skg_fails(skg_plan_submit(jobs_plan, 1, NULL, 1, &output, &job), SKG_STALE, "make a new plan");
     }
     skg_plan_release(&jobs_plan);
     jobs_plan = jobs_fine_plan();
@@ -110,7 +110,7 @@ START_TEST(nobody_asks) {
     ck_skg(skg_mesh_positions_get(jobs_ball, positions, 0));
     if (_i) {
         output = jobs_output(jobs_pixels);
-        ck_skg(skg_plan_submit(slow, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(slow, 1, NULL, 1, &output, &job));
     } else {
         job = jobs_submit();
     }
@@ -170,11 +170,11 @@ START_TEST(several_outputs) {
         outputs[o].lengths = o == 3 ? SKG_LENGTHS_SURFACE : SKG_LENGTHS_NET;
     }
     for (int o = 0; o < OUTPUTS; o++) {
-        ck_skg(skg_plan_submit(jobs_plan, FRAMES, some, &outputs[o], &job));
+        ck_skg(skg_plan_submit(jobs_plan, FRAMES, some, 1, &outputs[o], &job));
         ck_skg(skg_job_wait(&job));
         outputs[o].data = together[o];
     }
-    ck_skg(skg_plan_outputs_submit(jobs_plan, FRAMES, some, OUTPUTS, outputs, &job));
+    ck_skg(skg_plan_submit(jobs_plan, FRAMES, some, OUTPUTS, outputs, &job));
     ck_skg(skg_job_wait(&job));
     ck_assert_mem_eq(together, alone, sizeof alone);
     const int middle = SIDE / 2 * SIDE +
@@ -197,11 +197,11 @@ START_TEST(steps_do_not_change_bits) {
     ck_skg(skg_plan_submit_cl(slow, 2, NULL, 1, &output, 0, NULL, &event, &job)); /* all at once */
     ck_skg(skg_job_wait(&job));
     clReleaseEvent(event);
-    ck_skg(skg_plan_outputs_submit(slow, 2, NULL, 2, outputs, &job));
+    ck_skg(skg_plan_submit(slow, 2, NULL, 2, outputs, &job));
     ck_skg(skg_scene_part_pose_set(jobs_scene, 0, away));
     if (_i) { /* another job comes in between */
         output = jobs_output(again);
-        ck_skg(skg_plan_submit(jobs_plan, 1, NULL, &output, &later));
+        ck_skg(skg_plan_submit(jobs_plan, 1, NULL, 1, &output, &later));
         ck_skg(skg_job_wait(&later));
     }
     ck_skg(skg_job_wait(&job));
@@ -221,7 +221,7 @@ START_TEST(steps_of_a_variance) {
     ck_skg(skg_plan_submit_cl(slow, 1, NULL, 1, &output, 0, NULL, NULL, &job)); /* all at once */
     ck_skg(skg_job_wait(&job));
     output.data = steps;
-    ck_skg(skg_plan_submit(slow, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(slow, 1, NULL, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     ck_assert(whole[PIXELS / 2 + SIDE / 2] > 0);
     ck_assert_mem_eq(steps, whole, sizeof whole);

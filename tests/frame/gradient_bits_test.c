@@ -159,7 +159,7 @@ enum { NOTHING, A_POSE, VERTICES, LENGTHS, A_VIEW, DENSITIES, CHANGES };
 
 static void submit_and_wait(skg_plan *plan, const skg_frame *frame, const skg_output *output) {
     skg_job *job = NULL;
-    ck_skg(skg_plan_submit(plan, 1, frame, output, &job));
+    ck_skg(skg_plan_submit(plan, 1, frame, 1, output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

@@ -144,7 +144,7 @@ START_TEST(a_thousand_parts) {
         moved.pose[3] += s ? -step : step;
         frame.pose_count = 1, frame.pose_parts = &part, frame.poses = moved.pose;
         output.type = SKG_TYPE_FLOAT64, output.data = images[s];
-        ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
     }
     for (int p = 0; p < PIXELS; p++) change += adjoint[p] * (images[0][p] - images[1][p]) / (2 * step);

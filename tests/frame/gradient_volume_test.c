@@ -120,7 +120,7 @@ static void render(skg_plan *plan, int64_t id, int way, double step, double *ima
     }
     frame.pose_count = 1, frame.pose_parts = &id, frame.poses = pose;
     output.type = SKG_TYPE_FLOAT64, output.data = image;
-    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

@@ -157,7 +157,7 @@ void render(skg_plan *plan, const skg_view *view, const direction *d, double ste
     frame.view = &moved;
     frame.pose_count = parts, frame.pose_parts = ids, frame.poses = poses[0];
     frame.override_count = parts, frame.override_parts = ids, frame.density_ratios = densities;
-    ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     for (int64_t p = 0; p < parts; p++) move_vertices(p, 0);
 }

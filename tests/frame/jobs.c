@@ -74,7 +74,7 @@ void jobs_close(void) {
 skg_job *jobs_submit(void) {
     const skg_output output = jobs_output(jobs_pixels);
     skg_job *job = NULL;
-    ck_skg(skg_plan_submit(jobs_plan, jobs_frames, NULL, &output, &job));
+    ck_skg(skg_plan_submit(jobs_plan, jobs_frames, NULL, 1, &output, &job));
     return job;
 }
 

@@ -75,7 +75,7 @@ static skg_status submit(skg_plan *plan, int64_t count, const int64_t *ids, cons
     frame.override_count = count, frame.override_parts = ids, frame.density_ratios = density,
     frame.fill_fractions = share;
     output.data = to;
-    skg_status status = skg_plan_submit(plan, 1, &frame, &output, &job);
+    skg_status status = skg_plan_submit(plan, 1, &frame, 1, &output, &job);
     return status == SKG_OK ? skg_job_wait(&job) : status;
 }
 

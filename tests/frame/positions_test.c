@@ -181,7 +181,7 @@ START_TEST(events_are_waited_for_and_given) {
     ck_assert_int_eq(clGetEventInfo(done, CL_EVENT_COMMAND_EXECUTION_STATUS, sizeof state, &state, NULL),
                      CL_SUCCESS);
     ck_assert_int_gt(state, CL_COMPLETE);
-    ck_skg(skg_plan_submit(c.plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(c.plan, 1, NULL, 1, &output, &job));
     /* Only now the positions are written, by a queue that the library does not know. */
     ck_assert_int_eq(clEnqueueWriteBuffer(own, c.buffer, CL_TRUE, 0, (size_t)ball.count * 3 * sizeof(float),
                                           ball.xyz, 0, NULL, NULL),
@@ -462,7 +462,7 @@ static void *work(void *user) {
         bend(&c, BALL, w->amount * (float)n, ball);
         send(&c, ball, 0);
         ck_skg(place(&c, BALL, ball, 0));
-        ck_skg(skg_plan_submit(c.plan, 1, NULL, &output, &jobs[n]));
+        ck_skg(skg_plan_submit(c.plan, 1, NULL, 1, &output, &jobs[n]));
     }
     for (int n = 0; n < FRAMES; n++) ck_skg(skg_job_wait(&jobs[n]));
     close_caller(&c);

@@ -44,7 +44,7 @@ static void take(skg_plan *plan, int64_t part, float *pixels) {
     output.data = pixels;
     output.kind = SKG_OUTPUT_LENGTHS;
     output.part = part;
-    ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

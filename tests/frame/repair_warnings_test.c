@@ -76,7 +76,7 @@ START_TEST(what_is_warned_of_once) {
         double pose[16] = {1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, z[k], 0, 0, 0, 1};
         skg_frame_init(&frame);
         frame.pose_count = 1, frame.pose_parts = &first, frame.poses = pose;
-        ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         skg_plan_report_init(&image.report);
         ck_skg(skg_plan_report_get(plan, &image.report));

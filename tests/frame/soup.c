@@ -113,7 +113,7 @@ void take(const soup *a, const soup *b, const wish *w, picture *result) {
         ck_skg(skg_plan_image(plan, &output));
     } else {
         output.kind = SKG_OUTPUT_LENGTHS;
-        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
     }
     skg_plan_report_init(&result->report);

@@ -67,7 +67,7 @@ static skg_status take(int64_t count, const skg_frame *of, float *to) {
     skg_job *job = NULL;
     skg_output_init(&output);
     output.data = to;
-    ck_skg(skg_plan_submit(plan, count, of, &output, &job));
+    ck_skg(skg_plan_submit(plan, count, of, 1, &output, &job));
     return skg_job_wait(&job);
 }
 
@@ -181,7 +181,7 @@ START_TEST(memory_between_jobs) {
         skg_output output;
         skg_output_init(&output);
         output.data = together;
-        ck_skg(skg_plan_submit(plan, FRAMES, frames, &output, &job));
+        ck_skg(skg_plan_submit(plan, FRAMES, frames, 1, &output, &job));
         if (turn % 2) ck_skg(skg_job_cancel(job));
         const skg_status status = skg_job_wait(&job);
         ck_assert(status == SKG_OK || status == SKG_ERR_CANCELLED);

@@ -138,14 +138,14 @@ START_TEST(batches) {
         skg_output_init(&output);
         for (int f = 0; f < FRAMES; f++) {
             output.data = alone[f];
-            ck_skg(skg_plan_submit(plan, 1, &frames[f], &output, &job));
+            ck_skg(skg_plan_submit(plan, 1, &frames[f], 1, &output, &job));
             ck_skg(skg_job_wait(&job));
             for (int other = 0; other < f; other++) ck_assert_mem_ne(alone[f], alone[other], sizeof alone[f]);
         }
         for (int size = 2; size <= FRAMES; size++) {
             memset(batch, 0xff, sizeof batch);
             output.data = batch;
-            ck_skg(skg_plan_submit(plan, size, frames, &output, &job));
+            ck_skg(skg_plan_submit(plan, size, frames, 1, &output, &job));
             ck_skg(skg_job_wait(&job));
             for (int f = 0; f < size; f++)
                 ck_assert_msg(memcmp(batch[f], alone[f], sizeof alone[f]) == 0,

@@ -3,6 +3,8 @@
 #include "hard/catalogue.h"
 #include "suite.h"
 
+#include <skiagraph/breathing.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>

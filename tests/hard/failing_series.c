@@ -32,7 +32,7 @@ static skg_status draw(skg_plan *plan, const skg_frame *frame, int32_t kind, flo
     output.data = image;
     output.kind = kind;
     output.component = SKG_SCATTER_COMPONENT_COMPTON_SECOND;
-    TRY(skg_plan_submit(plan, 1, frame, &output, &job));
+    TRY(skg_plan_submit(plan, 1, frame, 1, &output, &job));
     return skg_job_wait(&job);
 }
 
@@ -71,6 +71,6 @@ skg_status failing_noise(skg_plan *plan, float *variance) {
         outputs[k].kind = k ? SKG_OUTPUT_VARIANCE : SKG_OUTPUT_MEAN;
         outputs[k].data = k ? variance : mean;
     }
-    TRY(skg_plan_outputs_submit(plan, 1, NULL, 2, outputs, &job));
+    TRY(skg_plan_submit(plan, 1, NULL, 2, outputs, &job));
     return skg_job_wait(&job);
 }

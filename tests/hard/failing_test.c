@@ -10,6 +10,7 @@
 #include "hard/failing_shared.h"
 #include "suite.h"
 
+#include <skiagraph/breathing.h>
 #include <skiagraph/skiagraph.h>
 
 #include <dirent.h>
@@ -215,7 +216,7 @@ static skg_status draw(run *r) {
     if (r->with->shared)
         TRY(skg_plan_submit_cl(r->plan, 2, frames, 1, &output, 1, &r->shared.start, NULL, &job));
     else
-        TRY(skg_plan_submit(r->plan, 2, frames, &output, &job));
+        TRY(skg_plan_submit(r->plan, 2, frames, 1, &output, &job));
     if (skg_work_count() != 1) return SKG_ERR_INTERNAL; /* Check would allocate */
     TRY(skg_job_wait(&job));
     if (r->with->shared) shared_read(&r->shared, 2 * PIXELS * sizeof *r->image, r->image);
@@ -223,7 +224,7 @@ static skg_status draw(run *r) {
     output.buffer = NULL;
     output.data = r->lengths;
     output.kind = SKG_OUTPUT_LENGTHS;
-    TRY(skg_plan_submit(r->plan, 1, NULL, &output, &job));
+    TRY(skg_plan_submit(r->plan, 1, NULL, 1, &output, &job));
     int32_t done = 0;
     const skg_status asked = skg_job_test(job, &done);
     TRY(skg_job_wait(&job)); /* the job is released, whatever became of the question */

@@ -1,6 +1,8 @@
 /* The child of a fork: calls that OpenMP shares among threads are refused there, where they would hang. */
 #include "suite.h"
 
+#include <skiagraph/breathing.h>
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <string.h>

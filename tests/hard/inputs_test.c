@@ -2,6 +2,7 @@
 #include "suite.h"
 #include "support/archive.h"
 
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <string.h>

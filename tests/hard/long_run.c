@@ -3,6 +3,8 @@
 #include "suite.h"
 #include "support/run.h"
 
+#include <skiagraph/breathing.h>
+
 #include <stdio.h>
 #include <string.h>
 

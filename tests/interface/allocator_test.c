@@ -145,7 +145,7 @@ static skg_status run(program *p) {
     options.noise = 1;
     if (status == SKG_OK) status = skg_plan_create(p->context, scene, &view, spectrum, &options, &p->plan);
     if (status == SKG_OK) status = skg_plan_image(p->plan, &output);
-    if (status == SKG_OK) status = skg_plan_submit(p->plan, 1, NULL, &output, &p->job);
+    if (status == SKG_OK) status = skg_plan_submit(p->plan, 1, NULL, 1, &output, &p->job);
     if (status == SKG_OK) status = skg_job_wait(&p->job);
     return status;
 }
@@ -243,8 +243,8 @@ START_TEST(a_handler_hears_of_each_failure_once) {
     ck_skg(run(&other));
     ck_assert_int_eq(p.errors, 0);
     const skg_status failed[] = {skg_plan_image(p.plan, &output),
-                                 skg_plan_submit(p.plan, 0, NULL, &output, &p.job),
-                                 skg_plan_submit(p.plan, 1, NULL, &lengths, &p.job),
+                                 skg_plan_submit(p.plan, 0, NULL, 1, &output, &p.job),
+                                 skg_plan_submit(p.plan, 1, NULL, 1, &lengths, &p.job),
                                  skg_plan_view_set(p.plan, NULL),
                                  skg_plan_view_set(p.plan, &view),
                                  skg_mesh_load(p.context, "nowhere.stl", 1, &mesh),

@@ -4,6 +4,8 @@
 #include "suite.h"
 #include "support/run.h"
 
+#include <skiagraph/breathing.h>
+
 #include <locale.h>
 #include <string.h>
 

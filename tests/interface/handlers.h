@@ -2,7 +2,10 @@
 #ifndef HANDLERS_H
 #define HANDLERS_H
 
+#include <skiagraph/breathing.h>
 #include <skiagraph/opencl.h>
+#include <skiagraph/registration.h>
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 typedef struct {

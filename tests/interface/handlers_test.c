@@ -40,7 +40,7 @@ START_TEST(every_failure_is_heard_once) {
     solid_free(&s);
     skg_output_init(&output);
     output.data = pixels;
-    ck_skg(skg_plan_submit(h.plan, 1, NULL, &output, &h.job));
+    ck_skg(skg_plan_submit(h.plan, 1, NULL, 1, &output, &h.job));
     for (const bare_call *c = bare_calls; c->name; c++) {
         ck_skg(skg_context_error_set(run_context, hear, NULL)); /* the call of this setter takes it away */
         heard = 0;

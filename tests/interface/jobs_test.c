@@ -51,7 +51,7 @@ static void close_plan(void) {
 static skg_job *submit(float *pixels) {
     skg_job *job = NULL;
     output.data = pixels;
-    ck_skg(skg_plan_submit(plan, FRAMES, NULL, &output, &job));
+    ck_skg(skg_plan_submit(plan, FRAMES, NULL, 1, &output, &job));
     return job;
 }
 

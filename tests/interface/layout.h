@@ -2,7 +2,10 @@
 #ifndef LAYOUT_H
 #define LAYOUT_H
 
+#include <skiagraph/breathing.h>
 #include <skiagraph/opencl.h>
+#include <skiagraph/registration.h>
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <stddef.h>

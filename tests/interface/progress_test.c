@@ -1,6 +1,8 @@
 /* Progress and cancellation of long work on the host: the same for distances, reconstructions and scans. */
 #include "suite.h"
 
+#include <skiagraph/breathing.h>
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <pthread.h>

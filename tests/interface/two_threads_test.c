@@ -77,12 +77,12 @@ static skg_status take_images(skg_plan *plan, worker *w) {
         skg_frame_init(&frames[n]);
         frames[n].index = n;
     }
-    TRY(skg_plan_submit(plan, FRAMES, frames, &output, &job));
+    TRY(skg_plan_submit(plan, FRAMES, frames, 1, &output, &job));
     TRY(skg_job_wait(&job));
     output.data = w->lengths;
     output.kind = SKG_OUTPUT_LENGTHS;
     output.part = 1;
-    TRY(skg_plan_submit(plan, 1, frames, &output, &job));
+    TRY(skg_plan_submit(plan, 1, frames, 1, &output, &job));
     return skg_job_wait(&job);
 }
 

@@ -3,6 +3,9 @@
 #include "suite.h"
 
 #include <float.h>
+#include <skiagraph/breathing.h>
+#include <skiagraph/registration.h>
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <math.h>
@@ -113,7 +116,7 @@ START_TEST(frames_are_imaged) {
     skg_output_init(&output);
     output.data = pixels;
     skg_job *job = NULL;
-    ck_skg(skg_plan_submit(plan, 2, frames, &output, &job));
+    ck_skg(skg_plan_submit(plan, 2, frames, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     /* 2 cm of 0.2/cm; float with one rounding of the exponential and one of the logarithm */
     const int middle = SIDE / 2 * SIDE + SIDE / 2;
@@ -130,10 +133,10 @@ START_TEST(elements_are_alike) {
     output.data = pixels;
     memset(frames, 0, sizeof frames);
     skg_frame_init(&frames[0]);
-    ck_skg_fails(skg_plan_submit(plan, 2, frames, &output, &job), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_plan_submit(plan, 2, frames, 1, &output, &job), SKG_ERR_ARGUMENT,
                  "skg_frame: element 1 has size 0");
     frames[0].size = 1 << 30; /* memory that nobody prepared */
-    ck_skg_fails(skg_plan_submit(plan, 1, frames, &output, &job), SKG_ERR_ARGUMENT, "skg_frame_init");
+    ck_skg_fails(skg_plan_submit(plan, 1, frames, 1, &output, &job), SKG_ERR_ARGUMENT, "skg_frame_init");
     ck_assert_ptr_null(job);
 }
 END_TEST
@@ -182,7 +185,7 @@ START_TEST(unknown_fields_are_refused) {
     skg_job *job = NULL;
     ck_assert_int_eq(frame.later, 0);
     frame.later = 1;
-    ck_skg_fails(skg_plan_submit(plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "does not know");
+    ck_skg_fails(skg_plan_submit(plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT, "does not know");
     part.later = -1, part.label = "another";
     ck_skg_fails(skg_scene_part_add(scene, &part, NULL), SKG_ERR_ARGUMENT, "does not know");
     view.later = 1;

@@ -4,6 +4,7 @@
 #include "suite.h"
 #include "support/run.h"
 
+#include <skiagraph/breathing.h>
 #include <skiagraph/skiagraph.h>
 
 #include <stdlib.h>
@@ -93,7 +94,7 @@ START_TEST(no_length_is_below_0) {
         output.kind = SKG_OUTPUT_LENGTHS;
         output.part = i;
         output.lengths = SKG_LENGTHS_SURFACE;
-        ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         for (int64_t p = 0; p < view.rows * view.columns; p++) {
             least = lengths[p] < least ? lengths[p] : least;

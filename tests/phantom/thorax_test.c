@@ -4,6 +4,7 @@
 #include "phantom/anatomy.h"
 #include "suite.h"
 
+#include <skiagraph/breathing.h>
 #include <skiagraph/skiagraph.h>
 
 #include <float.h>

@@ -3,6 +3,7 @@
  * asks. */
 #include "suite.h"
 
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <math.h>

@@ -1,6 +1,7 @@
 /* Scans of any range, once and several times about: a cylinder keeps its attenuation coefficient, whatever lines are seen twice. */
 #include "suite.h"
 
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <math.h>

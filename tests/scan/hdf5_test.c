@@ -4,6 +4,7 @@
 
 #include <hdf5.h>
 #include <skiagraph/scan_reader.h>
+#include <skiagraph/scanning.h>
 
 #include <math.h>
 #include <string.h>

@@ -1,6 +1,7 @@
 /* Files of projections: their layout, what is found when they are opened again, and who may write them. */
 #include "suite.h"
 
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <dirent.h>

@@ -2,6 +2,8 @@
 #include "suite.h"
 #include "support/run.h"
 
+#include <skiagraph/scanning.h>
+
 #include <math.h>
 #include <string.h>
 

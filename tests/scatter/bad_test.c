@@ -111,7 +111,7 @@ START_TEST(oblique_detectors) {
     skg_output_init(&output);
     output.data = calloc((size_t)(s.view.rows * s.view.columns), sizeof(float));
     skg_job *job = NULL;
-    skg_status status = skg_plan_submit(s.plan, 1, NULL, &output, &job);
+    skg_status status = skg_plan_submit(s.plan, 1, NULL, 1, &output, &job);
     if (status == SKG_OK) status = skg_job_wait(&job);
     ck_skg_fails(status, SKG_ERR_UNSUPPORTED,
                  "rows and columns are at 78.69 degrees; make them perpendicular");
@@ -144,7 +144,7 @@ START_TEST(outputs_need_scatter) {
     output.data = &report;
     for (int32_t kind = SKG_OUTPUT_SCATTER; kind <= SKG_OUTPUT_SCATTER_COMPONENT; kind++) {
         output.kind = kind;
-        ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT, "scatter");
+        ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, 1, &output, &job), SKG_ERR_ARGUMENT, "scatter");
     }
     ck_skg_fails(skg_plan_scatter_report_get(s.plan, &report), SKG_ERR_ARGUMENT, "scatter");
     skg_spectrum_release(&beam);
@@ -162,9 +162,9 @@ START_TEST(components) {
     output.data = image;
     output.kind = SKG_OUTPUT_SCATTER_COMPONENT;
     output.component = SKG_SCATTER_COMPONENT_COMPTON_HIGHER + 1;
-    ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT, "component 6");
+    ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, 1, &output, &job), SKG_ERR_ARGUMENT, "component 6");
     output.component = -1;
-    ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, &output, &job), SKG_ERR_ARGUMENT, "component -1");
+    ck_skg_fails(skg_plan_submit(s.plan, 1, NULL, 1, &output, &job), SKG_ERR_ARGUMENT, "component -1");
     subject_close(&s);
 }
 END_TEST

@@ -244,7 +244,7 @@ static double component_of(subject *s, int32_t component) {
     output.kind = SKG_OUTPUT_SCATTER_COMPONENT, output.component = component;
     float *image = calloc((size_t)(s->view.rows * s->view.columns), sizeof *image);
     output.data = image;
-    ck_skg(skg_plan_submit(s->plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(s->plan, 1, NULL, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     const double sum = subject_sum(s, image);
     free(image);
@@ -341,7 +341,7 @@ START_TEST(fields_that_are_too_wide_are_refused) {
         subject_plan(&s);
         skg_output_init(&output);
         output.data = calloc((size_t)(s.view.rows * s.view.columns), sizeof(float));
-        skg_status status = skg_plan_submit(s.plan, 1, NULL, &output, &job);
+        skg_status status = skg_plan_submit(s.plan, 1, NULL, 1, &output, &job);
         if (status == SKG_OK) status = skg_job_wait(&job);
         ck_skg_fails(status, which == HEEL ? SKG_ERR_BEAM : SKG_ERR_SCENE,
                      which == HEEL ? "in the field of the beam"

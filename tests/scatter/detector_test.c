@@ -50,7 +50,7 @@ static void take_component(subject *s, int32_t component, float *image) {
     skg_output_init(&output);
     output.kind = SKG_OUTPUT_SCATTER_COMPONENT, output.component = component;
     output.data = image;
-    ck_skg(skg_plan_submit(s->plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(s->plan, 1, NULL, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 
@@ -129,7 +129,7 @@ static void take_bands(subject *s, int64_t bands, const double *edges, float *im
     subject_plan(s);
     skg_output_init(&output);
     output.kind = SKG_OUTPUT_SCATTER, output.data = image;
-    ck_skg(skg_plan_submit(s->plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(s->plan, 1, NULL, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

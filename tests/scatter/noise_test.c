@@ -19,7 +19,7 @@ static void take_sums(subject *s, double *mean, double *variance) {
         skg_output_init(&output);
         frame.index = f;
         output.data = calloc((size_t)(s->view.rows * s->view.columns), sizeof(float));
-        ck_skg(skg_plan_submit(s->plan, 1, &frame, &output, &job));
+        ck_skg(skg_plan_submit(s->plan, 1, &frame, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
         sums[f] = subject_sum(s, output.data);
         *mean += sums[f] / FRAMES;

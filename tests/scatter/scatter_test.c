@@ -196,7 +196,7 @@ START_TEST(batches_are_single_frames) {
     }
     skg_output_init(&output);
     output.data = all;
-    ck_skg(skg_plan_submit(s.plan, FRAMES, frames, &output, &job));
+    ck_skg(skg_plan_submit(s.plan, FRAMES, frames, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     same(all, all + 2 * count, count);
     ck_assert_mem_ne(all, all + count, (size_t)count * sizeof *all);
@@ -255,7 +255,7 @@ START_TEST(a_progress_cancels_scatter) {
     output.data = before.sigma;
     ck_skg(skg_progress_create(cancel_third, &calls, &progress));
     frame.progress = progress;
-    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_CANCELLED, "cancelled");
+    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, 1, &output, &job), SKG_ERR_CANCELLED, "cancelled");
     ck_assert_ptr_null(job);
     ck_assert_int_eq(calls, 3);
     skg_progress_release(&progress);
@@ -284,7 +284,7 @@ START_TEST(scatter_comes_alone) {
     float *alone = calloc((size_t)count, sizeof *alone);
     skg_output_init(&output);
     output.data = alone, output.kind = SKG_OUTPUT_SCATTER;
-    ck_skg(skg_plan_submit(s.plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(s.plan, 1, NULL, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     pictures after = subject_pictures(&s, NULL);
     subject_plan(&s);

@@ -162,22 +162,24 @@ START_TEST(refusals) {
     skg_output_init(&output);
     output.data = image;
     frame.scatter_series = series;
-    ck_skg_fails(skg_plan_submit(other.plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_plan_submit(other.plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT,
                  "made by another plan");
     skg_plan *first = s.plan; /* another plan of the same scene, with another beam */
     s.plan = NULL, s.kev = 50;
     subject_plan(&s);
-    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "made by another plan");
+    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT,
+                 "made by another plan");
     skg_plan_release(&s.plan);
     s.plan = first;
     frame.series_place = FRAMES;
-    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT,
+    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT,
                  "place 64 in a series of 64");
     frame.series_place = (double)NAN;
-    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_ARGUMENT, "place nan");
+    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, 1, &output, &job), SKG_ERR_ARGUMENT, "place nan");
     frame.series_place = 3;
     output.kind = SKG_OUTPUT_SCATTER_COMPONENT;
-    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, &output, &job), SKG_ERR_UNSUPPORTED, "orders and kinds");
+    ck_skg_fails(skg_plan_submit(s.plan, 1, &frame, 1, &output, &job), SKG_ERR_UNSUPPORTED,
+                 "orders and kinds");
     ck_assert_int_eq(skg_scatter_series_create(s.plan, 10 * FRAMES, describe, &t, &none), SKG_ERR_ARGUMENT);
     ck_assert_ptr_null(none);
     ck_skg_fails(skg_scatter_series_create(s.plan, FRAMES, NULL, &t, &none), SKG_ERR_ARGUMENT, "function");

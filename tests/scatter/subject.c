@@ -82,7 +82,7 @@ pictures subject_pictures(subject *s, const skg_frame *frame) {
         outputs[k].data = *to[k] = calloc((size_t)p.count, sizeof(float));
         outputs[k].kind = kinds[k];
     }
-    ck_skg(skg_plan_outputs_submit(s->plan, 1, frame, 3, outputs, &job));
+    ck_skg(skg_plan_submit(s->plan, 1, frame, 3, outputs, &job));
     ck_skg(skg_job_wait(&job));
     return p;
 }

@@ -521,14 +521,14 @@ START_TEST(calls_are_refused_whose_kernels_are_wrong) {
     keep_verdict(context, "positions on the device", 0, 0);
     keep_verdict(context, "3D view", 0, 0);
     output.kind = SKG_OUTPUT_LENGTHS;
-    ck_skg_fails(skg_plan_submit(plan, 1, NULL, &output, &job), SKG_ERR_DEVICE,
+    ck_skg_fails(skg_plan_submit(plan, 1, NULL, 1, &output, &job), SKG_ERR_DEVICE,
                  "with the kernels of path lengths");
     ck_skg_fails(skg_plan_positions_set_cl(plan, 0, NULL, 0, bound, bound, 0, NULL, NULL), SKG_ERR_DEVICE,
                  "with the kernels of positions on the device");
     ck_skg_fails(skg_scene_picture(context, scene.scene, &scene.view, NULL, rgba), SKG_ERR_DEVICE,
                  "with the kernels of 3D view");
     keep_verdict(context, "path lengths", 1, 0);
-    ck_skg(skg_plan_submit(plan, 1, NULL, &output, &job));
+    ck_skg(skg_plan_submit(plan, 1, NULL, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
     skg_plan_release(&plan);
     skg_self_test_scene_release(&scene);

@@ -92,7 +92,7 @@ static void take(skg_plan *with, const skg_view *frame_view, double *pixels) {
     output.type = SKG_TYPE_FLOAT64, output.data = pixels;
     skg_frame_init(&frame);
     frame.view = frame_view;
-    ck_skg(skg_plan_submit(with, 1, &frame, &output, &job));
+    ck_skg(skg_plan_submit(with, 1, &frame, 1, &output, &job));
     ck_skg(skg_job_wait(&job));
 }
 

@@ -118,7 +118,7 @@ static double *image_of(skg_plan *plan, const skg_view *view, int lengths) {
     if (lengths) {
         output.kind = SKG_OUTPUT_LENGTHS;
         output.lengths = SKG_LENGTHS_SURFACE;
-        ck_skg(skg_plan_submit(plan, 1, &frame, &output, &job));
+        ck_skg(skg_plan_submit(plan, 1, &frame, 1, &output, &job));
         ck_skg(skg_job_wait(&job));
     } else {
         ck_skg(skg_plan_image(plan, &output));

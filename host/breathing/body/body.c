@@ -93,16 +93,21 @@ skg_status skg_body_create(skg_context *context, const skg_body_options *options
 
 static void free_organ(skg_body_organ *o) {
     skg_mesh_release(&o->mesh);
-    skg_chain_free(&o->chain);
-    for (int64_t l = 0; l < o->given_count; l++) {
-        char *to = (char *)(uintptr_t)o->given[l].to; /* our own copy */
+    skg_chain_free(&o->soft.chain);
+    for (int64_t l = 0; l < o->soft.given_count; l++) {
+        char *to = (char *)(uintptr_t)o->soft.given[l].to; /* our own copy */
         skg_free(&to);
     }
     skg_tree_free(&o->tree);
-    void *block[] = {&o->label,       &o->rest,     &o->corner, &o->node_of, &o->moved,     &o->link,
-                     &o->anchor,      &o->target,   &o->state,  &o->memory,  &o->near,      &o->given,
-                     &o->near_weight, &o->fraction, &o->share,  &o->course,  &o->beyond,    &o->bone,
-                     &o->bone_weight, &o->thin,     &o->way,    &o->base,    &o->bone_base, &o->bone_away};
+    skg_soft *soft = &o->soft;
+    skg_coupling *coupling = &o->coupling;
+    skg_carried *carried = &o->carried;
+    void *block[] = {&o->label,         &o->rest,          &o->corner,           &o->node_of,
+                     &o->moved,         &soft->link,       &soft->anchor,        &soft->given,
+                     &soft->target,     &soft->state,      &soft->memory,        &coupling->share,
+                     &coupling->beyond, &coupling->course, &coupling->bone,      &coupling->bone_weight,
+                     &coupling->way,    &coupling->base,   &coupling->bone_base, &coupling->bone_away,
+                     &coupling->thin,   &carried->near,    &carried->weight,     &carried->fraction};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
 }
 
@@ -158,7 +163,8 @@ skg_status skg_body_link(skg_body *body) {
     SKG_TRY(skg_body_find_links(body));
     int64_t deformable = 0;
     for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].chain && body->organ[i].role == ROLE_LINKED) deformable += body->organ[i].vertices;
+        if (body->organ[i].soft.chain && body->organ[i].role == ROLE_LINKED)
+            deformable += body->organ[i].vertices;
     body->large = deformable >= THREADS_FROM;
     body->linked = 1;
     return SKG_OK;

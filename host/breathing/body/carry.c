@@ -17,15 +17,15 @@ static int is_lung_vessels(const skg_body_organ *o) {
  * made to add up to 1. */
 static skg_status carry(skg_body *body, skg_body_organ *o, int32_t carrier) {
     const skg_body_organ *c = body->organ + carrier;
-    o->carrier = carrier;
-    SKG_TRY(skg_alloc(CARRIERS * o->vertices, sizeof(int32_t), o->label, &o->near));
-    SKG_TRY(skg_alloc(CARRIERS * o->vertices, sizeof(double), o->label, &o->near_weight));
+    o->carried.by = carrier;
+    SKG_TRY(skg_alloc(CARRIERS * o->vertices, sizeof(int32_t), o->label, &o->carried.near));
+    SKG_TRY(skg_alloc(CARRIERS * o->vertices, sizeof(double), o->label, &o->carried.weight));
     if (skg_label_begins(c->label, "liver"))
-        SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->beyond));
+        SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->coupling.beyond));
 #pragma omp parallel for schedule(dynamic, 16)
     for (int64_t i = 0; i < o->vertices; i++) {
-        int32_t *near = o->near + CARRIERS * i;
-        double *weight = o->near_weight + CARRIERS * i, sum = 0;
+        int32_t *near = o->carried.near + CARRIERS * i;
+        double *weight = o->carried.weight + CARRIERS * i, sum = 0;
         int found = 0;
         for (int64_t j = 0; j < c->vertices; j++) {
             double d[3];
@@ -49,7 +49,7 @@ static void span(const skg_body *body, skg_body_organ *o, int follows_below) {
     const double *bounds = outer->role == ROLE_SPANNED || is_lung_vessels(o) ? outer->bounds : o->bounds;
     for (int64_t i = 0; i < o->vertices; i++) {
         double up = (o->rest[3 * i + 2] - bounds[2]) / (bounds[5] - bounds[2]);
-        o->fraction[i] = follows_below ? 1 - up : up;
+        o->carried.fraction[i] = follows_below ? 1 - up : up;
     }
 }
 
@@ -68,14 +68,14 @@ static skg_status place_needle(skg_body *body, skg_body_organ *o, int32_t liver,
         skg_add_scaled(o->rest + 3 * i, -1, o->rest + 3 * tip, d);
         if (skg_length(d) > skg_length(far)) memcpy(far, d, sizeof far);
     }
-    memcpy(o->tip, o->rest + 3 * tip, sizeof o->tip);
+    memcpy(o->needle.tip, o->rest + 3 * tip, sizeof o->needle.tip);
     best = HUGE_VAL;
     for (int s = 0; s <= STEPS; s++) {
         double p[3];
         skg_link link = {.fraction = 1, .organ = skin};
-        skg_add_scaled(o->tip, (double)s / STEPS, far, p);
+        skg_add_scaled(o->needle.tip, (double)s / STEPS, far, p);
         double to_skin = skg_nearest(body->organ + skin, p, anywhere, &link);
-        if (to_skin < best) best = to_skin, o->skin = link, memcpy(o->pivot, p, sizeof p);
+        if (to_skin < best) best = to_skin, o->needle.skin = link, memcpy(o->needle.pivot, p, sizeof p);
     }
     return carry(body, o, liver);
 }
@@ -124,13 +124,13 @@ skg_status skg_carry_follow(skg_body *body, skg_body_organ *o) {
         return SKG_OK;
     }
     /* In dynamic MR, kidneys move by 0.6 to 0.7 of the diaphragm. */
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->fraction, o->label, &o->fraction));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->carried.fraction, o->label, &o->carried.fraction));
     for (int64_t i = 0; i < o->vertices; i++)
-        o->fraction[i] =
+        o->carried.fraction[i] =
             skg_label_begins(o->label, "kidney") || skg_label_begins(o->label, "perirenal fat") ? 0.65 : 1;
     if (o->role == ROLE_SPANNED) span(body, o, with_lung || with_heart || is_lung_vessels(o));
     if (o->role == ROLE_NEEDLE) return place_needle(body, o, liver, skin);
-    o->carrier = LINK_TENDON;
+    o->carried.by = LINK_TENDON;
     return carrier >= 0 ? carry(body, o, carrier) : SKG_OK;
 }
 
@@ -151,18 +151,18 @@ skg_status skg_carry_cartilage(skg_body *body, skg_body_organ *o) {
                 "%s: its rib or the sternum is not in the body, so it stays where it is", o->label);
         return SKG_OK;
     }
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->fraction, o->label, &o->fraction));
-    SKG_TRY(skg_alloc(2, sizeof *o->near, o->label, &o->near));
-    o->near[0] = rib, o->near[1] = other;
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->carried.fraction, o->label, &o->carried.fraction));
+    SKG_TRY(skg_alloc(2, sizeof *o->carried.near, o->label, &o->carried.near));
+    o->carried.near[0] = rib, o->carried.near[1] = other;
     double low = HUGE_VAL, high = -HUGE_VAL;
     for (int64_t i = 0; i < o->vertices; i++) {
         skg_link unused;
-        o->fraction[i] = skg_nearest(body->organ + rib, o->rest + 3 * i, anywhere, &unused);
-        low = fmin(low, o->fraction[i]), high = fmax(high, o->fraction[i]);
+        o->carried.fraction[i] = skg_nearest(body->organ + rib, o->rest + 3 * i, anywhere, &unused);
+        low = fmin(low, o->carried.fraction[i]), high = fmax(high, o->carried.fraction[i]);
     }
     for (int64_t i = 0; i < o->vertices; i++) {
-        double t = (o->fraction[i] - low) / (high - low);
-        o->fraction[i] = t * t * (3 - 2 * t); /* constant at both ends, where bone begins */
+        double t = (o->carried.fraction[i] - low) / (high - low);
+        o->carried.fraction[i] = t * t * (3 - 2 * t); /* constant at both ends, where bone begins */
     }
     return SKG_OK;
 }

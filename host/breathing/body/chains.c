@@ -21,7 +21,7 @@ static int64_t find_drivers(const skg_body *body, const skg_body_organ *o, skg_l
         double rigid = 0;
         how[i] = FREE;
         if (o->node_of[i] != i) continue;
-        if (o->given_count == 0) {
+        if (o->soft.given_count == 0) {
             how[i] = rule(body, o, p, link + i) ? FOLLOWS : FREE;
             continue;
         }
@@ -58,10 +58,10 @@ static skg_status add_hanging(const skg_body *body, skg_body_organ *o, int64_t h
         int32_t node = (int32_t)i;
         if (c->how[i] == HANGS) {
             node = (int32_t)c->nodes++;
-            point_on(body, o->link + i, c->rest + 3 * (int64_t)node);
+            point_on(body, o->soft.link + i, c->rest + 3 * (int64_t)node);
             c->ends[2 * c->links] = (int32_t)i, c->ends[2 * c->links++ + 1] = node;
         }
-        o->link[o->links] = o->link[i], c->driven[o->links++] = node;
+        o->soft.link[o->soft.links] = o->soft.link[i], c->driven[o->soft.links++] = node;
     }
     return SKG_OK;
 }
@@ -69,9 +69,9 @@ static skg_status add_hanging(const skg_body *body, skg_body_organ *o, int64_t h
 /* Of an organ that follows ribs and dome together, links only limit how far it deforms; nothing drives it. */
 static skg_status build_coupled(const skg_body *body, skg_body_organ *o, const chain_parts *c) {
     if (o->tissue_by_label) o->tissue = skg_coupled_tissue_of(o->label);
-    SKG_TRY(
-        skg_chain_create(o->label, o->vertices, o->rest, c->links, c->ends, &o->tissue, 1, NULL, &o->chain));
-    SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->state));
+    SKG_TRY(skg_chain_create(o->label, o->vertices, o->rest, c->links, c->ends, &o->tissue, 1, NULL,
+                             &o->soft.chain));
+    SKG_TRY(skg_alloc(3 * o->vertices, sizeof(double), o->label, &o->soft.state));
     return skg_share_find(body, o);
 }
 
@@ -79,20 +79,22 @@ static skg_status build_chain(skg_body *body, skg_body_organ *o, chain_parts *c)
     SKG_TRY(skg_chain_links(o->triangles, o->corner, o->node_of, &c->links, &c->ends));
     if (o->role == ROLE_DIAPHRAGM) SKG_TRY(skg_body_add_struts(o, &c->links, &c->ends));
     if (o->coupled) return build_coupled(body, o, c);
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->link, o->label, &o->link));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->soft.link, o->label, &o->soft.link));
     SKG_TRY(skg_alloc(o->vertices, sizeof *c->how, o->label, &c->how));
-    SKG_TRY(add_hanging(body, o, find_drivers(body, o, o->link, c->how), c));
-    SKG_TRY(skg_chain_create(o->label, c->nodes, c->rest, c->links, c->ends, &o->tissue, 1, NULL, &o->chain));
-    SKG_TRY(skg_chain_drive(o->chain, o->links, c->driven));
-    SKG_TRY(skg_alloc(3 * c->nodes, sizeof(double), o->label, &o->state));
-    SKG_TRY(skg_alloc(3 * c->nodes, sizeof(double), o->label, &o->memory));
-    SKG_TRY(skg_alloc(3 * o->links, sizeof(double), o->label, &o->target));
-    SKG_TRY(skg_alloc(3 * o->links, sizeof(double), o->label, &o->anchor));
-    for (int64_t d = 0; d < o->links; d++)
-        memcpy(o->anchor + 3 * d, c->rest + 3 * (int64_t)c->driven[d], 3 * sizeof(double));
-    o->corotates = skg_corotates(body, o);
-    o->unfolds = o->given_count == 0 && skg_is_anatomical(body) && skg_label_begins(o->label, "cartilage");
-    if (o->links == 0)
+    SKG_TRY(add_hanging(body, o, find_drivers(body, o, o->soft.link, c->how), c));
+    SKG_TRY(skg_chain_create(o->label, c->nodes, c->rest, c->links, c->ends, &o->tissue, 1, NULL,
+                             &o->soft.chain));
+    SKG_TRY(skg_chain_drive(o->soft.chain, o->soft.links, c->driven));
+    SKG_TRY(skg_alloc(3 * c->nodes, sizeof(double), o->label, &o->soft.state));
+    SKG_TRY(skg_alloc(3 * c->nodes, sizeof(double), o->label, &o->soft.memory));
+    SKG_TRY(skg_alloc(3 * o->soft.links, sizeof(double), o->label, &o->soft.target));
+    SKG_TRY(skg_alloc(3 * o->soft.links, sizeof(double), o->label, &o->soft.anchor));
+    for (int64_t d = 0; d < o->soft.links; d++)
+        memcpy(o->soft.anchor + 3 * d, c->rest + 3 * (int64_t)c->driven[d], 3 * sizeof(double));
+    o->soft.corotates = skg_corotates(body, o);
+    o->soft.unfolds =
+        o->soft.given_count == 0 && skg_is_anatomical(body) && skg_label_begins(o->label, "cartilage");
+    if (o->soft.links == 0)
         skg_log(
             body->context, SKG_LOG_WARNING,
             "%s: deformable, but nothing that it is linked to is near enough, so it stays where it is. Give it "
@@ -112,10 +114,12 @@ skg_status skg_body_make_chain(skg_body *body, skg_body_organ *o) {
 }
 
 void skg_body_drop_chain(skg_body_organ *o) {
-    skg_chain_free(&o->chain);
-    void *block[] = {&o->link,  &o->anchor, &o->target,    &o->state,       &o->memory,
-                     &o->share, &o->course, &o->bone,      &o->bone_weight, &o->thin,
-                     &o->way,   &o->base,   &o->bone_base, &o->bone_away};
+    skg_chain_free(&o->soft.chain);
+    void *block[] = {&o->soft.link,          &o->soft.anchor,       &o->soft.target,
+                     &o->soft.state,         &o->soft.memory,       &o->coupling.share,
+                     &o->coupling.course,    &o->coupling.bone,     &o->coupling.bone_weight,
+                     &o->coupling.thin,      &o->coupling.way,      &o->coupling.base,
+                     &o->coupling.bone_base, &o->coupling.bone_away};
     for (size_t i = 0; i < sizeof block / sizeof *block; i++) skg_free(block[i]);
-    o->links = 0;
+    o->soft.links = 0;
 }

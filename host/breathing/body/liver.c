@@ -8,11 +8,11 @@
 static const double liver_reach = 9, dome_from = 0.5;
 
 skg_status skg_liver_find(const skg_body_organ *diaphragm, skg_body_organ *o) {
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->base, o->label, &o->base));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->coupling.base, o->label, &o->coupling.base));
 #pragma omp parallel for schedule(dynamic, 64)
     for (int64_t i = 0; i < o->vertices; i++) {
         skg_link link = {.fraction = 1};
-        skg_base *base = o->base + i;
+        skg_base *base = o->coupling.base + i;
         base->away = skg_nearest(diaphragm, o->rest + 3 * i, liver_reach, &link);
         for (int c = 0; c < 3; c++) base->corner[c] = link.corner[c], base->weight[c] = link.weight[c];
     }
@@ -24,7 +24,7 @@ static double dome_over(const skg_body_organ *diaphragm, const skg_base *base) {
     double share = 0;
     if (base->away == HUGE_VAL) return 0;
     for (int c = 0; c < 3; c++)
-        share += base->weight[c] * diaphragm->share[diaphragm->node_of[base->corner[c]]];
+        share += base->weight[c] * diaphragm->coupling.share[diaphragm->node_of[base->corner[c]]];
     return share;
 }
 
@@ -51,7 +51,7 @@ static void fill_frame(const skg_body *body, skg_body_organ *o, liver_frame *f) 
         low = fmin(low, at), high = fmax(high, at);
     }
     f->top = low;
-    o->squeeze = high > low ? body->options.liver_held / (high - low) : 0;
+    o->coupling.squeeze = high > low ? body->options.liver_held / (high - low) : 0;
 }
 
 /* How far the tendon goes over a vertex, as a part of tendon_mm. */
@@ -65,9 +65,9 @@ static double motion_over(const skg_body *body, const double p[3]) {
 /* Whether a vertex touches the dome, and what the liver needs at its top to go there as far as the dome. */
 static int touches(const skg_body *body, const skg_body_organ *o, const liver_frame *f, int64_t i,
                    double *needs) {
-    if (o->share[i] < dome_from) return 0;
-    *needs = o->share[i] * motion_over(body, o->rest + 3 * i) +
-             o->squeeze * (skg_dot(f->along, o->rest + 3 * i) - f->top);
+    if (o->coupling.share[i] < dome_from) return 0;
+    *needs = o->coupling.share[i] * motion_over(body, o->rest + 3 * i) +
+             o->coupling.squeeze * (skg_dot(f->along, o->rest + 3 * i) - f->top);
     return 1;
 }
 
@@ -89,8 +89,8 @@ static void fit_shear(const skg_body *body, skg_body_organ *o, liver_frame *f) {
     const double det = s[0] * s[2] - s[1] * s[1];
     if (det > 1e-6 * s[0] * s[2]) /* else they lie on a line */
         slope[0] = (s[2] * t[0] - s[1] * t[1]) / det, slope[1] = (s[0] * t[1] - s[1] * t[0]) / det;
-    skg_scale_vector(slope[0], f->axis[0], o->shear);
-    skg_add_scaled(o->shear, slope[1], f->axis[1], o->shear);
+    skg_scale_vector(slope[0], f->axis[0], o->coupling.shear);
+    skg_add_scaled(o->coupling.shear, slope[1], f->axis[1], o->coupling.shear);
 }
 
 /* The growth of the displacement from one point to another that is d away, with the tendon at weight 1: shear and
@@ -99,9 +99,9 @@ static void grow(const skg_body *body, const skg_body_organ *liver, const double
     const double *tendon = body->options.tendon_mm, length = skg_length(tendon),
                  along = skg_dot(tendon, d) / length;
     double outward[3];
-    skg_scale_vector(skg_dot(liver->shear, d) - liver->squeeze * along, tendon, growth);
+    skg_scale_vector(skg_dot(liver->coupling.shear, d) - liver->coupling.squeeze * along, tendon, growth);
     skg_add_scaled(d, -along / length, tendon, outward);
-    skg_add_scaled(growth, 0.5 * liver->squeeze * length, outward, growth);
+    skg_add_scaled(growth, 0.5 * liver->coupling.squeeze * length, outward, growth);
 }
 
 /* The displacement is a linear function of the place, so that the liver keeps its form. Sheared along the tendon's motion
@@ -110,21 +110,23 @@ static void grow(const skg_body *body, const skg_body_organ *liver, const double
 void skg_liver_course(const skg_body *body, const skg_body_organ *diaphragm, skg_body_organ *o) {
     liver_frame f;
     double centre[3], lift = 0, needs;
-    memset(o->course, 0, (size_t)(3 * o->vertices) * sizeof *o->course);
+    memset(o->coupling.course, 0, (size_t)(3 * o->vertices) * sizeof *o->coupling.course);
     if (skg_length(body->options.tendon_mm) == 0) return;
     memset(&f, 0, sizeof f);
     fill_frame(body, o, &f);
-    for (int64_t i = 0; i < o->vertices; i++) o->share[i] = dome_over(diaphragm, o->base + i);
+    for (int64_t i = 0; i < o->vertices; i++)
+        o->coupling.share[i] = dome_over(diaphragm, o->coupling.base + i);
     fit_shear(body, o, &f);
-    const double shift = skg_dot(o->shear, f.axis[0]) * f.mean[0] + skg_dot(o->shear, f.axis[1]) * f.mean[1];
+    const double shift =
+        skg_dot(o->coupling.shear, f.axis[0]) * f.mean[0] + skg_dot(o->coupling.shear, f.axis[1]) * f.mean[1];
     for (int64_t i = 0; i < o->vertices; i++)
         if (touches(body, o, &f, i, &needs))
-            lift = fmax(lift, needs - (f.mean[2] + skg_dot(o->shear, o->rest + 3 * i) - shift));
+            lift = fmax(lift, needs - (f.mean[2] + skg_dot(o->coupling.shear, o->rest + 3 * i) - shift));
     for (int k = 0; k < 3; k++) centre[k] = 0.5 * (o->bounds[k] + o->bounds[3 + k]);
-    const double at_centre = f.mean[2] + lift + skg_dot(o->shear, centre) - shift -
-                             o->squeeze * (skg_dot(f.along, centre) - f.top);
+    const double at_centre = f.mean[2] + lift + skg_dot(o->coupling.shear, centre) - shift -
+                             o->coupling.squeeze * (skg_dot(f.along, centre) - f.top);
     for (int64_t i = 0; i < o->vertices; i++) {
-        double d[3], *course = o->course + 3 * i;
+        double d[3], *course = o->coupling.course + 3 * i;
         skg_add_scaled(o->rest + 3 * i, -1, centre, d);
         grow(body, o, d, course);
         skg_add_scaled(course, at_centre, body->options.tendon_mm, course);
@@ -133,15 +135,15 @@ void skg_liver_course(const skg_body *body, const skg_body_organ *diaphragm, skg
 }
 
 void skg_liver_carries(const skg_body *body, skg_body_organ *o) {
-    const skg_body_organ *liver = o->near && o->beyond ? body->organ + o->carrier : NULL;
+    const skg_body_organ *liver = o->carried.near && o->coupling.beyond ? body->organ + o->carried.by : NULL;
     if (!liver || !liver->coupled || skg_length(body->options.tendon_mm) == 0) return;
     for (int64_t i = 0; i < o->vertices; i++) {
         double d[3], growth[3];
         memcpy(d, o->rest + 3 * i, sizeof d);
         for (int n = 0; n < CARRIERS; n++)
-            skg_add_scaled(d, -o->near_weight[CARRIERS * i + n],
-                           liver->rest + 3 * (int64_t)o->near[CARRIERS * i + n], d);
+            skg_add_scaled(d, -o->carried.weight[CARRIERS * i + n],
+                           liver->rest + 3 * (int64_t)o->carried.near[CARRIERS * i + n], d);
         grow(body, liver, d, growth);
-        skg_scale_vector(body->options.liver_follows, growth, o->beyond + 3 * i);
+        skg_scale_vector(body->options.liver_follows, growth, o->coupling.beyond + 3 * i);
     }
 }

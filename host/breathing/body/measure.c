@@ -51,7 +51,7 @@ double skg_body_needle_depth(const skg_body *body) {
         const skg_body_organ *o = body->organ + i;
         double way[3];
         if (o->role != ROLE_NEEDLE) continue;
-        skg_add_scaled(o->pivot, -1, o->tip, way);
+        skg_add_scaled(o->needle.pivot, -1, o->needle.tip, way);
         return skg_length(way);
     }
     return (double)NAN;
@@ -95,17 +95,17 @@ static void measure_organ(const skg_body *body, const skg_body_organ *o, skg_bod
         m->liver_volume_ratio = volume_now(o) / o->volume;
     }
     if (o->role == ROLE_DIAPHRAGM) measure_diaphragm(o, m);
-    if (!o->chain) return;
-    if (o->report.conflict_mm > m->conflict_mm) {
-        m->conflict_mm = o->report.conflict_mm;
+    if (!o->soft.chain) return;
+    if (o->soft.report.conflict_mm > m->conflict_mm) {
+        m->conflict_mm = o->soft.report.conflict_mm;
         m->conflict[0] = o->label;
         skg_conflict_partners(body, o, m->conflict + 1);
     }
     int64_t broken;
     double worst;
     for (int64_t i = 0; o->coupled && i < o->vertices; i++) /* of others it is what the chain was moved to */
-        for (int k = 0; k < 3; k++) o->state[k * o->vertices + i] = o->moved[3 * i + k];
-    skg_chain_check(o->chain, o->state, broken_mm, &broken, &worst);
+        for (int k = 0; k < 3; k++) o->soft.state[k * o->vertices + i] = o->moved[3 * i + k];
+    skg_chain_check(o->soft.chain, o->soft.state, broken_mm, &broken, &worst);
     m->broken_links += broken;
 }
 

@@ -25,10 +25,10 @@ static skg_status take_turn(const skg_organ *given, skg_body_organ *o) {
         return skg_fail(SKG_ERR_BREATHING, "%s: its rotation is not finite, or more than half a turn",
                         o->label);
     const double paper[3] = {-given->lambda_rad, (o->side < 0 ? 1 : -1) * given->gamma_rad, 0};
-    skg_add_scaled(given->turn_rad, 1, paper, o->axis);
-    o->turned = skg_length(o->axis) > 0;
+    skg_add_scaled(given->turn_rad, 1, paper, o->turn.axis);
+    o->turn.given = skg_length(o->turn.axis) > 0;
     const int has_rule = o->role == ROLE_RIB || o->role == ROLE_STERNUM;
-    if (!o->turned && !has_rule)
+    if (!o->turn.given && !has_rule)
         return skg_fail(
             SKG_ERR_BREATHING,
             "%s: rigid, but its label has no rule; give it a rotation (an axis and an angle, or gamma "
@@ -57,7 +57,7 @@ static skg_status take_links(const skg_organ *given, skg_body_organ *o) {
     if (given->link_count > 0 && o->role != ROLE_LINKED && o->role != ROLE_DIAPHRAGM)
         return skg_fail(SKG_ERR_BREATHING, "%s: has links, but is not deformable; give it that kind",
                         o->label);
-    SKG_TRY(skg_alloc(given->link_count, sizeof *o->given, o->label, &o->given));
+    SKG_TRY(skg_alloc(given->link_count, sizeof *o->soft.given, o->label, &o->soft.given));
     for (int64_t l = 0; l < given->link_count; l++) {
         skg_organ_link from;
         skg_organ_link_init(&from);
@@ -72,9 +72,9 @@ static skg_status take_links(const skg_organ *given, skg_body_organ *o) {
                 "no farther than that",
                 o->label, from.to, from.distance_mm, from.rigid_mm);
         SKG_TRY(skg_copy_text(from.to, &to));
-        o->given[l] = from;
-        o->given[l].to = to;
-        o->given_count = l + 1;
+        o->soft.given[l] = from;
+        o->soft.given[l].to = to;
+        o->soft.given_count = l + 1;
     }
     return SKG_OK;
 }
@@ -87,11 +87,11 @@ static skg_status take_centre(const skg_organ *given, skg_body_organ *o) {
     if (known > 0 && (o->kind != SKG_ORGAN_RIGID || !skg_all_finite(given->centre_mm, 3)))
         return skg_fail(SKG_ERR_BREATHING,
                         "%s: a centre of rotation needs three finite numbers and a rigid organ", o->label);
-    o->centred = known > 0;
+    o->turn.centred = known > 0;
     if (known > 0)
-        memcpy(o->head, given->centre_mm, sizeof o->head);
-    else if (o->turned && o->role != ROLE_RIB)
-        skg_inertia_axes(o, axes, o->head);
+        memcpy(o->turn.head, given->centre_mm, sizeof o->turn.head);
+    else if (o->turn.given && o->role != ROLE_RIB)
+        skg_inertia_axes(o, axes, o->turn.head);
     return SKG_OK;
 }
 

@@ -17,9 +17,9 @@ static void pose_rigid(skg_body_organ *o) {
 /* Turns an organ about its head, by its rotation vector times a factor. */
 static void pose_turn(skg_body_organ *o, double factor) {
     double vector[3];
-    skg_scale_vector(factor, o->axis, vector);
+    skg_scale_vector(factor, o->turn.axis, vector);
     skg_rotation(vector, o->rigid.rotation);
-    memcpy(o->rigid.centre, o->head, sizeof o->head);
+    memcpy(o->rigid.centre, o->turn.head, sizeof o->turn.head);
     memset(o->rigid.shift, 0, sizeof o->rigid.shift);
     pose_rigid(o);
 }
@@ -34,7 +34,7 @@ static void fit_sternum(const skg_body *body, int moves, skg_rigid *rigid) {
         if (o->role != ROLE_RIB || o->number > TRUE_RIBS) continue;
         double most = -1, d[3];
         for (int64_t i = 0; i < o->vertices; i++) {
-            skg_add_scaled(o->rest + 3 * i, -1, o->head, d);
+            skg_add_scaled(o->rest + 3 * i, -1, o->turn.head, d);
             if (skg_dot(d, d) <= most) continue;
             most = skg_dot(d, d);
             memcpy(points[count], o->rest + 3 * i, sizeof points[0]);
@@ -49,12 +49,14 @@ static void fit_sternum(const skg_body *body, int moves, skg_rigid *rigid) {
 }
 
 static void pose_cartilage(const skg_body *body, skg_body_organ *o) {
-    const skg_rigid *from = &body->organ[o->near[0]].rigid, *to = &body->organ[o->near[1]].rigid;
+    const skg_rigid *from = &body->organ[o->carried.near[0]].rigid,
+                    *to = &body->organ[o->carried.near[1]].rigid;
     for (int64_t i = 0; i < o->vertices; i++) {
         double a[3], b[3];
         skg_rigid_displace(from, o->rest + 3 * i, a);
         skg_rigid_displace(to, o->rest + 3 * i, b);
-        for (int k = 0; k < 3; k++) o->moved[3 * i + k] = (1 - o->fraction[i]) * a[k] + o->fraction[i] * b[k];
+        for (int k = 0; k < 3; k++)
+            o->moved[3 * i + k] = (1 - o->carried.fraction[i]) * a[k] + o->carried.fraction[i] * b[k];
     }
 }
 
@@ -69,7 +71,7 @@ enum { UNFOLDINGS = 8 };
 static skg_status unfold_chain(skg_body_organ *o) {
     skg_chain_report report;
     for (int round = 0; round < UNFOLDINGS && skg_thin_open(o, 1); round++) {
-        SKG_TRY(skg_chain_settle(o->chain, o->moved, &report));
+        SKG_TRY(skg_chain_settle(o->soft.chain, o->moved, &report));
         if (report.conflict_mm == 0) break;
     }
     for (int64_t i = 0; i < o->vertices; i++)
@@ -79,27 +81,28 @@ static skg_status unfold_chain(skg_body_organ *o) {
 }
 
 static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
+    skg_soft *soft = &o->soft;
     const double blend = body->options.hysteresis;
-    const int64_t nodes = o->chain->nodes;
+    const int64_t nodes = soft->chain->nodes;
     skg_rigid motion;
-    for (int64_t d = 0; d < o->links; d++) skg_link_follow(body, o->link + d, o->target + 3 * d);
-    const int turns = o->corotates && skg_corotate_motion(o, &motion);
-    for (int64_t d = 0; turns && d < o->links; d++)
-        skg_corotate_remove(&motion, o->anchor + 3 * d, o->target + 3 * d, o->target + 3 * d);
-    memset(o->state, 0, (size_t)(3 * nodes) * sizeof(double));
-    SKG_TRY(skg_chain_move(o->chain, o->target, o->state, &o->report));
+    for (int64_t d = 0; d < soft->links; d++) skg_link_follow(body, soft->link + d, soft->target + 3 * d);
+    const int turns = soft->corotates && skg_corotate_motion(o, &motion);
+    for (int64_t d = 0; turns && d < soft->links; d++)
+        skg_corotate_remove(&motion, soft->anchor + 3 * d, soft->target + 3 * d, soft->target + 3 * d);
+    memset(soft->state, 0, (size_t)(3 * nodes) * sizeof(double));
+    SKG_TRY(skg_chain_move(soft->chain, soft->target, soft->state, &soft->report));
     if (body->options.relaxation > 0)
-        SKG_TRY(skg_chain_relax(o->chain, body->options.relaxation, relaxed_by, o->state));
-    if (blend > 0) SKG_TRY(skg_chain_move(o->chain, o->target, o->memory, &o->report));
+        SKG_TRY(skg_chain_relax(soft->chain, body->options.relaxation, relaxed_by, soft->state));
+    if (blend > 0) SKG_TRY(skg_chain_move(soft->chain, soft->target, soft->memory, &soft->report));
     for (int64_t i = 0; i < o->vertices; i++) {
         double *moved = o->moved + 3 * i;
         for (int k = 0; k < 3; k++) {
             const int64_t at = k * nodes + o->node_of[i];
-            moved[k] = o->state[at];
-            if (blend > 0) moved[k] += blend * (o->memory[at] - moved[k]);
+            moved[k] = soft->state[at];
+            if (blend > 0) moved[k] += blend * (soft->memory[at] - moved[k]);
         }
     }
-    if (o->unfolds) SKG_TRY(unfold_chain(o));
+    if (soft->unfolds) SKG_TRY(unfold_chain(o));
     for (int64_t i = 0; i < o->vertices && turns; i++)
         skg_corotate_restore(&motion, o->rest + 3 * i, o->moved + 3 * i, o->moved + 3 * i);
     return SKG_OK;
@@ -109,12 +112,12 @@ static skg_status pose_chain(skg_body *body, skg_body_organ *o) {
  * back. */
 static void pose_needle(const skg_body *body, skg_body_organ *o) {
     double tip[3], skin[3], rest[3], now[3], turn[3], at[3];
-    skg_link_follow(body, &o->skin, skin);
+    skg_link_follow(body, &o->needle.skin, skin);
     int64_t nearest = 0;
     for (int64_t i = 0; i < o->vertices; i++)
-        if (memcmp(o->rest + 3 * i, o->tip, sizeof o->tip) == 0) nearest = i;
+        if (memcmp(o->rest + 3 * i, o->needle.tip, sizeof o->needle.tip) == 0) nearest = i;
     skg_carried_vertex(body, o, nearest, tip);
-    skg_add_scaled(o->pivot, -1, o->tip, rest);
+    skg_add_scaled(o->needle.pivot, -1, o->needle.tip, rest);
     for (int k = 0; k < 3; k++) now[k] = rest[k] + skin[k] - tip[k];
     skg_scale_vector(1 / skg_length(rest), rest, rest);
     skg_scale_vector(1 / skg_length(now), now, now);
@@ -122,7 +125,7 @@ static void pose_needle(const skg_body *body, skg_body_organ *o) {
     double sine = skg_length(turn);
     if (sine > 0) skg_scale_vector(atan2(sine, skg_dot(rest, now)) / sine, turn, turn);
     skg_rotation(turn, o->rigid.rotation);
-    memcpy(o->rigid.centre, o->tip, sizeof o->tip);
+    memcpy(o->rigid.centre, o->needle.tip, sizeof o->needle.tip);
     skg_scale_vector(body->withdrawn, now, at);
     for (int k = 0; k < 3; k++) o->rigid.shift[k] = tip[k] + at[k];
     pose_rigid(o);
@@ -134,11 +137,11 @@ static skg_status pose_coupled(const skg_body *body, skg_body_organ *o) {
     skg_chain_report last;
     skg_share_displace(body, o);
     skg_thin_open(o, 0);
-    if (o->chain) SKG_TRY(skg_chain_settle(o->chain, o->moved, &o->report));
-    last = o->report;
+    if (o->soft.chain) SKG_TRY(skg_chain_settle(o->soft.chain, o->moved, &o->soft.report));
+    last = o->soft.report;
     for (int round = 1; round < UNFOLDINGS && last.conflict_mm > 0 && skg_thin_open(o, 1); round++) {
-        SKG_TRY(skg_chain_settle(o->chain, o->moved, &last));
-        if (last.conflict_mm > o->report.conflict_mm) o->report = last;
+        SKG_TRY(skg_chain_settle(o->soft.chain, o->moved, &last));
+        if (last.conflict_mm > o->soft.report.conflict_mm) o->soft.report = last;
     }
     for (int64_t i = 0; i < o->vertices; i++)
         if (o->node_of[i] != i)
@@ -195,7 +198,7 @@ static skg_status write_mesh(skg_body_organ *o) {
 }
 
 static int is_of(const skg_body_organ *o, skg_role role, int stage) {
-    return o->role == role && o->stage == stage;
+    return o->role == role && o->soft.stage == stage;
 }
 
 /* Organs of one role and stage do not follow each other, so that their order does not matter. */
@@ -221,13 +224,13 @@ static void pose_bones(skg_body *body, double thoracic) {
     skg_rigid sternum;
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
-        if (o->role == ROLE_RIB || o->role == ROLE_RIGID || o->turned)
-            pose_turn(o, o->turned ? thoracic - from : fraction * skg_rib_factor(&body->options, o));
+        if (o->role == ROLE_RIB || o->role == ROLE_RIGID || o->turn.given)
+            pose_turn(o, o->turn.given ? thoracic - from : fraction * skg_rib_factor(&body->options, o));
     }
     fit_sternum(body, thoracic != from, &sternum);
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
-        if (o->role != ROLE_STERNUM || o->turned) continue;
+        if (o->role != ROLE_STERNUM || o->turn.given) continue;
         o->rigid = sternum;
         pose_rigid(o);
     }
@@ -241,7 +244,7 @@ static skg_status pose_all(skg_body *body, double thoracic, double diaphragmatic
     body->descended = diaphragmatic - options->reference_diaphragmatic;
     skg_scale_vector(body->descended, options->tendon_mm, body->tendon);
     for (int64_t i = 0; i < body->organs; i++)
-        stages = body->organ[i].stage > stages ? body->organ[i].stage : stages;
+        stages = body->organ[i].soft.stage > stages ? body->organ[i].soft.stage : stages;
     pose_bones(body, thoracic);
     SKG_TRY(pose_role(body, ROLE_CARTILAGE, 0));
     SKG_TRY(pose_role(body, ROLE_ENCLOSED, 0));
@@ -260,10 +263,10 @@ static void copy_memories(skg_body *body, int step, int out) {
     double *at = body->loop_state + step * body->loop_size;
     for (int64_t i = 0; i < body->organs; i++) {
         skg_body_organ *o = body->organ + i;
-        if (!o->memory) continue;
-        size_t size = (size_t)(3 * o->chain->nodes) * sizeof(double);
-        memcpy(out ? at : o->memory, out ? o->memory : at, size);
-        at += 3 * o->chain->nodes;
+        if (!o->soft.memory) continue;
+        size_t size = (size_t)(3 * o->soft.chain->nodes) * sizeof(double);
+        memcpy(out ? at : o->soft.memory, out ? o->soft.memory : at, size);
+        at += 3 * o->soft.chain->nodes;
     }
 }
 
@@ -273,9 +276,10 @@ skg_status skg_body_breathe(skg_body *body, const skg_breath *breath) {
     SKG_TRY(skg_breath_check(breath));
     body->loop = 0, body->loop_size = 0;
     for (int64_t i = 0; i < body->organs; i++)
-        if (body->organ[i].memory) {
-            body->loop_size += 3 * body->organ[i].chain->nodes;
-            memset(body->organ[i].memory, 0, (size_t)(3 * body->organ[i].chain->nodes) * sizeof(double));
+        if (body->organ[i].soft.memory) {
+            body->loop_size += 3 * body->organ[i].soft.chain->nodes;
+            memset(body->organ[i].soft.memory, 0,
+                   (size_t)(3 * body->organ[i].soft.chain->nodes) * sizeof(double));
         }
     SKG_TRY(skg_realloc(LOOP_STEPS * body->loop_size, sizeof(double), "breathing loop", &body->loop_state));
     for (int cycle = 0; cycle < 2; cycle++) /* the state is periodic from the second cycle on */

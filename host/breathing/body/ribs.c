@@ -90,13 +90,13 @@ static void find_head(skg_body_organ *rib) {
         least =
             fmin(least, x - 0.3 * y); /* the anterior end may be near the midplane too, so the back counts */
     }
-    memset(rib->head, 0, sizeof rib->head);
+    memset(rib->turn.head, 0, sizeof rib->turn.head);
     for (int64_t i = 0; i < rib->vertices; i++)
         if (rib->side * rib->rest[3 * i] - 0.3 * rib->rest[3 * i + 1] < least + 6) {
-            skg_add_scaled(rib->head, 1, rib->rest + 3 * i, rib->head);
+            skg_add_scaled(rib->turn.head, 1, rib->rest + 3 * i, rib->turn.head);
             count++;
         }
-    skg_scale_vector(1 / count, rib->head, rib->head);
+    skg_scale_vector(1 / count, rib->turn.head, rib->turn.head);
 }
 
 /* From the body's axes to own-side axes, which on the left are their mirror image, and back. axial: 1 for rotation
@@ -132,7 +132,7 @@ static skg_status solve_turn(skg_body_organ *rib, const double basis[6]) {
     }
     skg_scale_vector(turn[0], basis, sum);
     skg_add_scaled(sum, turn[1], basis + 3, sum);
-    to_own_side(rib, 1, sum, rib->axis);
+    to_own_side(rib, 1, sum, rib->turn.axis);
     return SKG_OK;
 }
 
@@ -142,9 +142,9 @@ static void turn_about(skg_body_organ *rib, const double along[3]) {
     double mean[3] = {0}, lever[3], motion[3];
     for (int64_t i = 0; i < rib->vertices; i++)
         skg_add_scaled(mean, 1 / (double)rib->vertices, rib->rest + 3 * i, mean);
-    skg_add_scaled(mean, -1, rib->head, lever);
+    skg_add_scaled(mean, -1, rib->turn.head, lever);
     skg_cross(along, lever, motion);
-    skg_scale_vector((motion[2] < 0 ? -1 : 1) * degree * hypot(range[0], range[1]), along, rib->axis);
+    skg_scale_vector((motion[2] < 0 ? -1 : 1) * degree * hypot(range[0], range[1]), along, rib->turn.axis);
 }
 
 /* By the bones: both angles about the axis from head to tubercle; without vertebrae about the two longer principal
@@ -164,15 +164,15 @@ skg_status skg_rib_prepare(const skg_body *body, skg_body_organ *rib) {
     static const double horizontal[6] = {1, 0, 0, 0, 1, 0};
     const int by_bones = body->options.rib_axes == SKG_RIB_AXES_BONES;
     double given[2][3], head[3];
-    memcpy(given[0], rib->axis, sizeof given[0]);
-    memcpy(given[1], rib->head, sizeof given[1]);
+    memcpy(given[0], rib->turn.axis, sizeof given[0]);
+    memcpy(given[1], rib->turn.head, sizeof given[1]);
     find_head(rib);
     if (by_bones)
         SKG_TRY(prepare_by_bones(body, rib, head));
     else
         SKG_TRY(solve_turn(rib, horizontal));
-    if (by_bones) memcpy(rib->head, head, sizeof head);
-    if (rib->turned) memcpy(rib->axis, given[0], sizeof given[0]);
-    if (rib->centred) memcpy(rib->head, given[1], sizeof given[1]);
+    if (by_bones) memcpy(rib->turn.head, head, sizeof head);
+    if (rib->turn.given) memcpy(rib->turn.axis, given[0], sizeof given[0]);
+    if (rib->turn.centred) memcpy(rib->turn.head, given[1], sizeof given[1]);
     return SKG_OK;
 }

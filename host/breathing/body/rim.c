@@ -63,15 +63,16 @@ static skg_status share_to_plane(const double plane[4], skg_body_organ *o, unsig
     for (int64_t i = 0; i < o->vertices; i++) given[i] = skg_dot(plane, o->rest + 3 * i) + plane[3] > 0;
     skg_status status = skg_surface_distance(o, given, struts, ends, to_tendon);
     for (int64_t i = 0; i < o->vertices; i++)
-        o->way[i] = given[i] ? 1 : o->way[i] / fmax(o->way[i] + to_tendon[i], 1e-9);
+        o->coupling.way[i] =
+            given[i] ? 1 : o->coupling.way[i] / fmax(o->coupling.way[i] + to_tendon[i], 1e-9);
     skg_free(&to_tendon);
     return status;
 }
 
 void skg_rim_share(const skg_body *body, skg_body_organ *o) {
-    const double muscle = body->plane_given ? 1 : body->options.muscle_length * o->farthest;
+    const double muscle = body->plane_given ? 1 : body->options.muscle_length * o->coupling.farthest;
     for (int64_t i = 0; i < o->vertices; i++)
-        o->share[i] = fmin(1, muscle > 0 ? o->way[i] / muscle : o->way[i]);
+        o->coupling.share[i] = fmin(1, muscle > 0 ? o->coupling.way[i] / muscle : o->coupling.way[i]);
 }
 
 skg_status skg_rim_find(const skg_body *body, skg_body_organ *o) {
@@ -80,15 +81,15 @@ skg_status skg_rim_find(const skg_body *body, skg_body_organ *o) {
     int64_t struts = 0;
     rim r;
     skg_status status = SKG_OK;
-    SKG_TRY_CLEANUP(skg_alloc(o->vertices, sizeof *o->way, o->label, &o->way));
+    SKG_TRY_CLEANUP(skg_alloc(o->vertices, sizeof *o->coupling.way, o->label, &o->coupling.way));
     SKG_TRY_CLEANUP(skg_alloc(o->vertices, sizeof *given, o->label, &given));
     SKG_TRY_CLEANUP(skg_body_add_struts(o, &struts, &ends));
     find_rim(o, &r);
     for (int64_t i = 0; i < o->vertices; i++) given[i] = (unsigned char)is_rim(&r, o->rest + 3 * i);
-    SKG_TRY_CLEANUP(skg_surface_distance(o, given, struts, ends, o->way));
-    o->farthest = 0;
+    SKG_TRY_CLEANUP(skg_surface_distance(o, given, struts, ends, o->coupling.way));
+    o->coupling.farthest = 0;
     for (int64_t i = 0; i < o->vertices; i++)
-        if (o->node_of[i] == i) o->farthest = fmax(o->farthest, o->way[i]);
+        if (o->node_of[i] == i) o->coupling.farthest = fmax(o->coupling.farthest, o->coupling.way[i]);
     if (body->plane_given) status = share_to_plane(body->options.tendon_plane, o, given, struts, ends);
 cleanup:
     skg_free(&given);

@@ -71,8 +71,9 @@ static int tendon_rule(const skg_body *body, const skg_body_organ *organ, const 
     const skg_body_organ *diaphragm = body->organ + link->organ;
     int tendon = 1;
     for (int c = 0; c < 3; c++)
-        tendon &= diaphragm->coupled ? diaphragm->share[diaphragm->node_of[link->corner[c]]] >= skg_dome_from
-                                     : plane_value(body, diaphragm->rest + 3 * link->corner[c]) > 0;
+        tendon &= diaphragm->coupled
+                      ? diaphragm->coupling.share[diaphragm->node_of[link->corner[c]]] >= skg_dome_from
+                      : plane_value(body, diaphragm->rest + 3 * link->corner[c]) > 0;
     return tendon;
 }
 

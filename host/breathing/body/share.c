@@ -30,7 +30,7 @@ int skg_is_coupled(const skg_body *body, const skg_body_organ *o) {
     int ribs = 0;
     if (!skg_is_anatomical(body)) return 0;
     for (int64_t i = 0; i < body->organs; i++) ribs += body->organ[i].role == ROLE_RIB;
-    if (ribs == 0 || o->given_count > 0) return 0;
+    if (ribs == 0 || o->soft.given_count > 0) return 0;
     if (o->role == ROLE_DIAPHRAGM) return 1;
     if (o->role == ROLE_SPANNED) return skg_label_begins(o->label, "pulmonary vessels") && diaphragm_of(body);
     if (o->role != ROLE_LINKED) return 0;
@@ -70,11 +70,11 @@ static void out_of(const lung_space *space, const double p[3], double normal[3])
 static skg_status find_base(const skg_body *body, skg_body_organ *o) {
     const skg_body_organ *d = diaphragm_of(body);
     const double height = find_lungs(body).half[2];
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->base, o->label, &o->base));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->coupling.base, o->label, &o->coupling.base));
 #pragma omp parallel for schedule(dynamic, 64)
     for (int64_t i = 0; i < o->vertices; i++) {
         skg_link link = {.fraction = 1};
-        skg_base *base = o->base + i;
+        skg_base *base = o->coupling.base + i;
         if (o->node_of[i] != i) continue;
         base->away = skg_nearest(d, o->rest + 3 * i, height, &link);
         for (int c = 0; c < 3; c++) base->corner[c] = link.corner[c], base->weight[c] = link.weight[c];
@@ -89,12 +89,12 @@ static void share_over_diaphragm(const skg_body *body, skg_body_organ *o) {
     const double touching = 8; /* mm; the base goes with the diaphragm as a whole */
     const double height = find_lungs(body).half[2];
     for (int64_t i = 0; i < o->vertices; i++) {
-        const skg_base *base = o->base + i;
+        const skg_base *base = o->coupling.base + i;
         if (o->node_of[i] != i) continue;
         const double t = fmin(1 - (base->away - touching) / (height - touching), 1);
-        o->share[i] = 0;
+        o->coupling.share[i] = 0;
         for (int c = 0; c < 3 && base->away < height; c++)
-            o->share[i] += t * t * base->weight[c] * d->share[d->node_of[base->corner[c]]];
+            o->coupling.share[i] += t * t * base->weight[c] * d->coupling.share[d->node_of[base->corner[c]]];
     }
 }
 
@@ -105,15 +105,17 @@ static double ramp(double x, double from, double to) {
 
 static skg_status find_bones(const skg_body *body, skg_body_organ *o) {
     const int spine = o->role == ROLE_DIAPHRAGM;
-    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone, o->label, &o->bone));
-    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone_weight, o->label, &o->bone_weight));
-    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->bone_base, o->label, &o->bone_base));
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->bone_away, o->label, &o->bone_away));
+    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->coupling.bone, o->label, &o->coupling.bone));
+    SKG_TRY(
+        skg_alloc(BONES * o->vertices, sizeof *o->coupling.bone_weight, o->label, &o->coupling.bone_weight));
+    SKG_TRY(skg_alloc(BONES * o->vertices, sizeof *o->coupling.bone_base, o->label, &o->coupling.bone_base));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->coupling.bone_away, o->label, &o->coupling.bone_away));
 #pragma omp parallel for schedule(dynamic, 64)
     for (int64_t i = 0; i < o->vertices; i++)
         if (o->node_of[i] == i)
-            o->bone_away[i] =
-                skg_wall_bones(body, spine, o->rest + 3 * i, o->bone + BONES * i, o->bone_base + BONES * i);
+            o->coupling.bone_away[i] =
+                skg_wall_bones(body, spine, o->rest + 3 * i, o->coupling.bone + BONES * i,
+                               o->coupling.bone_base + BONES * i);
     return SKG_OK;
 }
 
@@ -123,18 +125,19 @@ static skg_status find_bones(const skg_body *body, skg_body_organ *o) {
  * has what the diaphragm gives along its surface only, and all of what the ribs give. */
 static void find_course(const skg_body *body, skg_body_organ *o, int64_t i, const lung_space *lungs) {
     const int sheet = o->role == ROLE_DIAPHRAGM, wall = skg_label_is_wall(o->label);
-    const double near = 22, far = wall ? 90 : 70, distance = o->bone_away[i];
-    double *weight = o->bone_weight + BONES * i, *course = o->course + 3 * i, slides = 0, normal[3];
+    const double near = 22, far = wall ? 90 : 70, distance = o->coupling.bone_away[i];
+    double *weight = o->coupling.bone_weight + BONES * i, *course = o->coupling.course + 3 * i, slides = 0,
+           normal[3];
     skg_dome_motion(body, o->rest + 3 * i, course);
-    skg_scale_vector(o->share[i], course, course);
-    if (is_lung(o)) slides = ramp(o->base[i].away, 8, 45) * ramp(distance, 40, 16);
+    skg_scale_vector(o->coupling.share[i], course, course);
+    if (is_lung(o)) slides = ramp(o->coupling.base[i].away, 8, 45) * ramp(distance, 40, 16);
     if (slides > 0) {
         out_of(lungs, o->rest + 3 * i, normal);
         skg_add_scaled(course, -slides * skg_dot(course, normal), normal, course);
     }
     for (int b = 0; b < BONES; b++)
-        weight[b] = o->bone_base[BONES * i + b] *
-                    (fmax(1 - o->share[i], slides) * (sheet ? 1 : ramp(distance, far, near)));
+        weight[b] = o->coupling.bone_base[BONES * i + b] *
+                    (fmax(1 - o->coupling.share[i], slides) * (sheet ? 1 : ramp(distance, far, near)));
 }
 
 /* Shares and courses from what was found of the meshes. */
@@ -146,18 +149,18 @@ skg_status skg_share_again(const skg_body *body, skg_body_organ *o) {
     }
     if (o->role == ROLE_DIAPHRAGM)
         skg_rim_share(body, o);
-    else if (o->base)
+    else if (o->coupling.base)
         share_over_diaphragm(body, o);
     if (is_lung(o)) lungs = find_lungs(body);
     for (int64_t i = 0; i < o->vertices; i++)
         if (o->node_of[i] == i) find_course(body, o, i, &lungs);
-    skg_free(&o->thin);
+    skg_free(&o->coupling.thin);
     return skg_thin_find(o);
 }
 
 skg_status skg_share_find(const skg_body *body, skg_body_organ *o) {
-    SKG_TRY(skg_alloc(o->vertices, sizeof *o->share, o->label, &o->share));
-    SKG_TRY(skg_alloc(3 * o->vertices, sizeof *o->course, o->label, &o->course));
+    SKG_TRY(skg_alloc(o->vertices, sizeof *o->coupling.share, o->label, &o->coupling.share));
+    SKG_TRY(skg_alloc(3 * o->vertices, sizeof *o->coupling.course, o->label, &o->coupling.course));
     if (is_liver(o)) {
         SKG_TRY(skg_liver_find(diaphragm_of(body), o));
         return skg_share_again(body, o);
@@ -171,11 +174,11 @@ skg_status skg_share_find(const skg_body *body, skg_body_organ *o) {
 }
 
 void skg_share_displace(const skg_body *body, skg_body_organ *o) {
-    if (o->bone && body->bones_move)
+    if (o->coupling.bone && body->bones_move)
         skg_wall_displace(body, o);
     else
         memset(o->moved, 0, (size_t)(3 * o->vertices) * sizeof *o->moved);
     for (int64_t i = 0; i < o->vertices && body->descended != 0; i++)
-        skg_add_scaled(o->moved + 3 * i, body->descended, o->course + 3 * (int64_t)o->node_of[i],
+        skg_add_scaled(o->moved + 3 * i, body->descended, o->coupling.course + 3 * (int64_t)o->node_of[i],
                        o->moved + 3 * i);
 }

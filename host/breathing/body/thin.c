@@ -29,7 +29,7 @@ static void side(const skg_body_organ *o, int32_t from, int32_t to, double edge[
 
 /* The tendon moves as it is told, and does not give way. */
 static double gives(const skg_body_organ *o, int32_t node) {
-    return o->role == ROLE_DIAPHRAGM && o->share[node] == 1 ? 0 : 1;
+    return o->role == ROLE_DIAPHRAGM && o->coupling.share[node] == 1 ? 0 : 1;
 }
 
 /* Fills the description of any facet. Returns its height over its longest edge; 0: it has no area. */
@@ -57,12 +57,12 @@ static int is_thin(double height) {
 
 skg_status skg_thin_find(skg_body_organ *o) {
     skg_thin facet = {.reserved = 0};
-    o->thins = 0;
-    for (int64_t t = 0; t < o->triangles; t++) o->thins += is_thin(describe(o, t, &facet));
-    SKG_TRY(skg_alloc(o->thins, sizeof *o->thin, o->label, &o->thin));
-    o->thins = 0;
+    o->coupling.thins = 0;
+    for (int64_t t = 0; t < o->triangles; t++) o->coupling.thins += is_thin(describe(o, t, &facet));
+    SKG_TRY(skg_alloc(o->coupling.thins, sizeof *o->coupling.thin, o->label, &o->coupling.thin));
+    o->coupling.thins = 0;
     for (int64_t t = 0; t < o->triangles; t++)
-        if (is_thin(describe(o, t, &facet))) o->thin[o->thins++] = facet;
+        if (is_thin(describe(o, t, &facet))) o->coupling.thin[o->coupling.thins++] = facet;
     return SKG_OK;
 }
 
@@ -90,7 +90,7 @@ static int open_facet(skg_body_organ *o, const skg_thin *facet) {
 
 static int open_thin(skg_body_organ *o) {
     int opened = 0;
-    for (int64_t i = 0; i < o->thins; i++) opened |= open_facet(o, o->thin + i);
+    for (int64_t i = 0; i < o->coupling.thins; i++) opened |= open_facet(o, o->coupling.thin + i);
     return opened;
 }
 

@@ -42,9 +42,9 @@ static skg_status check_tie(const skg_body *body, const skg_body_organ *o, const
 
 static int depends(const skg_body *body, const skg_body_organ *o, const skg_body_organ *other) {
     if (other == o || !is_deformable(other)) return 0;
-    if (o->given_count == 0) return o->role != ROLE_DIAPHRAGM && other->role == ROLE_DIAPHRAGM;
-    for (int64_t l = 0; l < o->given_count; l++)
-        if (leads_to(body, o->given[l].to, other)) return 1;
+    if (o->soft.given_count == 0) return o->role != ROLE_DIAPHRAGM && other->role == ROLE_DIAPHRAGM;
+    for (int64_t l = 0; l < o->soft.given_count; l++)
+        if (leads_to(body, o->soft.given[l].to, other)) return 1;
     return 0;
 }
 
@@ -56,8 +56,8 @@ void skg_link_fix(const skg_body *body, const double p[3], skg_link *link) {
 
 skg_status skg_body_check_ties(skg_body *body) {
     for (int64_t i = 0; i < body->organs; i++)
-        for (int64_t l = 0; l < body->organ[i].given_count; l++)
-            SKG_TRY(check_tie(body, body->organ + i, body->organ[i].given[l].to));
+        for (int64_t l = 0; l < body->organ[i].soft.given_count; l++)
+            SKG_TRY(check_tie(body, body->organ + i, body->organ[i].soft.given[l].to));
     for (int rises = 1;
          rises;) { /* the stage of an organ is the length of the longest chain of organs that it follows */
         rises = 0;
@@ -65,9 +65,10 @@ skg_status skg_body_check_ties(skg_body *body) {
             for (int64_t j = 0; j < body->organs; j++) {
                 skg_body_organ *o = body->organ + i;
                 const skg_body_organ *other = body->organ + j;
-                if (!is_deformable(o) || !depends(body, o, other) || o->stage > other->stage) continue;
-                o->stage = other->stage + 1, rises = 1;
-                if (o->stage > body->organs)
+                if (!is_deformable(o) || !depends(body, o, other) || o->soft.stage > other->soft.stage)
+                    continue;
+                o->soft.stage = other->soft.stage + 1, rises = 1;
+                if (o->soft.stage > body->organs)
                     return skg_fail(SKG_ERR_BREATHING,
                                     "%s: linked to %s, which is linked back to it; remove one of the links",
                                     o->label, other->label);
@@ -79,12 +80,12 @@ skg_status skg_body_check_ties(skg_body *body) {
 double skg_given_link(const skg_body *body, const skg_body_organ *o, const double p[3], skg_link *link,
                       double *rigid) {
     double least = HUGE_VAL;
-    for (int64_t l = 0; l < o->given_count; l++)
+    for (int64_t l = 0; l < o->soft.given_count; l++)
         for (int64_t i = 0; i < body->organs; i++) {
             skg_link found = {.organ = (int32_t)i, .fraction = 1};
-            if (body->organ + i == o || !leads_to(body, o->given[l].to, body->organ + i)) continue;
-            double d = skg_nearest(body->organ + i, p, fmin(o->given[l].distance_mm, least), &found);
-            if (d < least) least = d, *link = found, *rigid = o->given[l].rigid_mm;
+            if (body->organ + i == o || !leads_to(body, o->soft.given[l].to, body->organ + i)) continue;
+            double d = skg_nearest(body->organ + i, p, fmin(o->soft.given[l].distance_mm, least), &found);
+            if (d < least) least = d, *link = found, *rigid = o->soft.given[l].rigid_mm;
         }
     return least;
 }

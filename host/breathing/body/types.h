@@ -73,33 +73,19 @@ typedef struct {
     int32_t corner[3], reserved;
 } skg_base;
 
+/* What organs of single kinds need beside the common part. A struct each and no union: an organ may be of two kinds, as the vessels of
+ * the liver, which are carried and follow ribs and dome. */
+
+/* Rigid organs: how they turn. */
 typedef struct {
-    skg_mesh *mesh;
-    char *label;
-    int64_t inside;
-    skg_tissue tissue;
-    int tissue_by_label; /* 1: the caller gave none */
-    skg_role role;
-    int kind;   /* SKG_ORGAN_ of the caller */
-    int warned; /* of a conflict */
-    int64_t vertices, triangles;
-    double *rest;     /* rows of x, y, z, mm */
-    double bounds[6]; /* of rest: low, high */
-    int32_t *corner;
-    skg_tree tree;    /* of the triangles at rest */
-    int32_t *node_of; /* per vertex: the first vertex at the same place */
-    double *moved;    /* displacements, rows of x, y, z, mm */
-    int changed;      /* 1: the mesh is not at rest */
-    int number, side; /* as skg_role_of gives them */
+    int given;      /* 1: axis is the caller's, at weight 1 */
+    int centred;    /* 1: head is the caller's */
+    double head[3]; /* the point about which the organ turns */
+    double axis[3]; /* rotation vector, rad: at weight 1 where given, else at full inspiration */
+} skg_turning;
 
-    /* Rigid organs. */
-    int turned;      /* 1: axis is the caller's, at weight 1 */
-    int centred;     /* 1: head is the caller's */
-    double head[3];  /* the point about which the organ turns */
-    double axis[3];  /* rotation vector, rad: at weight 1 where turned, else at full inspiration */
-    skg_rigid rigid; /* as posed */
-
-    /* Deformable organs. links[d] moves driver d. */
+/* Deformable organs. links[d] moves driver d. */
+typedef struct {
     skg_chain *chain; /* of the vertices, and of the far ends of links that are not rigid */
     int64_t links;
     skg_link *link;
@@ -113,9 +99,10 @@ typedef struct {
     double *state;  /* displacements of the chain's nodes, axis by axis */
     double *memory; /* the same with hysteresis: the state before, as moved on */
     skg_chain_report report;
+} skg_soft;
 
-    /* Organs that follow ribs and dome together (shares.h). */
-    int coupled;
+/* Organs that follow ribs and dome together (shares.h). */
+typedef struct {
     double *share;   /* per vertex: of the tendon's displacement */
     double shear[3]; /* of the liver: growth of the share across the tendon's motion, per mm */
     double squeeze;  /* and its fall along it, per mm */
@@ -123,28 +110,57 @@ typedef struct {
     double *course;  /* per vertex: displacement with the tendon at weight 1, mm */
     int32_t *bone;   /* per vertex: BONES bones; NULL: none */
     double *bone_weight; /* their weights */
-    /* What these are made of, as the meshes lie: options that change find only shares and courses again. */
-    double *
-        way; /* of the diaphragm, per vertex: distance from the rim, mm; its share where the plane is given */
-    double farthest;   /* the greatest */
+    /* What share, course and bone_weight are made of, as the meshes lie: options that change find only these three again. Of the
+     * diaphragm, way is the distance of each vertex from the rim, mm, or its share where the plane is given. */
+    double *way;
+    double farthest;   /* the greatest of them */
     skg_base *base;    /* per vertex of what lies over the diaphragm */
     double *bone_base; /* per vertex: weights of its bones, whose sum is 1 */
     double *bone_away; /* per vertex: distance of the nearest bone, mm */
     int64_t thins;
     skg_thin *thin; /* facets that fold easily (shares.h) */
+} skg_coupling;
 
-    /* Carried organs. Of a cartilage, near holds the two organs that it lies between. */
-    int32_t carrier;
-    int32_t *near;       /* per vertex: CARRIERS vertices of the carrier */
-    double *near_weight; /* their weights */
-    double *
-        fraction; /* per vertex: how much of the carrier's motion, 0 to 1; of a cartilage: of the second organ's */
+/* Carried organs. Of a cartilage, near holds the two organs that it lies between. */
+typedef struct {
+    int32_t by;       /* the carrier */
+    int32_t *near;    /* per vertex: CARRIERS vertices of the carrier */
+    double *weight;   /* their weights */
+    double *fraction; /* per vertex: of the carrier's motion, 0 to 1; of a cartilage: of the second organ's */
+} skg_carried;
 
-    /* The needle. */
-    double tip[3], pivot[3]; /* its end in the tissue, and where it enters the skin */
-    skg_link skin;           /* that place */
+/* The needle: its end in the tissue, and where it enters the skin. */
+typedef struct {
+    double tip[3], pivot[3];
+    skg_link skin; /* that place */
+} skg_needle;
 
-    double volume; /* at rest, mm3 */
+typedef struct {
+    skg_mesh *mesh;
+    char *label;
+    int64_t inside;
+    skg_tissue tissue;
+    int tissue_by_label; /* 1: the caller gave none */
+    skg_role role;
+    int kind;   /* SKG_ORGAN_ of the caller */
+    int warned; /* of a conflict */
+    int64_t vertices, triangles;
+    double *rest;     /* rows of x, y, z, mm */
+    double bounds[6]; /* of rest: low, high */
+    double volume;    /* at rest, mm3 */
+    int32_t *corner;
+    skg_tree tree;    /* of the triangles at rest */
+    int32_t *node_of; /* per vertex: the first vertex at the same place */
+    double *moved;    /* displacements, rows of x, y, z, mm */
+    int changed;      /* 1: the mesh is not at rest */
+    int number, side; /* as skg_role_of gives them */
+    int coupled;      /* 1: it follows ribs and dome together */
+    skg_rigid rigid;  /* of what moves as a whole: its motion as posed */
+    skg_turning turn;
+    skg_soft soft;
+    skg_coupling coupling;
+    skg_carried carried;
+    skg_needle needle;
 } skg_body_organ;
 
 struct skg_body {

@@ -64,8 +64,8 @@ void skg_wall_prepare(skg_body *body) {
 void skg_wall_displace(const skg_body *body, skg_body_organ *o) {
     for (int64_t i = 0; i < o->vertices; i++) {
         const int64_t n = o->node_of[i];
-        const int32_t *bone = o->bone + BONES * n;
-        const double *weight = o->bone_weight + BONES * n, *p = o->rest + 3 * n;
+        const int32_t *bone = o->coupling.bone + BONES * n;
+        const double *weight = o->coupling.bone_weight + BONES * n, *p = o->rest + 3 * n;
         for (int k = 0; k < 3; k++) { /* the sums of a row stay in registers */
             double x = 0, y = 0, z = 0, shift = 0;
             for (int b = 0; b < BONES && weight[b] > 0; b++) {

@@ -14,7 +14,7 @@ int fluoroscopy_start_image(fluoroscopy *f, int which, skg_job **job) {
     skg_frame_init(&frame);
     output.data = f->image[which];
     skg_status status = skg_motion_fill(f->motion, &frame);
-    if (status == SKG_OK) status = skg_plan_submit(f->plan, 1, &frame, &output, job);
+    if (status == SKG_OK) status = skg_plan_submit(f->plan, 1, &frame, 1, &output, job);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

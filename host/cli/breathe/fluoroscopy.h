@@ -4,6 +4,8 @@
 
 #include "session/session.h"
 
+#include <skiagraph/breathing.h>
+
 typedef struct {
     const cli_arguments *arguments;
     cli_session session;

@@ -62,7 +62,7 @@ int outline_find(fluoroscopy *f, const char *wanted) {
         output.kind = SKG_OUTPUT_LENGTHS;
         output.part = p;
         output.lengths = SKG_LENGTHS_SURFACE;
-        status = skg_plan_submit(f->plan, 1, NULL, &output, &job);
+        status = skg_plan_submit(f->plan, 1, NULL, 1, &output, &job);
         if (status == SKG_OK) status = skg_job_wait(&job);
         if (!SKG_FAILED(status)) add_border(f, f->image[0]);
         if (status > SKG_OK) status = SKG_OK;

@@ -14,16 +14,16 @@ static const double ADVISED =
     0.97; /* the share of the given time after which no recommendation is measured */
 
 static double ms_of(const cost_study *study, const cost_point *point) {
-    return study->shots[point->shot].price_ms;
+    return study->measured.shots[point->shot].price_ms;
 }
 
 /* Marks the frontier of the rays' settings: no other is both faster and better. */
 static void find_frontier(cost_study *study) {
-    for (int i = 0; i < study->count; i++) {
-        cost_point *point = &study->points[i];
+    for (int i = 0; i < study->measured.count; i++) {
+        cost_point *point = &study->measured.points[i];
         point->on_frontier = point->reference == COST_OF_RAYS && !isnan(point->max_flat);
-        for (int k = 0; k < study->count && point->on_frontier; k++) {
-            const cost_point *other = &study->points[k];
+        for (int k = 0; k < study->measured.count && point->on_frontier; k++) {
+            const cost_point *other = &study->measured.points[k];
             const double its = ms_of(study, other), ms = ms_of(study, point);
             int no_worse =
                 other->reference == COST_OF_RAYS && its <= ms && other->max_flat <= point->max_flat;
@@ -36,12 +36,12 @@ static void find_frontier(cost_study *study) {
 /* The fastest of the rays' settings within a bar, otherwise the most accurate. The price decides. */
 static int choose_rays(const cost_study *study, double bar) {
     int fastest = -1, best = -1;
-    for (int i = 0; i < study->count; i++) {
-        const cost_point *point = &study->points[i];
+    for (int i = 0; i < study->measured.count; i++) {
+        const cost_point *point = &study->measured.points[i];
         if (point->reference != COST_OF_RAYS || isnan(point->max_flat)) continue;
-        if (best < 0 || point->max_flat < study->points[best].max_flat) best = i;
+        if (best < 0 || point->max_flat < study->measured.points[best].max_flat) best = i;
         if (!(point->max_flat <= bar)) continue;
-        if (fastest < 0 || ms_of(study, point) < ms_of(study, &study->points[fastest])) fastest = i;
+        if (fastest < 0 || ms_of(study, point) < ms_of(study, &study->measured.points[fastest])) fastest = i;
     }
     return fastest >= 0 ? fastest : best;
 }
@@ -49,12 +49,12 @@ static int choose_rays(const cost_study *study, double bar) {
 /* The first repair within a bar, otherwise the best one; -1: there is nothing to repair or to unite. */
 static int choose_repair(const cost_study *study, double bar) {
     int best = -1;
-    for (int i = 0; i < study->count; i++) { /* points stand in the order of their work */
-        if (study->points[i].reference != COST_OF_REPAIR ||
-            cost_is_other_body(study, &study->points[i].setting))
+    for (int i = 0; i < study->measured.count; i++) { /* points stand in the order of their work */
+        if (study->measured.points[i].reference != COST_OF_REPAIR ||
+            cost_is_other_body(study, &study->measured.points[i].setting))
             continue;
         best = i;
-        if (study->points[i].max_flat <= bar) return i;
+        if (study->measured.points[i].max_flat <= bar) return i;
     }
     return best;
 }
@@ -63,38 +63,38 @@ static int choose_repair(const cost_study *study, double bar) {
  * Settings stand in the order of their work. */
 static int choose_sampling(const cost_study *study, int reference, double bar) {
     int best = -1;
-    for (int i = 0; i < study->count; i++) {
-        if (study->points[i].reference != reference) continue;
-        if (study->points[i].rms_flat <= bar) return i;
-        if (best < 0 || study->points[i].rms_flat < study->points[best].rms_flat) best = i;
+    for (int i = 0; i < study->measured.count; i++) {
+        if (study->measured.points[i].reference != reference) continue;
+        if (study->measured.points[i].rms_flat <= bar) return i;
+        if (best < 0 || study->measured.points[i].rms_flat < study->measured.points[best].rms_flat) best = i;
     }
     return best;
 }
 
 static cost_setting whole_of(const cost_study *study, const cost_advice *advice) {
-    cost_setting setting = study->points[advice->rays].setting;
-    if (advice->samples >= 0) setting.samples = study->points[advice->samples].setting.samples;
+    cost_setting setting = study->measured.points[advice->rays].setting;
+    if (advice->samples >= 0) setting.samples = study->measured.points[advice->samples].setting.samples;
     if (advice->supersampling >= 0)
-        setting.supersampling = study->points[advice->supersampling].setting.supersampling;
-    if (advice->triangles >= 0) setting.meshing = study->points[advice->triangles].setting.meshing;
-    if (advice->repair >= 0) setting.repair = study->points[advice->repair].setting.repair;
-    if (setting.repair == cost_repair(study, &study->own)) setting.repair = -1;
+        setting.supersampling = study->measured.points[advice->supersampling].setting.supersampling;
+    if (advice->triangles >= 0) setting.meshing = study->measured.points[advice->triangles].setting.meshing;
+    if (advice->repair >= 0) setting.repair = study->measured.points[advice->repair].setting.repair;
+    if (setting.repair == cost_repair(study, &study->subject.own)) setting.repair = -1;
     return setting;
 }
 
 /* The time in ms of an image with the reference's rays and the setting's passes. */
 static double reference_ms(const cost_study *study, const cost_setting *setting) {
     double slowest = 0;
-    for (int i = 0; i < study->count; i++)
-        if (study->points[i].reference == COST_OF_RAYS)
-            slowest = fmax(slowest, ms_of(study, &study->points[i]));
-    return slowest / cost_passes(&study->own) * cost_passes(setting);
+    for (int i = 0; i < study->measured.count; i++)
+        if (study->measured.points[i].reference == COST_OF_RAYS)
+            slowest = fmax(slowest, ms_of(study, &study->measured.points[i]));
+    return slowest / cost_passes(&study->subject.own) * cost_passes(setting);
 }
 
 static int measure_whole(cost_study *study, cost_advice *advice) {
     double *image = calloc((size_t)study->pixels, sizeof *image);
     double *reference = calloc((size_t)study->pixels, sizeof *reference);
-    cost_setting best = study->references[COST_OF_RAYS].setting;
+    cost_setting best = study->measured.references[COST_OF_RAYS].setting;
     best.samples = advice->whole.setting.samples;
     best.supersampling = advice->whole.setting.supersampling;
     best.meshing = advice->whole.setting.meshing;
@@ -108,7 +108,7 @@ static int measure_whole(cost_study *study, cost_advice *advice) {
         exit_status =
             SKG_FAILED(status) ? cli_fail(status) : cost_compare(study, 1, image, reference, &advice->whole);
         if (exit_status == CLI_DONE)
-            exit_status = cost_compare_shot(study, image, &study->shots[advice->whole.shot]);
+            exit_status = cost_compare_shot(study, image, &study->measured.shots[advice->whole.shot]);
     }
     free(advice->whole.difference);
     advice->whole.difference = NULL;
@@ -126,8 +126,8 @@ static int time_whole(cost_study *study, const cost_setting *setting) {
     double *image = calloc((size_t)study->pixels, sizeof *image);
     if (!image) return cli_error(CLI_DEVICE, "out of host memory for the image");
     const skg_status status = cost_shoot(study, setting, image, &number);
-    exit_status =
-        SKG_FAILED(status) ? cli_fail(status) : cost_compare_shot(study, image, &study->shots[number]);
+    exit_status = SKG_FAILED(status) ? cli_fail(status)
+                                     : cost_compare_shot(study, image, &study->measured.shots[number]);
     free(image);
     return exit_status;
 }
@@ -138,12 +138,13 @@ static int advise_whole(cost_study *study, cost_advice *advice) {
     double bar = advice->bar;
     for (int turn = 0; turn < 3; turn++, bar /= 4) {
         advice->rays = choose_rays(study, bar);
-        advice->rays_met = study->points[advice->rays].max_flat <= advice->bar;
+        advice->rays_met = study->measured.points[advice->rays].max_flat <= advice->bar;
         advice->whole = (cost_point){.dial = COST_SCENE, .setting = whole_of(study, advice)};
         const cost_setting *setting = &advice->whole.setting;
         advice->whole_state = COST_WHOLE_IS_RAYS;
-        if (setting->samples == study->own.samples && setting->supersampling == study->own.supersampling &&
-            setting->meshing < 0 && setting->repair < 0)
+        if (setting->samples == study->subject.own.samples &&
+            setting->supersampling == study->subject.own.supersampling && setting->meshing < 0 &&
+            setting->repair < 0)
             return CLI_DONE;
         advice->whole_state = COST_WHOLE_TOO_LONG;
         const double ms = reference_ms(study, setting);
@@ -160,14 +161,14 @@ static int advise_whole(cost_study *study, cost_advice *advice) {
 }
 
 static int is_met(const cost_study *study, int point, double bar) {
-    return point < 0 || study->points[point].rms_flat <= bar;
+    return point < 0 || study->measured.points[point].rms_flat <= bar;
 }
 
 /* Appends the point's value if its error is above the bar: it is the best that was measured of its dial. */
 static void blame(const cost_study *study, int point, double error, double bar, char *text, size_t size) {
     char value[96];
     if (point < 0 || error <= bar) return;
-    const cost_point *its = &study->points[point];
+    const cost_point *its = &study->measured.points[point];
     cost_describe_dial(study, &its->setting, its->dial, value, sizeof value);
     cost_append(text, size, "%s%s, the most accurate measured, still err%s %.1e", *text ? "; " : "", value,
                 its->dial == COST_PRECISION || its->dial == COST_TOLERANCE || its->dial == COST_REPAIR ? "s"
@@ -178,9 +179,9 @@ static void blame(const cost_study *study, int point, double error, double bar, 
 /* Appends a source of which no point was measured, if its coarse error is above the bar or not known. */
 static void blame_coarse(const cost_study *study, int source, int point, double bar, char *text,
                          size_t size) {
-    const cost_coarse *coarse = &study->coarse[source];
-    const int has_dial = source == COST_SOURCE_TRIANGLES ? study->has_round
-                         : source == COST_SOURCE_SAMPLES ? study->has_spot
+    const cost_coarse *coarse = &study->measured.coarse[source];
+    const int has_dial = source == COST_SOURCE_TRIANGLES ? study->subject.has_round
+                         : source == COST_SOURCE_SAMPLES ? study->subject.has_spot
                                                          : 1;
     if (point >= 0 || !has_dial || cost_why_absent(study, source)) return;
     const char *separator = *text ? "; " : "";
@@ -197,15 +198,15 @@ static void give_reason(const cost_study *study, cost_advice *advice) {
     const int sampled[] = {advice->samples, advice->supersampling, advice->triangles};
     char *text = advice->reason;
     const size_t size = sizeof advice->reason;
-    const cost_point *rays = &study->points[advice->rays];
+    const cost_point *rays = &study->measured.points[advice->rays];
     if (!advice->rays_met && rays->max_flat > advice->bar)
         cost_append(text, size, "no precision, tolerance or number of bins errs less than %.1e",
                     rays->max_flat);
     else if (!advice->rays_met)
         cost_append(text, size, "all dials together err %.1e", advice->whole.max_flat);
     for (int k = 0; k < 3; k++)
-        blame(study, sampled[k], sampled[k] < 0 ? 0 : study->points[sampled[k]].rms_flat, advice->bar, text,
-              size);
+        blame(study, sampled[k], sampled[k] < 0 ? 0 : study->measured.points[sampled[k]].rms_flat,
+              advice->bar, text, size);
     for (int k = 0; k < 3; k++) blame_coarse(study, sources[k], sampled[k], advice->bar, text, size);
     blame_coarse(study, COST_SOURCE_REPAIR, advice->repair, advice->bar, text, size);
     if (*text && study->left_out)
@@ -217,11 +218,11 @@ int cost_advise(cost_study *study) {
     if (choose_rays(study, 0) < 0)
         return cli_error(CLI_DEVICE, "no setting could be measured: one image of the scene takes too long");
     for (int i = 0; i < COST_TOLERANCES; i++) {
-        cost_advice *advice = &study->advice[i];
+        cost_advice *advice = &study->judged.advice[i];
         cli_progress_forecast("measuring the settings that are recommended", i, COST_TOLERANCES,
                               fmax(cost_left_ms(study, ADVISED), 0));
         advice->tolerance = cost_tolerances[i];
-        advice->bar = fmax(advice->tolerance, study->noise / 10);
+        advice->bar = fmax(advice->tolerance, study->subject.noise / 10);
         advice->samples = choose_sampling(study, COST_OF_SAMPLES, advice->bar);
         advice->supersampling = choose_sampling(study, COST_OF_AREAS, advice->bar);
         advice->triangles = choose_sampling(study, COST_OF_TRIANGLES, advice->bar);
@@ -231,7 +232,7 @@ int cost_advise(cost_study *study) {
                                is_met(study, advice->triangles, advice->bar);
         int exit_status = advise_whole(study, advice);
         if (exit_status != CLI_DONE) return exit_status;
-        advice->rays_command = cost_command(study, &study->points[advice->rays].setting);
+        advice->rays_command = cost_command(study, &study->measured.points[advice->rays].setting);
         advice->whole_command = cost_command(study, &advice->whole.setting);
         if (!advice->rays_command || !advice->whole_command)
             return cli_error(CLI_DEVICE, "out of host memory");

@@ -44,7 +44,7 @@ static skg_status shoot(cost_study *study, const char *const *settings, int64_t 
 
 /* Both images, and their difference. */
 static skg_status compare(cost_study *study, double *batch, double *images[2]) {
-    cost_between *between = &study->between;
+    cost_between *between = &study->measured.between;
     for (int k = 0; k < 2; k++) {
         char **settings = NULL;
         cost_shot *shot = calloc(1, sizeof *shot);
@@ -61,7 +61,7 @@ static skg_status compare(cost_study *study, double *batch, double *images[2]) {
     }
     double squares = 0;
     for (int64_t i = 0; i < study->pixels; i++) {
-        const double error = fabs(images[1][i] - images[0][i]) / study->flat_field;
+        const double error = fabs(images[1][i] - images[0][i]) / study->subject.flat_field;
         between->max = fmax(between->max, error);
         squares += error * error;
     }
@@ -71,7 +71,7 @@ static skg_status compare(cost_study *study, double *batch, double *images[2]) {
 }
 
 int cost_measure_between(cost_study *study) {
-    if (!study->has_volume) return CLI_DONE;
+    if (!study->subject.has_volume) return CLI_DONE;
     double *memory = calloc((size_t)((2 + study->frames) * study->pixels), sizeof *memory);
     if (!memory) return cli_error(CLI_DEVICE, "out of host memory for the images of volumes");
     double *images[2] = {memory, memory + study->pixels};
@@ -84,7 +84,7 @@ int cost_measure_between(cost_study *study) {
 }
 
 json_t *cost_between_json(const cost_study *study) {
-    const cost_between *between = &study->between;
+    const cost_between *between = &study->measured.between;
     if (!between->is_known) return json_null();
     json_t *object = json_object();
     json_object_set_new(object, "max_open", cli_json_number(between->max));

@@ -21,7 +21,7 @@ enum { OWN, FROM, TO, SLOTS };
 
 /* The settings whose images differ by a source of error; the first one errs more. 0: there is no better setting. */
 static int choose_pair(const cost_study *study, int source, cost_setting *from, cost_setting *to) {
-    const cost_setting *own = &study->own;
+    const cost_setting *own = &study->subject.own;
     *from = *own;
     /* Bins and precision are compared where the tolerance adds nothing. */
     if (source == COST_SOURCE_BINS || source == COST_SOURCE_PRECISION) from->tolerance = 0;
@@ -36,7 +36,7 @@ static int choose_pair(const cost_study *study, int source, cost_setting *from, 
         to->precision = SKG_PRECISION_DOUBLE;
         return study->session.device.double_precision;
     case COST_SOURCE_BINS:
-        to->bins = study->finest;
+        to->bins = study->subject.finest;
         return 1;
     case COST_SOURCE_TOLERANCE:
         to->tolerance = 0;
@@ -55,13 +55,13 @@ static int choose_pair(const cost_study *study, int source, cost_setting *from, 
 
 /* Every energy takes longer than the energies of a tolerance, at most in proportion to their numbers. */
 static double image_ms(const cost_study *study, const cost_setting *setting) {
-    const cost_shot *here = &study->shots[study->here];
-    const double energies = setting->tolerance < study->own.tolerance && here->nodes > 0
+    const cost_shot *here = &study->measured.shots[study->measured.here];
+    const double energies = setting->tolerance < study->subject.own.tolerance && here->nodes > 0
                                 ? (double)here->bins / (double)here->nodes
                                 : 1;
     const double making =
         setting->meshing < 0 ? 0 : cost_making_ms(study, &study->meshings[setting->meshing]);
-    return making + study->plan_ms + fmax(energies, 1) * cost_estimate_ms(study, setting);
+    return making + study->measured.plan_ms + fmax(energies, 1) * cost_estimate_ms(study, setting);
 }
 
 static int find_slot(const cost_study *study, const slot slots[SLOTS], const cost_setting *setting) {
@@ -90,7 +90,7 @@ static void name_pair(const cost_study *study, int source, const cost_setting *t
 
 static int compare_pair(cost_study *study, int source, slot slots[SLOTS], const cost_setting *from,
                         const cost_setting *to) {
-    cost_coarse *coarse = &study->coarse[source];
+    cost_coarse *coarse = &study->measured.coarse[source];
     skg_status status = SKG_OK;
     const int first = fetch(study, slots, from, -1, &status);
     const int second = first < 0 ? -1 : fetch(study, slots, to, first, &status);
@@ -119,7 +119,7 @@ static int has_time(const cost_study *study, const slot slots[SLOTS], const cost
 }
 
 static int measure_source(cost_study *study, int source, slot slots[SLOTS]) {
-    cost_coarse *coarse = &study->coarse[source];
+    cost_coarse *coarse = &study->measured.coarse[source];
     cost_setting from, to;
     const char *never = source == COST_SOURCE_TRIANGLES ? study->triangles_reason : "";
     if (!choose_pair(study, source, &from, &to)) {
@@ -136,14 +136,14 @@ int cost_measure_coarsely(cost_study *study, double *own) {
     static const int order[] = {COST_SOURCE_TOLERANCE, COST_SOURCE_PRECISION, COST_SOURCE_BINS,
                                 COST_SOURCE_REPAIR,    COST_SOURCE_SAMPLES,   COST_SOURCE_SUPERSAMPLING,
                                 COST_SOURCE_TRIANGLES};
-    slot slots[SLOTS] = {[OWN] = {study->own, own, 1}};
+    slot slots[SLOTS] = {[OWN] = {study->subject.own, own, 1}};
     int exit_status = CLI_DONE;
     for (int i = FROM; i <= TO; i++) {
         slots[i].image = calloc((size_t)study->pixels, sizeof *own);
         if (!slots[i].image) exit_status = cli_error(CLI_DEVICE, "out of host memory for the image");
     }
     for (int i = 0; i < COST_SOURCE_SURFACE && exit_status == CLI_DONE; i++) {
-        study->coarse[order[i]].state = COST_NOT_MEASURED;
+        study->measured.coarse[order[i]].state = COST_NOT_MEASURED;
         if (order[i] == COST_SOURCE_TRIANGLES) exit_status = cost_find_meshings(study);
         if (exit_status == CLI_DONE && !cost_why_absent(study, order[i]))
             exit_status = measure_source(study, order[i], slots);

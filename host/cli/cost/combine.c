@@ -21,20 +21,20 @@ typedef struct {
 } guess;
 
 static double ms_of(const cost_study *study, const cost_point *point) {
-    return study->shots[point->shot].price_ms;
+    return study->measured.shots[point->shot].price_ms;
 }
 
 static void list(const cost_study *study, int reference, values *its) {
     *its = (values){0};
-    for (int i = 0; i < study->count; i++) {
-        const cost_point *point = &study->points[i];
+    for (int i = 0; i < study->measured.count; i++) {
+        const cost_point *point = &study->measured.points[i];
         if (point->reference != reference || point->state != COST_MEASURED || isnan(point->rms_flat) ||
             cost_is_other_body(study, &point->setting))
             continue;
         const int dial = cost_changed_dial(study, &point->setting);
         /* Supersampling is measured with fewer source samples than the scene has. */
         const int is_own = reference == COST_OF_AREAS
-                               ? point->setting.supersampling == study->own.supersampling
+                               ? point->setting.supersampling == study->subject.own.supersampling
                                : dial == COST_SCENE;
         if (is_own) its->own_ms = ms_of(study, point);
         if (its->count < VALUES_MAX) its->points[its->count++] = i;
@@ -45,7 +45,7 @@ static void list(const cost_study *study, int reference, values *its) {
 /* Changes a guess by one value: errors of different dials add as squares, and times multiply. */
 static guess change(const cost_study *study, const guess *before, const values *its, int value) {
     guess after = *before;
-    const cost_point *point = &study->points[its->points[value]];
+    const cost_point *point = &study->measured.points[its->points[value]];
     const cost_setting *to = &point->setting;
     after.ms *= ms_of(study, point) / its->own_ms;
     after.error = hypot(before->error, point->rms_flat);
@@ -78,7 +78,8 @@ static guess *guess_all(const cost_study *study, int64_t *count) {
     guess *all = calloc(GUESSES_MAX, sizeof *all);
     *count = 1;
     if (!all) return NULL;
-    all[0] = (guess){.setting = study->own, .ms = study->shots[study->here].price_ms};
+    all[0] =
+        (guess){.setting = study->subject.own, .ms = study->measured.shots[study->measured.here].price_ms};
     for (int r = 0; r < 5; r++) {
         values its;
         const int64_t before = *count;
@@ -109,20 +110,20 @@ static int64_t keep_best(guess *all, int64_t count) {
 
 /* Measures a guess, if it is new and the time suffices. */
 static int try_guess(cost_study *study, const guess *its, double share, double *image, int *tried) {
-    const cost_shot *here = &study->shots[study->here];
+    const cost_shot *here = &study->measured.shots[study->measured.here];
     const double runs = (double)(1 + cost_first_runs(study) * study->frames);
     const double wall_ms =
         its->ms * here->wall_now_ms / here->price_ms; /* the time that is given is the wall's */
     if (cost_find_shot(study, &its->setting) >= 0 || wall_ms > cost_patience_ms(study)) return 0;
-    const int count = study->count;
-    if (study->plan_ms + runs * wall_ms > cost_left_ms(study, share)) {
+    const int count = study->measured.count;
+    if (study->measured.plan_ms + runs * wall_ms > cost_left_ms(study, share)) {
         study->left_out++;
         return 0;
     }
     cost_add_point(study, COST_SEVERAL, COST_OF_ALL, 0, its->setting);
-    if (study->count == count) return 0;
+    if (study->measured.count == count) return 0;
     (*tried)++;
-    return cost_measure(study, &study->points[count], image);
+    return cost_measure(study, &study->measured.points[count], image);
 }
 
 int cost_combine(cost_study *study, double share, double *image) {
@@ -142,11 +143,11 @@ int cost_combine(cost_study *study, double share, double *image) {
 }
 
 void cost_find_frontier(cost_study *study) {
-    for (int i = 0; i < study->shot_count; i++) {
-        cost_shot *shot = &study->shots[i];
+    for (int i = 0; i < study->measured.shot_count; i++) {
+        cost_shot *shot = &study->measured.shots[i];
         shot->on_frontier = !isnan(shot->total_rms);
-        for (int k = 0; k < study->shot_count && shot->on_frontier; k++) {
-            const cost_shot *other = &study->shots[k];
+        for (int k = 0; k < study->measured.shot_count && shot->on_frontier; k++) {
+            const cost_shot *other = &study->measured.shots[k];
             const int no_worse = other->price_ms <= shot->price_ms && other->total_rms <= shot->total_rms;
             const int better = other->price_ms < shot->price_ms || other->total_rms < shot->total_rms;
             if (no_worse && better) shot->on_frontier = 0;

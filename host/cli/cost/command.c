@@ -47,7 +47,7 @@ static void put_scene(FILE *stream, const cost_study *study, const cost_meshing 
     }
     const long long triangles = (long long)meshing->thorax;
     fprintf(stream, "skiagraph thorax %s--quiet -o thorax-%lld --triangles %lld && cp",
-            study->thorax_is_simple ? "--simple " : "", triangles, triangles);
+            study->subject.thorax_is_simple ? "--simple " : "", triangles, triangles);
     put_word(stream, path);
     fprintf(stream, " thorax-%lld/ && skiagraph image", triangles);
     snprintf(copy, sizeof copy, "thorax-%lld/%s", triangles, slash ? slash + 1 : path);
@@ -70,7 +70,7 @@ char *cost_command(const cost_study *study, const cost_setting *setting) {
     if (setting->bins > 0)
         fprintf(stream, " --set Source.Beam.MaxNumberOfEnergyBins=%lld", (long long)setting->bins);
     if (setting->samples > 0) fprintf(stream, " --set Source.Samples=%lld", (long long)setting->samples);
-    if (setting->supersampling != study->own.supersampling)
+    if (setting->supersampling != study->subject.own.supersampling)
         fprintf(stream, " --set Detector.Oversampling=%d", (int)setting->supersampling);
     if (setting->repair >= COST_UNITE)
         fprintf(stream, " --set 'Repair=[\"%s\",\"union\"]'",

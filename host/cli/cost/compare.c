@@ -15,7 +15,7 @@ static float *shrink_difference(const cost_study *study, int64_t images, const d
     for (int64_t i = 0; difference && i < images * study->pixels; i++) {
         const int64_t pixel = i % study->pixels;
         const int64_t at = pixel / columns / block * study->thumb_columns + pixel % columns / block;
-        const float value = (float)((image[i] - reference[i]) / study->flat_field);
+        const float value = (float)((image[i] - reference[i]) / study->subject.flat_field);
         if (fabsf(value) > fabsf(difference[at])) difference[at] = value;
     }
     return difference;
@@ -29,7 +29,7 @@ static float *shrink_image(const cost_study *study, const double *image) {
     float *small = calloc(places, sizeof *small);
     for (int64_t i = 0; count && small && i < study->pixels; i++) {
         const int64_t at = i / columns / block * study->thumb_columns + i % columns / block;
-        small[at] += (float)(image[i] / study->flat_field);
+        small[at] += (float)(image[i] / study->subject.flat_field);
         count[at]++;
     }
     if (!count) free(small), small = NULL;
@@ -44,7 +44,7 @@ static double worst_of_flat(const cost_study *study, int64_t count, const double
     double worst = 0;
     *squares = 0;
     for (int64_t i = 0; i < count; i++) {
-        const double error = fabs(image[i] - reference[i]) / study->flat_field;
+        const double error = fabs(image[i] - reference[i]) / study->subject.flat_field;
         if (!(error <= worst)) worst = error;
         *squares += error * error;
     }
@@ -73,7 +73,7 @@ int cost_compare(const cost_study *study, int64_t images, const double *image, c
 }
 
 int cost_compare_shot(const cost_study *study, const double *image, cost_shot *shot) {
-    const double *reference = study->references[COST_OF_ALL].image;
+    const double *reference = study->measured.references[COST_OF_ALL].image;
     double squares;
     if (shot->small || !reference || cost_is_other_body(study, &shot->setting))
         return CLI_DONE; /* once is enough */
@@ -93,7 +93,7 @@ static skg_status lengths_of(skg_plan *plan, int64_t part, int32_t type, int64_t
     output.kind = SKG_OUTPUT_LENGTHS;
     output.part = part;
     output.lengths = SKG_LENGTHS_SURFACE;
-    skg_status status = skg_plan_submit(plan, 1, NULL, &output, &job);
+    skg_status status = skg_plan_submit(plan, 1, NULL, 1, &output, &job);
     if (!SKG_FAILED(status)) status = skg_job_wait(&job);
     if (!SKG_FAILED(status)) cost_widen(type, pixels, data);
     return status;
@@ -132,16 +132,17 @@ static skg_status add_parts(const cost_study *study, length_errors *e) {
 /* One ray per pixel, from one point of the source. */
 static cost_setting plain_rays(const cost_study *study, const cost_setting *setting, int32_t precision) {
     cost_setting its = *setting;
-    its.bins = study->finest;
+    its.bins = study->subject.finest;
     its.tolerance = 0;
-    its.samples = study->own.samples > 0 ? 1 : 0;
+    its.samples = study->subject.own.samples > 0 ? 1 : 0;
     its.supersampling = 1;
     its.precision = precision;
     return its;
 }
 
 void cost_compare_lengths(cost_study *study, const cost_setting *reference, cost_point *point) {
-    const cost_setting best = plain_rays(study, reference, study->references[COST_OF_RAYS].setting.precision);
+    const cost_setting best =
+        plain_rays(study, reference, study->measured.references[COST_OF_RAYS].setting.precision);
     const cost_setting its = plain_rays(study, &point->setting, point->setting.precision);
     length_errors e = {.type = {cost_type(best.precision), cost_type(its.precision)}};
     e.data[0] = calloc((size_t)(2 * study->pixels), sizeof *e.data[0]);

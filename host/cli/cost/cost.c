@@ -105,9 +105,9 @@ static int read_flags(cost_study *study) {
 
 /* Each shot's command line. */
 static int find_commands(cost_study *study) {
-    for (int i = 0; i < study->shot_count; i++) {
-        study->shots[i].command = cost_command(study, &study->shots[i].setting);
-        if (!study->shots[i].command) return cli_error(CLI_DEVICE, "out of host memory");
+    for (int i = 0; i < study->measured.shot_count; i++) {
+        study->measured.shots[i].command = cost_command(study, &study->measured.shots[i].setting);
+        if (!study->measured.shots[i].command) return cli_error(CLI_DEVICE, "out of host memory");
     }
     return CLI_DONE;
 }

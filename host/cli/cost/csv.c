@@ -19,7 +19,7 @@ static void put_setting(FILE *stream, const cost_study *study, const cost_settin
     fprintf(stream, "%" PRId64 ",%" PRId64 ",%d,", setting->bins, setting->samples,
             (int)setting->supersampling);
     fprintf(stream, "%s,%" PRId64 ",",
-            study->has_leaky || study->has_shells ? cost_repair_of(study, setting) : "",
+            study->subject.has_leaky || study->subject.has_shells ? cost_repair_of(study, setting) : "",
             cost_triangles(study, setting));
     if (setting->relaxation < 0)
         fputs(",,", stream); /* empty: the setting has no breath */
@@ -37,9 +37,9 @@ char *cost_csv(const cost_study *study) {
         "nodes,planes,runs,plan_ms,price_ms,uncertainty_ms,clock,wall_now_ms,total_rms,max_open,rms_open,max_ref,rms_ref,max_mm,rms_mm,"
         "frontier\n",
         stream);
-    for (int i = 0; i < study->count; i++) {
-        const cost_point *p = &study->points[i];
-        const cost_shot *shot = &study->shots[p->shot];
+    for (int i = 0; i < study->measured.count; i++) {
+        const cost_point *p = &study->measured.points[i];
+        const cost_shot *shot = &study->measured.shots[p->shot];
         fprintf(stream, "%s,", cost_dial_name(p->dial));
         put_setting(stream, study, &p->setting);
         fprintf(stream, "%" PRId64 ",%" PRId64 ",%" PRId64 ",%.6g,%.6g,", shot->nodes, shot->planes,

@@ -25,8 +25,9 @@ static json_t *setting_json(const cost_study *study, const cost_setting *setting
                         setting->samples > 0 ? json_integer(setting->samples) : json_null());
     json_object_set_new(object, "supersampling", json_integer(setting->supersampling));
     json_object_set_new(object, "repair",
-                        study->has_leaky || study->has_shells ? cli_json_text(cost_repair_of(study, setting))
-                                                              : json_null());
+                        study->subject.has_leaky || study->subject.has_shells
+                            ? cli_json_text(cost_repair_of(study, setting))
+                            : json_null());
     json_object_set_new(object, "triangles", json_integer(cost_triangles(study, setting)));
     json_object_set_new(object, "relaxation", breathes ? json_integer(setting->relaxation) : json_null());
     json_object_set_new(object, "hysteresis", breathes ? json_real(setting->hysteresis) : json_null());
@@ -44,7 +45,7 @@ static void add_price(const cost_study *study, const cost_shot *shot, json_t *ob
 }
 
 static json_t *point_json(const cost_study *study, const cost_point *point) {
-    const cost_shot *shot = &study->shots[point->shot];
+    const cost_shot *shot = &study->measured.shots[point->shot];
     json_t *object = json_object();
     json_object_set_new(object, "dial", cli_json_text(cost_dial_name(point->dial)));
     json_object_set_new(object, "setting", setting_json(study, &point->setting));
@@ -91,7 +92,7 @@ static const char *const states[] = {[COST_ABSENT] = "absent",
                                      [COST_FINE] = "measured"};
 
 static json_t *source_json(const cost_study *study, int number) {
-    const cost_source *source = &study->sources[number];
+    const cost_source *source = &study->judged.sources[number];
     char today[160];
     json_t *object = json_object();
     cost_describe_source(study, number, today, sizeof today);
@@ -136,8 +137,9 @@ static json_t *advice_json(const cost_study *study, const cost_advice *advice) {
 static json_t *references_json(const cost_study *study) {
     json_t *references = json_array();
     for (int i = 0; i < COST_REFERENCES; i++) {
-        json_t *reference =
-            study->references[i].image ? setting_json(study, &study->references[i].setting) : json_null();
+        json_t *reference = study->measured.references[i].image
+                                ? setting_json(study, &study->measured.references[i].setting)
+                                : json_null();
         if (json_is_object(reference))
             json_object_set_new(reference, "dials", cli_json_text(cost_reference_names[i]));
         json_array_append_new(references, reference);
@@ -156,40 +158,42 @@ static void add_run(const cost_study *study, json_t *object) {
     json_object_set_new(object, "device", cli_json_text(study->session.device.name));
     json_object_set_new(object, "columns", json_integer(study->session.view.columns));
     json_object_set_new(object, "rows", json_integer(study->session.view.rows));
-    json_object_set_new(object, "triangles", json_integer(study->triangles));
+    json_object_set_new(object, "triangles", json_integer(study->subject.triangles));
     json_object_set_new(object, "frames", json_integer(study->frames));
     json_object_set_new(object, "within_s", cli_json_number(1e-3 * study->within_ms));
     json_object_set_new(object, "seconds", cli_json_number(1e-3 * (study->ended_ms - study->begun_ms)));
     json_object_set_new(object, "stopped", json_boolean(study->stopped));
     json_object_set_new(object, "left_out", json_integer(study->left_out));
-    json_object_set_new(object, "unrest", cli_json_number(study->unrest));
-    json_object_set_new(object, "reference_error", cli_json_number(study->reference_error));
+    json_object_set_new(object, "unrest", cli_json_number(study->judged.unrest));
+    json_object_set_new(object, "reference_error", cli_json_number(study->judged.reference_error));
     json_object_set_new(object, "grey_levels",
-                        study->grey_levels > 0 ? cli_json_number(study->grey_levels) : json_null());
-    json_object_set_new(object, "open_keV", cli_json_number(study->flat_field));
-    json_object_set_new(object, "noise", study->noise > 0 ? cli_json_number(study->noise) : json_null());
+                        study->judged.grey_levels > 0 ? cli_json_number(study->judged.grey_levels)
+                                                      : json_null());
+    json_object_set_new(object, "open_keV", cli_json_number(study->subject.flat_field));
+    json_object_set_new(object, "noise",
+                        study->subject.noise > 0 ? cli_json_number(study->subject.noise) : json_null());
 }
 
 json_t *cost_json(const cost_study *study) {
     json_t *object = json_object(), *points = json_array(), *advice = json_array(), *notes = json_array(),
            *sources = json_array(), *shots = json_array();
     for (int i = 0; i < COST_SOURCES; i++) json_array_append_new(sources, source_json(study, i));
-    for (int i = 0; i < study->shot_count; i++)
-        json_array_append_new(shots, shot_json(study, &study->shots[i]));
-    for (int i = 0; i < study->count; i++)
-        json_array_append_new(points, point_json(study, &study->points[i]));
+    for (int i = 0; i < study->measured.shot_count; i++)
+        json_array_append_new(shots, shot_json(study, &study->measured.shots[i]));
+    for (int i = 0; i < study->measured.count; i++)
+        json_array_append_new(points, point_json(study, &study->measured.points[i]));
     for (int i = 0; i < COST_TOLERANCES; i++)
-        json_array_append_new(advice, advice_json(study, &study->advice[i]));
+        json_array_append_new(advice, advice_json(study, &study->judged.advice[i]));
     for (int i = 0; i < study->note_count; i++) json_array_append_new(notes, cli_json_text(study->notes[i]));
-    json_object_set_new(object, "summary", cli_json_text(study->summary));
+    json_object_set_new(object, "summary", cli_json_text(study->judged.summary));
     json_object_set_new(object, "sources", sources);
     json_object_set_new(object, "scatter", cost_scatter_json(study));
     json_object_set_new(object, "interpolation", cost_between_json(study));
     json_object_set_new(object, "sensitivity", cost_sensitivity_json(study));
     add_run(study, object);
-    json_object_set_new(object, "here", json_integer(study->here));
-    json_object_set_new(object, "buy", index_json(study->buy));
-    json_object_set_new(object, "saving", index_json(study->saving));
+    json_object_set_new(object, "here", json_integer(study->measured.here));
+    json_object_set_new(object, "buy", index_json(study->judged.buy));
+    json_object_set_new(object, "saving", index_json(study->judged.saving));
     json_object_set_new(object, "settings", shots);
     json_object_set_new(object, "references", references_json(study));
     json_object_set_new(object, "points", points);

@@ -6,7 +6,7 @@
 
 /* How much each source of error contributes, what halving it costs, and how sure the numbers are. */
 
-/* Fills in study->sources and ->largest from the measured points. */
+/* Fills in study->judged.sources and .largest from the measured points. */
 int cost_find_sources(cost_study *study);
 
 /* The scene's value of the source's dial, "43250 triangles"; empty: the source has no dial. */
@@ -24,16 +24,16 @@ const char *cost_why_absent(const cost_study *study, int source);
 /* Why a source that the scene may have is not measured. */
 const char *cost_why_not(const cost_study *study, int source);
 
-/* Fills in study->unrest, and the uncertainty of what was timed in fewer than three runs: the unrest's share of its price, and all of
+/* Fills in study->judged.unrest, and the uncertainty of what was timed in fewer than three runs: the unrest's share of its price, and all of
  * it where that is not known either. */
 void cost_find_unrest(cost_study *study);
 
-/* Fills in study->reference_error and ->grey_levels, after the sources. */
+/* Fills in study->judged.reference_error and .grey_levels, after the sources. */
 void cost_find_trust(cost_study *study);
 
 /* The scene's costs in one sentence, and what is worth changing. */
 
-/* Fills in study->buy, ->saving and ->summary. */
+/* Fills in study->judged.buy, .saving and .summary. */
 void cost_summarise(cost_study *study);
 
 /* "0.21 %", for a fraction. size: 16 suffice. */
@@ -45,7 +45,7 @@ const char *cost_ms(double ms, double uncertainty_ms, char *text, size_t size);
 /* What a change adds to a time: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "in the same time". */
 const char *cost_more(double ms, double uncertainty_ms, char *text, size_t size);
 
-/* Which setting to use: marks the frontier and fills study->advice; measures the combinations that were not measured
+/* Which setting to use: marks the frontier and fills study->judged.advice; measures the combinations that were not measured
  * yet. */
 int cost_advise(cost_study *study);
 

@@ -21,18 +21,18 @@ double cost_patience_ms(const cost_study *study) {
 }
 
 double cost_estimate_ms(const cost_study *study, const cost_setting *setting) {
-    const double ratio =
-        (double)cost_triangles(study, setting) / (double)(study->triangles ? study->triangles : 1);
+    const double ratio = (double)cost_triangles(study, setting) /
+                         (double)(study->subject.triangles ? study->subject.triangles : 1);
     const double pass = setting->precision == SKG_PRECISION_SINGLE
-                            ? study->pass_ms
-                            : fmax(study->pass_ms, study->best_pass_ms);
+                            ? study->measured.pass_ms
+                            : fmax(study->measured.pass_ms, study->measured.best_pass_ms);
     return pass * cost_passes(setting) * fmax(ratio, 1);
 }
 
 double cost_effort_ms(const cost_study *study, const cost_setting *setting) {
     const double image = cost_estimate_ms(study, setting);
     const double runs = image * (double)(cost_first_runs(study) * study->frames);
-    return study->plan_ms + image + fmax(runs, cost_first_ms(study));
+    return study->measured.plan_ms + image + fmax(runs, cost_first_ms(study));
 }
 
 int64_t cost_first_runs(const cost_study *study) {
@@ -57,7 +57,7 @@ skg_status cost_plan(cost_study *study, const cost_setting *setting, skg_scene *
         options.repair = setting->repair % COST_UNITE;
         options.unite = setting->repair >= COST_UNITE;
     }
-    if (!study->noisy) {
+    if (!study->subject.noisy) {
         options.noise = 0;
         options.electronic_kev = options.quantum_step_kev = 0;
     }
@@ -145,7 +145,7 @@ typedef struct {
 static skg_status make_still(void *user) {
     still *its = user;
     skg_job *job = NULL;
-    skg_status status = skg_plan_submit(its->plan, its->frames, NULL, &its->output, &job);
+    skg_status status = skg_plan_submit(its->plan, its->frames, NULL, 1, &its->output, &job);
     return !SKG_FAILED(status) ? skg_job_wait(&job) : status;
 }
 
@@ -176,48 +176,49 @@ skg_status cost_image(cost_study *study, const cost_setting *setting, double *im
 }
 
 int cost_find_shot(const cost_study *study, const cost_setting *setting) {
-    for (int i = 0; i < study->shot_count; i++)
-        if (cost_is_same(study, &study->shots[i].setting, setting)) return i;
+    for (int i = 0; i < study->measured.shot_count; i++)
+        if (cost_is_same(study, &study->measured.shots[i].setting, setting)) return i;
     return -1;
 }
 
 int cost_add_shot(cost_study *study, const cost_setting *setting) {
-    if (study->shot_count == COST_SHOTS_MAX) return -1;
-    study->shots[study->shot_count] =
+    if (study->measured.shot_count == COST_SHOTS_MAX) return -1;
+    study->measured.shots[study->measured.shot_count] =
         (cost_shot){.setting = *setting, .total_rms = (double)NAN, .total_max = (double)NAN};
-    return study->shot_count++;
+    return study->measured.shot_count++;
 }
 
 /* Keeps the plan for further visits if memory allows. The scene's own is always kept: it is the pulse. */
 static void keep_plan(cost_study *study, int number, skg_plan **plan) {
-    cost_shot *shot = &study->shots[number];
-    if (number != 0 && study->kept_bytes + shot->device_bytes > KEPT_BYTES) {
+    cost_shot *shot = &study->measured.shots[number];
+    if (number != 0 && study->measured.kept_bytes + shot->device_bytes > KEPT_BYTES) {
         skg_plan_release(plan);
         return;
     }
-    study->kept_bytes += shot->device_bytes;
+    study->measured.kept_bytes += shot->device_bytes;
     shot->plan = *plan;
     *plan = NULL;
 }
 
 /* Runs the scene's own image once: how much its price varies from visit to visit is the unrest of prices. */
 static skg_status feel_pulse(cost_study *study) {
-    cost_shot *own = &study->shots[study->here];
+    cost_shot *own = &study->measured.shots[study->measured.here];
     still its = {.plan = own->plan};
     if (!own->plan) return SKG_OK;
-    if (study->pulse_count == study->pulse_capacity) {
-        const int64_t capacity = study->pulse_capacity ? 2 * study->pulse_capacity : 64;
-        double *larger = realloc(study->pulse_ms, (size_t)capacity * sizeof *larger);
+    if (study->measured.pulse_count == study->measured.pulse_capacity) {
+        const int64_t capacity = study->measured.pulse_capacity ? 2 * study->measured.pulse_capacity : 64;
+        double *larger = realloc(study->measured.pulse_ms, (size_t)capacity * sizeof *larger);
         if (!larger) return SKG_ERR_MEMORY;
-        study->pulse_ms = larger;
-        study->pulse_capacity = capacity;
+        study->measured.pulse_ms = larger;
+        study->measured.pulse_capacity = capacity;
     }
     begin_still(&own->setting, study->batch, study->frames, &its);
     cost_instant begun, end;
     cost_begin(&begun);
     const skg_status status = make_still(&its);
     cost_end(&end);
-    study->pulse_ms[study->pulse_count++] = cost_price_ms(study, &begun, &end) / (double)study->frames;
+    study->measured.pulse_ms[study->measured.pulse_count++] =
+        cost_price_ms(study, &begun, &end) / (double)study->frames;
     return status;
 }
 
@@ -234,7 +235,7 @@ skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *im
     if (!SKG_FAILED(status)) cost_widen(its.output.type, study->pixels, image);
     cost_shot shot = {.plan_ms = plan_ms, .frames = study->frames};
     begin_still(setting, study->batch, study->frames, &its);
-    if (!SKG_FAILED(status) && study->shot_count) status = feel_pulse(study);
+    if (!SKG_FAILED(status) && study->measured.shot_count) status = feel_pulse(study);
     if (!SKG_FAILED(status))
         status = cost_time(study, make_still, &its, cost_first_runs(study), cost_first_ms(study), &shot);
     if (!SKG_FAILED(status)) status = cost_report_plan(its.plan, &shot);
@@ -242,7 +243,7 @@ skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *im
     if (!SKG_FAILED(status)) {
         shot.setting = *setting;
         shot.total_rms = shot.total_max = (double)NAN;
-        study->shots[*number] = shot;
+        study->measured.shots[*number] = shot;
         keep_plan(study, *number, &its.plan);
     }
     skg_plan_release(&its.plan);
@@ -252,12 +253,12 @@ skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *im
 skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, double *image,
                             cost_shot *shot) {
     still its = {0};
-    skg_status status = cost_plan(study, &study->own, scene, &its.plan);
+    skg_status status = cost_plan(study, &study->subject.own, scene, &its.plan);
     if (SKG_FAILED(status)) return status;
-    begin_still(&study->own, image, 1, &its);
+    begin_still(&study->subject.own, image, 1, &its);
     status = make_still(&its);
     if (!SKG_FAILED(status)) cost_widen(its.output.type, study->pixels, image);
-    begin_still(&study->own, batch, study->frames, &its);
+    begin_still(&study->subject.own, batch, study->frames, &its);
     shot->frames = study->frames;
     if (!SKG_FAILED(status))
         status = cost_time(study, make_still, &its, cost_first_runs(study), cost_first_ms(study), shot);
@@ -266,7 +267,7 @@ skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, 
 }
 
 static skg_status visit(cost_study *study, int number) {
-    cost_shot *shot = &study->shots[number];
+    cost_shot *shot = &study->measured.shots[number];
     still its = {.plan = shot->plan};
     skg_status status = feel_pulse(study);
     if (!SKG_FAILED(status) && !its.plan) status = cost_plan(study, &shot->setting, NULL, &its.plan);
@@ -288,8 +289,8 @@ static double visit_ms(const cost_study *study, const cost_shot *shot) {
 skg_status cost_visit_again(cost_study *study, double share) {
     skg_status status = SKG_OK;
     for (int round = 0; round < 3; round++)
-        for (int i = 0; i < study->shot_count && !SKG_FAILED(status); i++) {
-            const cost_shot *shot = &study->shots[i];
+        for (int i = 0; i < study->measured.shot_count && !SKG_FAILED(status); i++) {
+            const cost_shot *shot = &study->measured.shots[i];
             if (shot->setting.relaxation >= 0 || shot->visits == COST_VISITS_MAX) continue;
             if (visit_ms(study, shot) > cost_left_ms(study, share)) continue;
             status = visit(study, i);

@@ -78,10 +78,10 @@ void cost_predict_scatter(cost_study *study, skg_plan *plan);
 /* Measures what it costs, as far as a share of the given time allows, and what images lack without it. */
 int cost_measure_scatter(cost_study *study);
 
-/* Fills in study->between where the scene has volumes. */
+/* Fills in study->measured.between where the scene has volumes. */
 int cost_measure_between(cost_study *study);
 
-/* Fills in study->sensitivity if study->sensitive is 1. */
+/* Fills in study->measured.sensitivity if study->sensitive is 1. */
 int cost_measure_sensitivity(cost_study *study);
 
 /* Points: settings, each compared with a reference. */

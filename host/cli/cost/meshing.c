@@ -17,18 +17,18 @@ int cost_find_meshings(cost_study *study) {
     skg_status status = SKG_OK;
     if (cost_may_be_thorax(study)) {
         if (cost_coarse_left_ms(study) < LEAST_THORAX_MS) {
-            study->is_thorax = -1;
-            study->has_round = 1;
+            study->subject.is_thorax = -1;
+            study->subject.has_round = 1;
             give_reason(study, cost_time_reason());
             return CLI_DONE;
         }
-        study->is_thorax = cost_is_thorax(study);
+        study->subject.is_thorax = cost_is_thorax(study);
     }
-    if (study->is_thorax)
+    if (study->subject.is_thorax)
         cost_list_thorax(study);
     else
         status = cost_find_round(study);
-    study->has_round = study->meshing_count > 0;
+    study->subject.has_round = study->meshing_count > 0;
     if (status == SKG_ERR_MEMORY) return cli_fail(status);
     if (status == SKG_OK) return CLI_DONE;
     snprintf(study->triangles_reason, sizeof study->triangles_reason, "not measured: %.150s",
@@ -42,7 +42,7 @@ int cost_coarse_meshing(const cost_study *study) {
     int found = -1;
     for (int i = 0; i < study->meshing_count; i++) {
         const cost_meshing *meshing = &study->meshings[i];
-        const double ratio = (double)meshing->triangles / (double)study->triangles;
+        const double ratio = (double)meshing->triangles / (double)study->subject.triangles;
         if (ratio > 0.75 && ratio < 1.5) continue; /* too near to the scene */
         if (found >= 0 && ratio > 1 && !meshing->scene) break;
         found = i;
@@ -54,7 +54,7 @@ int cost_coarse_meshing(const cost_study *study) {
 /* A meshing with half as many triangles again as the scene shows what finer ones change. A thorax of the scene's own number N has
  * some per cent more than N. */
 static int is_finer(const cost_study *study, const cost_meshing *meshing) {
-    return 2 * meshing->triangles > 3 * study->triangles;
+    return 2 * meshing->triangles > 3 * study->subject.triangles;
 }
 
 /* Whether this meshing, and the one before, which is compared with it, can be made in time. */
@@ -69,7 +69,7 @@ void cost_limit_meshings(cost_study *study) {
     if (study->meshing_count == 0) return;
     if (!is_finer(study, &study->meshings[study->meshing_count - 1]))
         snprintf(reason, sizeof reason, "the scene has %" PRId64 " triangles, and none finer is made",
-                 study->triangles);
+                 study->subject.triangles);
     while (!*reason && !can_be_made(study, study->meshing_count - 1)) {
         const cost_meshing *finest = &study->meshings[study->meshing_count - 1];
         const double ms = cost_making_ms(study, finest);
@@ -80,12 +80,12 @@ void cost_limit_meshings(cost_study *study) {
     }
     if (!*reason) {
         const double finest = (double)study->meshings[study->meshing_count - 1].triangles;
-        if (study->is_thorax && finest < 3.5 * (double)study->triangles)
+        if (study->subject.is_thorax && finest < 3.5 * (double)study->subject.triangles)
             cost_note(
                 study,
                 "the finest thorax has only %.2g times the scene's triangles, so that the error of the triangles is "
                 "larger than what was measured; a longer --within allows finer ones",
-                finest / (double)study->triangles);
+                finest / (double)study->subject.triangles);
         return;
     }
     give_reason(study, reason);

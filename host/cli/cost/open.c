@@ -32,22 +32,24 @@ static int look_at_scene(cost_study *study) {
                                         study->session.spectrum, options, &plan);
     if (status == SKG_OK) status = skg_plan_report_get(plan, &report);
     if (status == SKG_OK) status = skg_plan_channel_get(plan, 0, &channel);
-    study->flat_field = channel.flat_field;
-    study->has_leaky = report.leaky_parts > 0;
-    study->has_shells = options->unite != 0;
-    study->has_volume = has_volume(study->session.scene);
-    study->triangles = report.triangles;
-    study->has_spot = options->spot && options->spot->shape != SKG_SPOT_POINT && options->spot->grid == 0 &&
-                      study->session.view.projection == SKG_PROJECTION_POINT;
-    study->own = (cost_setting){.precision = options->precision,
-                                .supersampling = options->supersampling,
-                                .tolerance = options->tolerance,
-                                .repair = -1,
-                                .meshing = -1,
-                                .relaxation = -1,
-                                .hysteresis = -1};
-    if (study->has_spot)
-        study->own.samples = report.samples / ((int64_t)options->supersampling * options->supersampling);
+    study->subject.flat_field = channel.flat_field;
+    study->subject.has_leaky = report.leaky_parts > 0;
+    study->subject.has_shells = options->unite != 0;
+    study->subject.has_volume = has_volume(study->session.scene);
+    study->subject.triangles = report.triangles;
+    study->subject.has_spot = options->spot && options->spot->shape != SKG_SPOT_POINT &&
+                              options->spot->grid == 0 &&
+                              study->session.view.projection == SKG_PROJECTION_POINT;
+    study->subject.own = (cost_setting){.precision = options->precision,
+                                        .supersampling = options->supersampling,
+                                        .tolerance = options->tolerance,
+                                        .repair = -1,
+                                        .meshing = -1,
+                                        .relaxation = -1,
+                                        .hysteresis = -1};
+    if (study->subject.has_spot)
+        study->subject.own.samples =
+            report.samples / ((int64_t)options->supersampling * options->supersampling);
     if (status == SKG_OK) cost_predict_scatter(study, plan);
     skg_plan_release(&plan);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -60,18 +62,18 @@ static int look_at_beam(cost_study *study) {
     skg_spectrum *spectrum = NULL;
     skg_status status = skg_spectrum_bin_count(study->session.spectrum, &own);
     if (status != SKG_OK) return cli_fail(status);
-    study->has_tube = cost_spectrum(study, COST_FINEST_BINS, &spectrum) == SKG_OK;
-    if (study->has_tube) status = skg_spectrum_bin_count(spectrum, &finest);
-    study->has_energies = own > 1 || finest > 1;
-    study->finest = finest > own ? COST_FINEST_BINS : 0;
+    study->subject.has_tube = cost_spectrum(study, COST_FINEST_BINS, &spectrum) == SKG_OK;
+    if (study->subject.has_tube) status = skg_spectrum_bin_count(spectrum, &finest);
+    study->subject.has_energies = own > 1 || finest > 1;
+    study->subject.finest = finest > own ? COST_FINEST_BINS : 0;
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
 static int look_at_breath(cost_study *study) {
     int32_t breathes = 0;
-    skg_body_options_init(&study->body);
-    skg_status status = skg_setup_body_options_get(study->session.setup, &breathes, &study->body);
-    study->has_breath = breathes;
+    skg_body_options_init(&study->subject.body);
+    skg_status status = skg_setup_body_options_get(study->session.setup, &breathes, &study->subject.body);
+    study->subject.has_breath = breathes;
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 
@@ -79,7 +81,7 @@ int cost_open(cost_study *study) {
     int exit_status = cli_open_session(study->arguments, 0, &study->session);
     if (exit_status == CLI_DONE) exit_status = cli_refuse_counting(&study->session, "cost");
     cost_choose_clock(study);
-    study->own_scatter = study->session.options.scatter;
+    study->subject.own_scatter = study->session.options.scatter;
     study->session.options.scatter = NULL; /* its noise would hide the errors of the primary */
     if (exit_status == CLI_DONE) exit_status = look_at_scene(study);
     if (exit_status == CLI_DONE) exit_status = look_at_beam(study);
@@ -97,28 +99,28 @@ int cost_open(cost_study *study) {
 
 void cost_close(cost_study *study) {
     for (int i = 0; i < COST_REFERENCES; i++) {
-        free(study->references[i].image);
-        free(study->references[i].positions);
+        free(study->measured.references[i].image);
+        free(study->measured.references[i].positions);
     }
     for (int i = 0; i < study->spectrum_count; i++) skg_spectrum_release(&study->spectra[i].spectrum);
     for (int i = 0; i < study->meshing_count; i++) cost_meshing_free(&study->meshings[i]);
-    for (int i = 0; i < study->count; i++) free(study->points[i].difference);
-    for (int i = 0; i < study->shot_count; i++) {
-        skg_plan_release(&study->shots[i].plan);
-        free(study->shots[i].difference);
-        free(study->shots[i].small);
-        free(study->shots[i].command);
+    for (int i = 0; i < study->measured.count; i++) free(study->measured.points[i].difference);
+    for (int i = 0; i < study->measured.shot_count; i++) {
+        skg_plan_release(&study->measured.shots[i].plan);
+        free(study->measured.shots[i].difference);
+        free(study->measured.shots[i].small);
+        free(study->measured.shots[i].command);
     }
     for (int i = 0; i < COST_SOURCES; i++) {
-        free(study->sources[i].command);
-        free(study->coarse[i].difference);
+        free(study->judged.sources[i].command);
+        free(study->measured.coarse[i].difference);
     }
-    free(study->sensitivity.parts);
+    free(study->measured.sensitivity.parts);
     free(study->batch);
-    free(study->pulse_ms);
+    free(study->measured.pulse_ms);
     for (int i = 0; i < COST_TOLERANCES; i++) {
-        free(study->advice[i].rays_command);
-        free(study->advice[i].whole_command);
+        free(study->judged.advice[i].rays_command);
+        free(study->judged.advice[i].whole_command);
     }
     cli_close_session(&study->session);
 }

@@ -86,10 +86,11 @@ static int add_difference(const cost_study *study, const float *difference, json
 static int add_shot_pictures(const cost_study *study, json_t *shots) {
     int exit_status = CLI_DONE;
     double low = 0, high = 0;
-    for (int i = 0; exit_status == CLI_DONE && i < study->shot_count; i++) {
-        const cost_shot *shot = &study->shots[i];
+    for (int i = 0; exit_status == CLI_DONE && i < study->measured.shot_count; i++) {
+        const cost_shot *shot = &study->measured.shots[i];
         json_t *object = json_array_get(shots, (size_t)i), *uri = NULL;
-        if (!shot->small || !(shot->on_frontier || i == study->here || i == study->buy || i == study->saving))
+        if (!shot->small || !(shot->on_frontier || i == study->measured.here || i == study->judged.buy ||
+                              i == study->judged.saving))
             continue;
         exit_status = small_json(study, shot->small, &low, &high, &uri);
         if (exit_status != CLI_DONE) break;
@@ -103,9 +104,9 @@ static int add_shot_pictures(const cost_study *study, json_t *shots) {
 static int add_source_pictures(const cost_study *study, json_t *sources) {
     int exit_status = CLI_DONE;
     for (int i = 0; exit_status == CLI_DONE && i < COST_SOURCES; i++) {
-        const cost_source *source = &study->sources[i];
-        const float *difference =
-            source->state == COST_FINE ? study->points[source->own].difference : study->coarse[i].difference;
+        const cost_source *source = &study->judged.sources[i];
+        const float *difference = source->state == COST_FINE ? study->measured.points[source->own].difference
+                                                             : study->measured.coarse[i].difference;
         if (!difference || !(source->error > 0)) continue;
         exit_status = add_difference(study, difference, json_array_get(sources, (size_t)i));
     }

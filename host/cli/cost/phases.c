@@ -49,7 +49,7 @@ static skg_status run(void *user) {
     skg_frame_init(&frame);
     skg_status status = skg_motion_pose_at_phase(b->motion, (double)b->phase / COST_PHASES);
     if (status == SKG_OK) status = skg_motion_fill(b->motion, &frame);
-    if (status == SKG_OK) status = skg_plan_submit(b->plan, 1, &frame, &b->output, &job);
+    if (status == SKG_OK) status = skg_plan_submit(b->plan, 1, &frame, 1, &b->output, &job);
     if (!SKG_FAILED(status)) status = skg_job_wait(&job);
     b->phase = (b->phase + 1) % COST_PHASES;
     return status;
@@ -102,7 +102,7 @@ static void compare_positions(const double *positions, const double *reference, 
 }
 
 skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_point *point, int *exit_status) {
-    cost_reference *reference = &study->references[COST_OF_BREATH];
+    cost_reference *reference = &study->measured.references[COST_OF_BREATH];
     breath b = {.study = study};
     double *images = NULL, *positions = NULL, start = cli_now_ms();
     int64_t vertices = 0;
@@ -133,7 +133,7 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
         if (!SKG_FAILED(status) && (point->shot = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
         if (!SKG_FAILED(status)) {
             shot.total_rms = shot.total_max = (double)NAN;
-            study->shots[point->shot] = shot;
+            study->measured.shots[point->shot] = shot;
         }
     }
     end(&b);

@@ -6,7 +6,7 @@
 #include <stdlib.h>
 
 int cost_make_reference(cost_study *study, int number) {
-    cost_reference *reference = &study->references[number];
+    cost_reference *reference = &study->measured.references[number];
     if (number == COST_OF_BREATH) {
         int exit_status = CLI_DONE;
         if (cost_breathe(study, &reference->setting, NULL, &exit_status) >= SKG_OK) return exit_status;
@@ -17,7 +17,7 @@ int cost_make_reference(cost_study *study, int number) {
     if (!reference->image) return cli_error(CLI_DEVICE, "out of host memory for the image");
     double ms = 0;
     skg_status status = cost_image(study, &reference->setting, reference->image, &ms);
-    if (number == COST_OF_RAYS) study->best_pass_ms = ms / cost_passes(&reference->setting);
+    if (number == COST_OF_RAYS) study->measured.best_pass_ms = ms / cost_passes(&reference->setting);
     return SKG_FAILED(status) ? cli_fail(status) : CLI_DONE;
 }
 
@@ -44,7 +44,7 @@ static int measure_breath(cost_study *study, cost_point *point) {
 
 /* Compares the image of a shot with the reference of a point. */
 static int compare(cost_study *study, cost_point *point, int shot, const double *image) {
-    const cost_reference *reference = &study->references[point->reference];
+    const cost_reference *reference = &study->measured.references[point->reference];
     const int dial = point->dial;
     point->shot = shot;
     point->state = COST_MEASURED;
@@ -58,18 +58,19 @@ static int compare(cost_study *study, cost_point *point, int shot, const double 
 int cost_measure(cost_study *study, cost_point *point, double *image) {
     int number, keep, exit_status = CLI_DONE;
     point->state = COST_LEFT_OUT;
-    if (!study->references[point->reference].image)
+    if (!study->measured.references[point->reference].image)
         exit_status = cost_make_reference(study, point->reference);
-    if (exit_status != CLI_DONE || !study->references[point->reference].image) return exit_status;
+    if (exit_status != CLI_DONE || !study->measured.references[point->reference].image) return exit_status;
     if (point->reference == COST_OF_BREATH) return measure_breath(study, point);
     const skg_status status = cost_shoot(study, &point->setting, image, &number);
     exit_status = judge(study, &point->setting, status, &keep);
-    if (exit_status == CLI_DONE && keep) exit_status = cost_compare_shot(study, image, &study->shots[number]);
+    if (exit_status == CLI_DONE && keep)
+        exit_status = cost_compare_shot(study, image, &study->measured.shots[number]);
     if (exit_status == CLI_DONE && keep) exit_status = compare(study, point, number, image);
     /* Others that are waiting for the same image. */
-    for (int i = 0; i < study->count && exit_status == CLI_DONE && keep; i++) {
-        cost_point *other = &study->points[i];
-        if (other->state == COST_PLANNED && study->references[other->reference].image &&
+    for (int i = 0; i < study->measured.count && exit_status == CLI_DONE && keep; i++) {
+        cost_point *other = &study->measured.points[i];
+        if (other->state == COST_PLANNED && study->measured.references[other->reference].image &&
             other->reference != COST_OF_BREATH && cost_is_same(study, &other->setting, &point->setting))
             exit_status = compare(study, other, number, image);
     }

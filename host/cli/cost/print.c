@@ -27,7 +27,7 @@ static void print_wrapped(const char *text) {
 }
 
 static void print_source(const cost_study *study, int number) {
-    const cost_source *source = &study->sources[number];
+    const cost_source *source = &study->judged.sources[number];
     char error[48] = "?", ms[64];
     if (source->error == 0) return; /* named in one line by print_none */
     if (!isnan(source->error)) cost_percent(source->error, error, sizeof error);
@@ -43,7 +43,7 @@ static void print_source(const cost_study *study, int number) {
 static void print_none(const cost_study *study) {
     char text[256] = "";
     for (int i = 0; i < COST_SOURCES; i++)
-        if (study->sources[i].error == 0)
+        if (study->judged.sources[i].error == 0)
             cost_append(text, sizeof text, "%s%s", *text ? ", " : "", cost_source_names[i]);
     if (*text) printf("  %-21s %14s  %s\n", "none", "0 %", text);
 }
@@ -59,7 +59,8 @@ static void print_advice(const cost_study *study, const cost_advice *advice) {
     char text[160], ms[64] = "not timed";
     cost_describe(study, &advice->whole.setting, text, sizeof text);
     if (number >= 0)
-        cost_ms(study->shots[number].price_ms, study->shots[number].uncertainty_ms, ms, sizeof ms);
+        cost_ms(study->measured.shots[number].price_ms, study->measured.shots[number].uncertainty_ms, ms,
+                sizeof ms);
     printf("  %-7g %-18s %s%s%s\n", advice->tolerance, ms, *advice->reason ? "(not reached) " : "", text,
            advice->bar > advice->tolerance ? " (a tenth of the noise is enough)" : "");
 }
@@ -67,13 +68,13 @@ static void print_advice(const cost_study *study, const cost_advice *advice) {
 /* The machine, and how far the numbers can be trusted. */
 static void print_trust(const cost_study *study) {
     char sure[48];
-    printf("\n  %lld settings in %.0f s on %s", (long long)study->shot_count,
+    printf("\n  %lld settings in %.0f s on %s", (long long)study->measured.shot_count,
            1e-3 * (study->ended_ms - study->begun_ms), study->session.device.name);
-    if (!isnan(study->unrest))
+    if (!isnan(study->judged.unrest))
         printf("; prices by %s, the same image's varied by %.0f %%",
-               study->has_processor_clock ? "processor time" : "the wall", 100 * study->unrest);
-    if (study->reference_error > 0)
-        printf("; best image known to %s", cost_percent(study->reference_error, sure, sizeof sure));
+               study->has_processor_clock ? "processor time" : "the wall", 100 * study->judged.unrest);
+    if (study->judged.reference_error > 0)
+        printf("; best image known to %s", cost_percent(study->judged.reference_error, sure, sizeof sure));
     putchar('\n');
     if (study->stopped)
         printf("  stopped: what was measured until then is kept\n");
@@ -89,7 +90,7 @@ static double steady(double value) {
 
 /* How much the image changes when a part moves. */
 static void print_sensitivity(const cost_study *study) {
-    const cli_sensitivity *s = &study->sensitivity;
+    const cli_sensitivity *s = &study->measured.sensitivity;
     char text[4][48];
     if (!study->sensitive) return;
     printf("\n  %-21s %13s %13s %13s %13s  %s\n", "rms change for a mm", "along x", "along y", "along z",
@@ -110,12 +111,14 @@ static void print_sensitivity(const cost_study *study) {
 }
 
 void cost_print(const cost_study *study) {
-    print_wrapped(study->summary);
+    print_wrapped(study->judged.summary);
     print_sources(study);
     print_sensitivity(study);
     printf("\n  %-7s %-18s fastest setting\n", "error", study->frames > 1 ? "ms a frame" : "ms an image");
-    for (int i = 0; i < COST_TOLERANCES; i++) print_advice(study, &study->advice[i]);
-    if (study->buy >= 0) printf("\n  best buy: %s\n", study->shots[study->buy].command);
-    if (study->saving >= 0) printf("  to save time: %s\n", study->shots[study->saving].command);
+    for (int i = 0; i < COST_TOLERANCES; i++) print_advice(study, &study->judged.advice[i]);
+    if (study->judged.buy >= 0)
+        printf("\n  best buy: %s\n", study->measured.shots[study->judged.buy].command);
+    if (study->judged.saving >= 0)
+        printf("  to save time: %s\n", study->measured.shots[study->judged.saving].command);
     print_trust(study);
 }

@@ -85,7 +85,7 @@ static skg_status scale_sectors(const cost_study *study, double factor, cost_mes
                                 int64_t *triangles) {
     int64_t parts = 0;
     skg_status status = skg_scene_part_count(study->session.scene, &parts);
-    *triangles = study->triangles;
+    *triangles = study->subject.triangles;
     meshing->settings = calloc((size_t)parts, sizeof *meshing->settings);
     if (!meshing->settings) return SKG_ERR_MEMORY;
     for (int64_t i = 0; i < parts && status == SKG_OK; i++) {

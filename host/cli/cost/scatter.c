@@ -17,7 +17,7 @@ static const double tolerances[COST_SCATTER_PRICES] = {0.05, 0.02, 0.01};
 static const double SHARE = 0.15, AT_MOST_S = 5;
 
 void cost_predict_scatter(cost_study *study, skg_plan *plan) {
-    cost_scattering *s = &study->scattering;
+    cost_scattering *s = &study->measured.scattering;
     cli_predict(plan, study->session.options.tolerance, &s->prediction);
     for (int i = 0; i < COST_SCATTER_PRICES; i++)
         s->prices[i] = (cost_scatter_price){tolerances[i], (double)NAN, 0};
@@ -45,7 +45,7 @@ static skg_status render(const cost_study *study, const skg_scatter *scatter, fl
 
 /* What an image without this scatter lacks. */
 static int take_error(cost_study *study, const float *data) {
-    cost_coarse *coarse = &study->coarse[COST_SOURCE_SCATTER];
+    cost_coarse *coarse = &study->measured.coarse[COST_SOURCE_SCATTER];
     double *scatter = calloc((size_t)study->pixels, sizeof *scatter);
     double *nothing = calloc((size_t)study->pixels, sizeof *nothing);
     cost_point point = {0};
@@ -71,12 +71,12 @@ static double estimate_s(const cost_scattering *s, int number) {
 }
 
 static int measure_price(cost_study *study, int number, float *data, double *spent_s) {
-    cost_scattering *s = &study->scattering;
+    cost_scattering *s = &study->measured.scattering;
     cost_scatter_price *price = &s->prices[number];
     skg_scatter scatter;
     skg_scatter_report report;
     skg_scatter_init(&scatter);
-    if (study->own_scatter) scatter = *study->own_scatter;
+    if (study->subject.own_scatter) scatter = *study->subject.own_scatter;
     scatter.tolerance = price->tolerance;
     scatter.histories = 0;
     const skg_status status = render(study, &scatter, data, &report);
@@ -91,8 +91,8 @@ static int measure_price(cost_study *study, int number, float *data, double *spe
 }
 
 int cost_measure_scatter(cost_study *study) {
-    cost_scattering *s = &study->scattering;
-    cost_coarse *coarse = &study->coarse[COST_SOURCE_SCATTER];
+    cost_scattering *s = &study->measured.scattering;
+    cost_coarse *coarse = &study->measured.coarse[COST_SOURCE_SCATTER];
     double spent_s = 0;
     int exit_status = CLI_DONE;
     coarse->state = s->prediction.is_known ? COST_COARSE : COST_NOT_KNOWN;
@@ -128,8 +128,8 @@ static void list_prices(const cost_scattering *s, char *text, size_t size) {
 }
 
 void cost_take_scatter(const cost_study *study, cost_source *source) {
-    const cost_scattering *s = &study->scattering;
-    const cost_coarse *coarse = &study->coarse[COST_SOURCE_SCATTER];
+    const cost_scattering *s = &study->measured.scattering;
+    const cost_coarse *coarse = &study->measured.coarse[COST_SOURCE_SCATTER];
     source->state = coarse->state;
     snprintf(source->reason, sizeof source->reason, "%.319s", s->prediction.reason);
     if (!s->prediction.is_known) return;
@@ -140,13 +140,13 @@ void cost_take_scatter(const cost_study *study, cost_source *source) {
         return;
     }
     *source->reason = '\0';
-    if (study->own_scatter)
+    if (study->subject.own_scatter)
         cost_append(source->reason, sizeof source->reason, "without the scene's Scatter; ");
     list_prices(s, source->reason, sizeof source->reason);
 }
 
 json_t *cost_scatter_json(const cost_study *study) {
-    const cost_scattering *s = &study->scattering;
+    const cost_scattering *s = &study->measured.scattering;
     json_t *object = cli_prediction_json(&s->prediction), *prices = json_array();
     for (int i = 0; i < COST_SCATTER_PRICES; i++) {
         json_t *price = json_object();

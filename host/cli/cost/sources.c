@@ -27,19 +27,20 @@ static const family families[COST_SOURCES] = {
 
 /* The setting in which only this source errs, compared with the family's reference. */
 static cost_setting alone(const cost_study *study, int source) {
-    cost_setting its = study->own;
-    const cost_setting *best = &study->references[COST_OF_RAYS].setting;
+    cost_setting its = study->subject.own;
+    const cost_setting *best = &study->measured.references[COST_OF_RAYS].setting;
     if (source == COST_SOURCE_PRECISION) its.tolerance = best->tolerance, its.bins = best->bins;
     if (source == COST_SOURCE_BINS) its.tolerance = best->tolerance, its.precision = best->precision;
     if (source == COST_SOURCE_TOLERANCE) its.bins = best->bins, its.precision = best->precision;
-    if (source == COST_SOURCE_SUPERSAMPLING) its.samples = study->references[COST_OF_AREAS].setting.samples;
+    if (source == COST_SOURCE_SUPERSAMPLING)
+        its.samples = study->measured.references[COST_OF_AREAS].setting.samples;
     return its;
 }
 
 static int find_point(const cost_study *study, int reference, const cost_setting *setting) {
-    for (int i = 0; i < study->count; i++)
-        if (study->points[i].reference == reference &&
-            cost_is_same(study, &study->points[i].setting, setting))
+    for (int i = 0; i < study->measured.count; i++)
+        if (study->measured.points[i].reference == reference &&
+            cost_is_same(study, &study->measured.points[i].setting, setting))
             return i;
     return -1;
 }
@@ -82,14 +83,14 @@ static int is_of_family(const cost_study *study, int source, const cost_setting 
 
 /* The fastest point of the family with half of today's error, or less. */
 static int find_halving(const cost_study *study, int source, int today) {
-    const cost_point *own = &study->points[today];
+    const cost_point *own = &study->measured.points[today];
     int found = -1;
-    for (int i = 0; i < study->count; i++) {
-        const cost_point *point = &study->points[i];
+    for (int i = 0; i < study->measured.count; i++) {
+        const cost_point *point = &study->measured.points[i];
         if (i == today || !is_of_family(study, source, &own->setting, point)) continue;
         if (!(point->rms_flat <= own->rms_flat / 2)) continue;
-        if (found < 0 ||
-            study->shots[point->shot].price_ms < study->shots[study->points[found].shot].price_ms)
+        if (found < 0 || study->measured.shots[point->shot].price_ms <
+                             study->measured.shots[study->measured.points[found].shot].price_ms)
             found = i;
     }
     return found;
@@ -98,9 +99,9 @@ static int find_halving(const cost_study *study, int source, int today) {
 /* What the halving adds to the time of today's image. Where today's value was measured with other settings of the remaining
  * dials, their ratio counts. */
 static void price(const cost_study *study, cost_source *source) {
-    const cost_shot *here = &study->shots[study->here];
-    const cost_shot *from = &study->shots[study->points[source->own].shot];
-    const cost_shot *to = &study->shots[study->points[source->halving].shot];
+    const cost_shot *here = &study->measured.shots[study->measured.here];
+    const cost_shot *from = &study->measured.shots[study->measured.points[source->own].shot];
+    const cost_shot *to = &study->measured.shots[study->measured.points[source->halving].shot];
     const double scale = from == here ? 1 : here->price_ms / from->price_ms;
     source->halving_ms = scale * (to->price_ms - from->price_ms);
     source->halving_uncertainty_ms = scale * hypot(to->uncertainty_ms, from->uncertainty_ms);
@@ -109,8 +110,8 @@ static void price(const cost_study *study, cost_source *source) {
 /* The scene with the dial's better value, all else as it is. */
 static int name_halving(const cost_study *study, int number, cost_source *source) {
     const int dial = families[number].dial;
-    cost_setting setting = study->own;
-    take_value(dial, &study->points[source->halving].setting, &setting);
+    cost_setting setting = study->subject.own;
+    take_value(dial, &study->measured.points[source->halving].setting, &setting);
     cost_describe_dial(study, &setting, dial, source->buys, sizeof source->buys);
     source->command = cost_command(study, &setting);
     return source->command ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
@@ -123,7 +124,7 @@ int cost_source_dial(int source) {
 const char *cost_why_not(const cost_study *study, int source) {
     const skg_spot *spot = study->session.options.spot;
     if (source == COST_SOURCE_TRIANGLES && *study->triangles_reason) return study->triangles_reason;
-    if (source == COST_SOURCE_TRIANGLES && !study->has_round)
+    if (source == COST_SOURCE_TRIANGLES && !study->subject.has_round)
         return "the body that the triangles stand for is not known, so that no finer mesh can be made";
     if (source == COST_SOURCE_PRECISION && !study->session.device.double_precision)
         return "not measured: the device has no double precision";
@@ -137,24 +138,25 @@ const char *cost_why_absent(const cost_study *study, int source) {
     switch (source) {
     case COST_SOURCE_TRIANGLES:
     case COST_SOURCE_SURFACE:
-        if (cost_count_unknown(study, &label) > 0 && !study->is_thorax) return NULL;
-        if (source == COST_SOURCE_SURFACE && study->is_thorax < 0) return NULL;
+        if (cost_count_unknown(study, &label) > 0 && !study->subject.is_thorax) return NULL;
+        if (source == COST_SOURCE_SURFACE && study->subject.is_thorax < 0) return NULL;
         if (source == COST_SOURCE_SURFACE) return "every part is a body whose surface is known";
-        return study->has_round ? NULL : "cuboids and step wedges are exact";
+        return study->subject.has_round ? NULL : "cuboids and step wedges are exact";
     case COST_SOURCE_PRECISION:
-        return study->own.precision == SKG_PRECISION_DOUBLE ? "the scene has double precision" : NULL;
+        return study->subject.own.precision == SKG_PRECISION_DOUBLE ? "the scene has double precision" : NULL;
     case COST_SOURCE_BINS:
-        if (!study->has_energies) return "the beam has one energy";
-        return study->finest == 0 ? "the spectrum's bins are not wider than they need be" : NULL;
+        if (!study->subject.has_energies) return "the beam has one energy";
+        return study->subject.finest == 0 ? "the spectrum's bins are not wider than they need be" : NULL;
     case COST_SOURCE_TOLERANCE:
-        if (!study->has_energies) return "the beam has one energy";
-        return study->own.tolerance > 0 ? NULL : "the tolerance is 0: every energy is computed";
+        if (!study->subject.has_energies) return "the beam has one energy";
+        return study->subject.own.tolerance > 0 ? NULL : "the tolerance is 0: every energy is computed";
     case COST_SOURCE_SAMPLES:
-        return study->has_spot || (study->session.options.spot && study->session.options.spot->grid > 0)
+        return study->subject.has_spot ||
+                       (study->session.options.spot && study->session.options.spot->grid > 0)
                    ? NULL
                    : "the source is a point or a parallel beam";
     case COST_SOURCE_REPAIR:
-        return study->has_leaky || study->has_shells ? NULL : "no mesh is leaky";
+        return study->subject.has_leaky || study->subject.has_shells ? NULL : "no mesh is leaky";
     default:
         return NULL;
     }
@@ -162,8 +164,8 @@ const char *cost_why_absent(const cost_study *study, int source) {
 
 /* The error against the reference of the dial, and what halves it. */
 static int take_fine(cost_study *study, int number) {
-    cost_source *source = &study->sources[number];
-    const cost_point *today = &study->points[source->own];
+    cost_source *source = &study->judged.sources[number];
+    const cost_point *today = &study->measured.points[source->own];
     source->state = COST_FINE;
     source->error = today->rms_flat;
     source->max = today->max_flat;
@@ -179,12 +181,12 @@ static int take_fine(cost_study *study, int number) {
 }
 
 static void take_coarse(cost_study *study, int number) {
-    const cost_coarse *coarse = &study->coarse[number];
-    cost_source *source = &study->sources[number];
+    const cost_coarse *coarse = &study->measured.coarse[number];
+    cost_source *source = &study->judged.sources[number];
     source->state = coarse->state;
     snprintf(source->reason, sizeof source->reason, "%s", coarse->reason);
     if (coarse->state != COST_COARSE) {
-        if (number == COST_SOURCE_TRIANGLES && !study->has_round) source->state = COST_NOT_KNOWN;
+        if (number == COST_SOURCE_TRIANGLES && !study->subject.has_round) source->state = COST_NOT_KNOWN;
         return;
     }
     source->error = coarse->error;
@@ -193,7 +195,7 @@ static void take_coarse(cost_study *study, int number) {
 }
 
 static int measure_source(cost_study *study, int number) {
-    cost_source *source = &study->sources[number];
+    cost_source *source = &study->judged.sources[number];
     const cost_setting setting = alone(study, number);
     source->own = find_point(study, families[number].reference, &setting);
     if (source->own >= 0) return take_fine(study, number);
@@ -205,7 +207,7 @@ static int measure_source(cost_study *study, int number) {
 static void name_unknown(const cost_study *study, cost_source *source) {
     const char *label = "";
     const int64_t parts = cost_count_unknown(study, &label);
-    if (study->is_thorax < 0)
+    if (study->subject.is_thorax < 0)
         snprintf(source->reason, sizeof source->reason,
                  "not known while the time does not suffice to measure the triangles");
     else
@@ -216,9 +218,9 @@ static void name_unknown(const cost_study *study, cost_source *source) {
 
 int cost_find_sources(cost_study *study) {
     int exit_status = CLI_DONE;
-    study->largest = -1;
+    study->judged.largest = -1;
     for (int number = 0; number < COST_SOURCES && exit_status == CLI_DONE; number++) {
-        cost_source *source = &study->sources[number];
+        cost_source *source = &study->judged.sources[number];
         const char *none = cost_why_absent(study, number);
         *source = (cost_source){.state = COST_ABSENT,
                                 .error = (double)NAN,
@@ -239,8 +241,9 @@ int cost_find_sources(cost_study *study) {
             exit_status = measure_source(study, number);
         }
         if (number < COST_SOURCE_SURFACE &&
-            source->error > (study->largest < 0 ? 0 : study->sources[study->largest].error))
-            study->largest = number;
+            source->error >
+                (study->judged.largest < 0 ? 0 : study->judged.sources[study->judged.largest].error))
+            study->judged.largest = number;
     }
     return exit_status;
 }
@@ -248,7 +251,7 @@ int cost_find_sources(cost_study *study) {
 void cost_describe_source(const cost_study *study, int number, char *text, size_t size) {
     *text = '\0';
     if (number < COST_SOURCE_SURFACE)
-        cost_describe_dial(study, &study->own, families[number].dial, text, size);
+        cost_describe_dial(study, &study->subject.own, families[number].dial, text, size);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -259,8 +262,8 @@ static int ascending(const void *a, const void *b) {
 /* The error of the most accurate point of a family that is not more accurate than `best`: an upper bound of that of `best`. */
 static double error_near(const cost_study *study, int source, const cost_setting *best) {
     double least = (double)NAN;
-    for (int i = 0; i < study->count; i++) {
-        const cost_point *point = &study->points[i];
+    for (int i = 0; i < study->measured.count; i++) {
+        const cost_point *point = &study->measured.points[i];
         if (point->reference != families[source].reference || point->dial != families[source].dial) continue;
         if (point->setting.samples > best->samples || point->setting.supersampling > best->supersampling ||
             cost_triangles(study, &point->setting) > cost_triangles(study, best))
@@ -279,10 +282,10 @@ static double find_grey_levels(const cost_study *study) {
     picture.columns = study->session.view.columns;
     picture.rows = study->session.view.rows;
     picture.channels = 1;
-    picture.data = study->references[COST_OF_ALL].image;
+    picture.data = study->measured.references[COST_OF_ALL].image;
     picture.display = SKG_DISPLAY_TRANSMISSION;
     picture.quantity = SKG_QUANTITY_ENERGY;
-    picture.flat_field = study->flat_field;
+    picture.flat_field = study->subject.flat_field;
     if (!picture.data || skg_picture_window_get(&picture, 0.005, 0.005, &low, &high) != SKG_OK ||
         !(high > low))
         return 0;
@@ -291,29 +294,32 @@ static double find_grey_levels(const cost_study *study) {
 
 void cost_find_trust(cost_study *study) {
     static const int sampled[] = {COST_SOURCE_TRIANGLES, COST_SOURCE_SAMPLES, COST_SOURCE_SUPERSAMPLING};
-    const cost_setting *best = &study->references[COST_OF_ALL].setting;
+    const cost_setting *best = &study->measured.references[COST_OF_ALL].setting;
     double squares = 0;
     for (int k = 0; k < 3; k++) {
         /* Where no point of the dial was measured, the best image may err as much as the scene's; NaN: nothing is known. */
-        const double near = error_near(study, sampled[k], best), own = study->sources[sampled[k]].error;
+        const double near = error_near(study, sampled[k], best),
+                     own = study->judged.sources[sampled[k]].error;
         const double error = isnan(near) ? own : near;
-        if (study->sources[sampled[k]].state != COST_NOT_KNOWN) squares += error * error;
+        if (study->judged.sources[sampled[k]].state != COST_NOT_KNOWN) squares += error * error;
     }
-    study->reference_error = study->references[COST_OF_ALL].image ? sqrt(squares) : (double)NAN;
-    study->grey_levels = find_grey_levels(study);
+    study->judged.reference_error =
+        study->measured.references[COST_OF_ALL].image ? sqrt(squares) : (double)NAN;
+    study->judged.grey_levels = find_grey_levels(study);
 }
 
 void cost_find_unrest(cost_study *study) {
-    study->unrest = (double)NAN;
-    if (study->pulse_count >= 4) {
-        qsort(study->pulse_ms, (size_t)study->pulse_count, sizeof *study->pulse_ms, ascending);
-        const double *ms = study->pulse_ms;
-        const int64_t n = study->pulse_count;
-        study->unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];
+    study->judged.unrest = (double)NAN;
+    if (study->measured.pulse_count >= 4) {
+        qsort(study->measured.pulse_ms, (size_t)study->measured.pulse_count, sizeof *study->measured.pulse_ms,
+              ascending);
+        const double *ms = study->measured.pulse_ms;
+        const int64_t n = study->measured.pulse_count;
+        study->judged.unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];
     }
-    for (int i = 0; i < study->shot_count; i++) {
-        cost_shot *shot = &study->shots[i];
+    for (int i = 0; i < study->measured.shot_count; i++) {
+        cost_shot *shot = &study->measured.shots[i];
         if (isnan(shot->uncertainty_ms))
-            shot->uncertainty_ms = (isnan(study->unrest) ? 1 : study->unrest) * shot->price_ms;
+            shot->uncertainty_ms = (isnan(study->judged.unrest) ? 1 : study->judged.unrest) * shot->price_ms;
     }
 }

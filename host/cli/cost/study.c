@@ -51,7 +51,7 @@ int32_t cost_repair(const cost_study *study, const cost_setting *setting) {
 }
 
 int cost_is_other_body(const cost_study *study, const cost_setting *setting) {
-    return study->has_shells && cost_repair(study, setting) < COST_UNITE;
+    return study->subject.has_shells && cost_repair(study, setting) < COST_UNITE;
 }
 
 const char *cost_repair_of(const cost_study *study, const cost_setting *setting) {
@@ -59,7 +59,7 @@ const char *cost_repair_of(const cost_study *study, const cost_setting *setting)
 }
 
 int64_t cost_triangles(const cost_study *study, const cost_setting *setting) {
-    return setting->meshing >= 0 ? study->meshings[setting->meshing].triangles : study->triangles;
+    return setting->meshing >= 0 ? study->meshings[setting->meshing].triangles : study->subject.triangles;
 }
 
 int cost_is_same(const cost_study *study, const cost_setting *a, const cost_setting *b) {
@@ -70,7 +70,7 @@ int cost_is_same(const cost_study *study, const cost_setting *a, const cost_sett
 }
 
 int cost_changed_dial(const cost_study *study, const cost_setting *setting) {
-    const cost_setting *own = &study->own;
+    const cost_setting *own = &study->subject.own;
     const int changed[COST_DIALS] = {[COST_PRECISION] = setting->precision != own->precision,
                                      [COST_TOLERANCE] = setting->tolerance != own->tolerance,
                                      [COST_BINS] = setting->bins != own->bins,

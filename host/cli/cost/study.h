@@ -7,6 +7,8 @@
 #include "session/sensitivity.h"
 #include "session/session.h"
 
+#include <skiagraph/breathing.h>
+
 enum {
     COST_SCENE,
     COST_PRECISION,
@@ -109,7 +111,7 @@ typedef struct {
     int dial, reference, on_frontier;
     int priority; /* those with a small one are measured first */
     int state;    /* COST_PLANNED ... */
-    int shot;     /* number in study->shots; negative: not measured */
+    int shot;     /* number in study->measured.shots; negative: not measured */
     cost_setting setting;
     /* Errors as fractions: of the flat field, and of the reference's pixel. */
     double max_flat, rms_flat, max_ref, rms_ref;
@@ -200,49 +202,32 @@ typedef struct {
     double max, rms, ms[2], uncertainty_ms[2]; /* of cells, of linear values */
 } cost_between;
 
+/* What the scene is like, which dials it has, and its own setting. */
 typedef struct {
-    const cli_arguments *arguments;
-    cli_session session;
-    int quick;
-    double begun_ms, within_ms,
-        ended_ms;     /* on the clock of cli_now_ms, the time that was given, and the clock at the end */
-    int64_t frames;   /* of a batch; 1: single images */
-    double *batch;    /* [frames][pixels], for timing batches */
-    int64_t left_out; /* settings that the time did not suffice for */
-    int64_t planned;  /* settings that were to be measured */
-    int stopped;      /* 1: by a signal */
-    int64_t pixels, thumb_columns, thumb_rows, thumb_block;
     int noisy;         /* 1: images have the scene's noise */
     double noise;      /* its root mean square, as a fraction of the flat field; 0: the scene has none */
     double flat_field; /* keV per pixel */
     cost_setting own;  /* the scene's own setting */
     int64_t finest;    /* bins of the reference: 0 or COST_FINEST_BINS */
-    int has_processor_clock; /* 1: prices are processor times (clock.h) */
     int has_tube, has_energies, has_spot, has_leaky, has_shells, has_breath, has_volume;
     const skg_scatter *own_scatter; /* of the scene, whose images are computed without; NULL: it has none */
-    cost_scattering scattering;
-    cost_between between; /* if has_volume */
-    int sensitive;        /* 1: sensitivity is wanted */
-    cli_sensitivity sensitivity;
-    int64_t triangles;     /* of the scene */
-    skg_body_options body; /* if has_breath */
-    struct {
-        int64_t bins;
-        skg_spectrum *spectrum;
-    } spectra[COST_SPECTRA_MAX]; /* of the tube, each made when it was first needed */
-    int spectrum_count;
-    double pass_ms;                           /* of one ray per pixel at the scene's setting */
-    double best_pass_ms;                      /* the same with the best precision and every energy */
-    double plan_ms;                           /* of the scene's setting */
-    cost_meshing meshings[COST_MESHINGS_MAX]; /* rising in triangles; the last one is the reference */
-    int meshing_count;
+    int64_t triangles;              /* of the scene */
+    skg_body_options body;          /* if has_breath */
     int is_thorax;    /* 1: the scene is the generated thorax; -1: the time did not suffice to find out */
     int has_round;    /* 1: it is, may be, or has a sphere or a cylinder */
     double thorax_ms; /* that generating one with this number of triangles took */
     int64_t thorax_made;
     int thorax_is_simple; /* 1: the thorax of the scene is that of `thorax --simple` */
-    char triangles_reason
-        [192]; /* why no finer mesh was made; empty: there are finer ones, or no round parts */
+} cost_subject;
+
+/* Images, their prices and their errors: what runs gave. */
+typedef struct {
+    cost_scattering scattering;
+    cost_between between;        /* if the scene has volumes */
+    cli_sensitivity sensitivity; /* if it is wanted */
+    double pass_ms;              /* of one ray per pixel at the scene's setting */
+    double best_pass_ms;         /* the same with the best precision and every energy */
+    double plan_ms;              /* of the scene's setting */
     cost_coarse coarse[COST_SOURCES];
     cost_reference references[COST_REFERENCES];
     cost_point points[COST_POINTS_MAX];
@@ -253,17 +238,49 @@ typedef struct {
     int64_t kept_bytes; /* of the plans that are kept */
     double *pulse_ms;   /* [pulse_count] prices of the scene's own image, taken between visits */
     int64_t pulse_count, pulse_capacity;
-    double unrest; /* their interquartile range over their median; NaN: fewer than 4 */
-    double
-        reference_error; /* of the reference COST_OF_ALL, root mean square, estimated from its neighbours; NaN: not known */
+} cost_measured;
+
+/* What follows from it: sources of error, advice, and how far the numbers are to be trusted. */
+typedef struct {
+    double unrest; /* interquartile range of the pulses over their median; NaN: fewer than 4 */
+    /* Of the reference COST_OF_ALL, root mean square, estimated from its neighbours; NaN: not known. */
+    double reference_error;
     double grey_levels; /* of 256 in a PNG of transmission, for a whole flat field; 0: not known */
     cost_source sources[COST_SOURCES];
     int largest;     /* the source with the largest error; -1: none is known */
     int buy, saving; /* shots that are worth changing to; -1: none */
     char summary[1024];
+    cost_advice advice[COST_TOLERANCES];
+} cost_judged;
+
+typedef struct {
+    const cli_arguments *arguments;
+    cli_session session;
+    int quick;
+    int sensitive; /* 1: sensitivity is wanted */
+    /* On the clock of cli_now_ms, the time that was given, and the clock at the end. */
+    double begun_ms, within_ms, ended_ms;
+    int has_processor_clock; /* 1: prices are processor times (clock.h) */
+    int stopped;             /* 1: by a signal */
+    int64_t left_out;        /* settings that the time did not suffice for */
+    int64_t planned;         /* settings that were to be measured */
+    int64_t frames;          /* of a batch; 1: single images */
+    double *batch;           /* [frames][pixels], for timing batches */
+    int64_t pixels, thumb_columns, thumb_rows, thumb_block;
+    struct {
+        int64_t bins;
+        skg_spectrum *spectrum;
+    } spectra[COST_SPECTRA_MAX]; /* of the tube, each made when it was first needed */
+    int spectrum_count;
+    cost_meshing meshings[COST_MESHINGS_MAX]; /* rising in triangles; the last one is the reference */
+    int meshing_count;
+    char triangles_reason
+        [192]; /* why no finer mesh was made; empty: there are finer ones, or no round parts */
     char notes[COST_NOTES_MAX][512];
     int note_count;
-    cost_advice advice[COST_TOLERANCES];
+    cost_subject subject;
+    cost_measured measured;
+    cost_judged judged;
 } cost_study;
 
 extern const char *const cost_source_names[COST_SOURCES];

@@ -57,12 +57,12 @@ const char *cost_more(double ms, double uncertainty_ms, char *text, size_t size)
 /* The shot that is best to change to: the fastest that halves the error of the whole, otherwise the most accurate one. Changes of
  * one dial come before others, unless those are faster by a tenth. -1: none is more accurate. */
 static int choose_buy(const cost_study *study) {
-    const cost_shot *here = &study->shots[study->here];
+    const cost_shot *here = &study->measured.shots[study->measured.here];
     int half = -1, best = -1;
-    for (int i = 0; i < study->shot_count; i++) {
-        const cost_shot *shot = &study->shots[i];
+    for (int i = 0; i < study->measured.shot_count; i++) {
+        const cost_shot *shot = &study->measured.shots[i];
         if (!(shot->total_rms < LESS * here->total_rms)) continue;
-        if (best < 0 || shot->total_rms < study->shots[best].total_rms) best = i;
+        if (best < 0 || shot->total_rms < study->measured.shots[best].total_rms) best = i;
         if (!(shot->total_rms <= HALF * here->total_rms)) continue;
         const double weight = cost_changed_dial(study, &shot->setting) == COST_SEVERAL ? 1.1 : 1;
         const double its = weight * shot->price_ms;
@@ -70,21 +70,22 @@ static int choose_buy(const cost_study *study) {
             half = i;
             continue;
         }
-        const double other = cost_changed_dial(study, &study->shots[half].setting) == COST_SEVERAL ? 1.1 : 1;
-        if (its < other * study->shots[half].price_ms) half = i;
+        const double other =
+            cost_changed_dial(study, &study->measured.shots[half].setting) == COST_SEVERAL ? 1.1 : 1;
+        if (its < other * study->measured.shots[half].price_ms) half = i;
     }
     return half >= 0 ? half : best;
 }
 
 /* The fastest shot that errs no more than today's image. -1: none is faster by a tenth. */
 static int choose_saving(const cost_study *study) {
-    const cost_shot *here = &study->shots[study->here];
+    const cost_shot *here = &study->measured.shots[study->measured.here];
     int found = -1;
-    for (int i = 0; i < study->shot_count; i++) {
-        const cost_shot *shot = &study->shots[i];
+    for (int i = 0; i < study->measured.shot_count; i++) {
+        const cost_shot *shot = &study->measured.shots[i];
         if (!(shot->total_rms <= SAME * here->total_rms)) continue;
         if (!(shot->price_ms + shot->uncertainty_ms < LESS * here->price_ms)) continue;
-        if (found < 0 || shot->price_ms < study->shots[found].price_ms) found = i;
+        if (found < 0 || shot->price_ms < study->measured.shots[found].price_ms) found = i;
     }
     return found;
 }
@@ -94,7 +95,7 @@ static void name_change(const cost_study *study, const cost_setting *setting, ch
     *text = '\0';
     for (int dial = COST_PRECISION; dial <= COST_TRIANGLES; dial++) {
         char value[96];
-        cost_setting its = study->own;
+        cost_setting its = study->subject.own;
         switch (dial) {
         case COST_PRECISION:
             its.precision = setting->precision;
@@ -125,18 +126,19 @@ static void name_change(const cost_study *study, const cost_setting *setting, ch
 }
 
 static void add_change(cost_study *study, const char *what, int number) {
-    const cost_shot *here = &study->shots[study->here], *shot = &study->shots[number];
+    const cost_shot *here = &study->measured.shots[study->measured.here],
+                    *shot = &study->measured.shots[number];
     char change[256], ms[64], percent[48];
     const double more = shot->price_ms - here->price_ms, ratio = shot->total_rms / here->total_rms;
     name_change(study, &shot->setting, change, sizeof change);
-    cost_append(study->summary, sizeof study->summary, " %s: %s, %s, ", what, change,
+    cost_append(study->judged.summary, sizeof study->judged.summary, " %s: %s, %s, ", what, change,
                 cost_more(more, hypot(shot->uncertainty_ms, here->uncertainty_ms), ms, sizeof ms));
     if (ratio <= HALF && ratio > 0.4)
-        cost_append(study->summary, sizeof study->summary, "error halved.");
+        cost_append(study->judged.summary, sizeof study->judged.summary, "error halved.");
     else if (ratio > LESS && ratio <= SAME)
-        cost_append(study->summary, sizeof study->summary, "with the same error.");
+        cost_append(study->judged.summary, sizeof study->judged.summary, "with the same error.");
     else
-        cost_append(study->summary, sizeof study->summary, "error %s.",
+        cost_append(study->judged.summary, sizeof study->judged.summary, "error %s.",
                     cost_percent(shot->total_rms, percent, sizeof percent));
 }
 
@@ -145,77 +147,81 @@ static int list_missing(const cost_study *study, char *text, size_t size) {
     int count = 0;
     *text = '\0';
     for (int i = 0; i < COST_SOURCES; i++)
-        if (study->sources[i].state == COST_NOT_MEASURED)
+        if (study->judged.sources[i].state == COST_NOT_MEASURED)
             cost_append(text, size, "%s%s", count++ ? ", " : "", cost_source_names[i]);
     return count;
 }
 
 /* What all settings lack. */
 static void name_scatter(cost_study *study) {
-    const cost_source *scatter = &study->sources[COST_SOURCE_SCATTER];
+    const cost_source *scatter = &study->judged.sources[COST_SOURCE_SCATTER];
     char percent[48];
     if (!(scatter->error > 0)) return;
-    cost_append(study->summary, sizeof study->summary, " Scatter, which no setting here has, is about %s.",
+    cost_append(study->judged.summary, sizeof study->judged.summary,
+                " Scatter, which no setting here has, is about %s.",
                 cost_percent(scatter->error, percent, sizeof percent));
 }
 
 static int count_measured(const cost_study *study) {
     int count = 0;
-    for (int i = 0; i < COST_SOURCE_SURFACE; i++) count += study->sources[i].state >= COST_COARSE;
+    for (int i = 0; i < COST_SOURCE_SURFACE; i++) count += study->judged.sources[i].state >= COST_COARSE;
     return count;
 }
 
 static void name_largest(cost_study *study) {
     char percent[48], missing[160];
     const int misses = list_missing(study, missing, sizeof missing), measured = count_measured(study);
-    const cost_source *largest = study->largest < 0 ? NULL : &study->sources[study->largest];
+    const cost_source *largest =
+        study->judged.largest < 0 ? NULL : &study->judged.sources[study->judged.largest];
     if (largest)
-        cost_append(study->summary, sizeof study->summary, " Largest error%s: %s (%s%s).",
-                    misses ? " of those measured" : "", cost_source_names[study->largest],
+        cost_append(study->judged.summary, sizeof study->judged.summary, " Largest error%s: %s (%s%s).",
+                    misses ? " of those measured" : "", cost_source_names[study->judged.largest],
                     largest->state == COST_COARSE ? "about " : "",
                     cost_percent(largest->error, percent, sizeof percent));
     else if (measured)
-        cost_append(study->summary, sizeof study->summary,
+        cost_append(study->judged.summary, sizeof study->judged.summary,
                     " No source of error that was measured is above 0.");
     else
-        cost_append(study->summary, sizeof study->summary, " No source of error was measured.");
-    if (misses) cost_append(study->summary, sizeof study->summary, " Not measured: %s.", missing);
+        cost_append(study->judged.summary, sizeof study->judged.summary, " No source of error was measured.");
+    if (misses)
+        cost_append(study->judged.summary, sizeof study->judged.summary, " Not measured: %s.", missing);
 }
 
 /* What an image costs, and how far it is off. */
 static void state_here(cost_study *study) {
-    const cost_shot *here = &study->shots[study->here];
+    const cost_shot *here = &study->measured.shots[study->measured.here];
     const char *each = study->frames > 1 ? "a frame in batches" : "an image";
     char ms[64], percent[48], sure[48];
-    cost_append(study->summary, sizeof study->summary, "This scene: ");
-    cost_append(study->summary, sizeof study->summary, "%s %s",
+    cost_append(study->judged.summary, sizeof study->judged.summary, "This scene: ");
+    cost_append(study->judged.summary, sizeof study->judged.summary, "%s %s",
                 cost_ms(here->price_ms, here->uncertainty_ms, ms, sizeof ms), each);
     if (here->wall_now_ms > BUSY * here->price_ms)
-        cost_append(study->summary, sizeof study->summary,
+        cost_append(study->judged.summary, sizeof study->judged.summary,
                     " by processor time (%s on the wall, on this machine as it is now)",
                     cost_ms(here->wall_now_ms, 0, ms, sizeof ms));
-    if (!isnan(here->total_rms)) cost_append(study->summary, sizeof study->summary, ", ");
+    if (!isnan(here->total_rms)) cost_append(study->judged.summary, sizeof study->judged.summary, ", ");
     if (!isnan(
             here->total_rms)) /* a best image that is known less well than its distance gives a lower bound */
-        cost_append(study->summary, sizeof study->summary, "%s%s off",
-                    study->reference_error <= here->total_rms ? "" : "at least ",
+        cost_append(study->judged.summary, sizeof study->judged.summary, "%s%s off",
+                    study->judged.reference_error <= here->total_rms ? "" : "at least ",
                     cost_percent(here->total_rms, percent, sizeof percent));
-    if (study->reference_error > 0.1 * here->total_rms && study->reference_error <= here->total_rms)
-        cost_append(study->summary, sizeof study->summary, " (+- %s)",
-                    cost_percent(study->reference_error, sure, sizeof sure));
-    cost_append(study->summary, sizeof study->summary, ".");
+    if (study->judged.reference_error > 0.1 * here->total_rms &&
+        study->judged.reference_error <= here->total_rms)
+        cost_append(study->judged.summary, sizeof study->judged.summary, " (+- %s)",
+                    cost_percent(study->judged.reference_error, sure, sizeof sure));
+    cost_append(study->judged.summary, sizeof study->judged.summary, ".");
 }
 
 /* What it costs to unite components, which the scene asks for, and what images would be without. */
 static void price_union(cost_study *study) {
-    const cost_shot *here = &study->shots[study->here];
-    const int32_t apart = cost_repair(study, &study->own) - COST_UNITE;
+    const cost_shot *here = &study->measured.shots[study->measured.here];
+    const int32_t apart = cost_repair(study, &study->subject.own) - COST_UNITE;
     char ms[64], percent[48];
-    for (int i = 0; study->has_shells && i < study->count; i++) {
-        const cost_point *point = &study->points[i];
+    for (int i = 0; study->subject.has_shells && i < study->measured.count; i++) {
+        const cost_point *point = &study->measured.points[i];
         if (point->reference != COST_OF_REPAIR || point->setting.repair != apart || point->shot < 0) continue;
-        const cost_shot *without = &study->shots[point->shot];
-        cost_append(study->summary, sizeof study->summary,
+        const cost_shot *without = &study->measured.shots[point->shot];
+        cost_append(study->judged.summary, sizeof study->judged.summary,
                     " The union of components takes %s of it; without it the image differs by up to %s.",
                     cost_ms(here->price_ms - without->price_ms,
                             hypot(here->uncertainty_ms, without->uncertainty_ms), ms, sizeof ms),
@@ -226,11 +232,11 @@ static void price_union(cost_study *study) {
 
 /* What linear values between cells change, and what they take. */
 static void price_between(cost_study *study) {
-    const cost_between *between = &study->between;
+    const cost_between *between = &study->measured.between;
     char cells[64], linear[64], percent[48];
     if (!between->is_known) return;
     cost_append(
-        study->summary, sizeof study->summary,
+        study->judged.summary, sizeof study->judged.summary,
         " Linear values between the cells of volumes take %s instead of %s, and change the image by up to %s.",
         cost_ms(between->ms[1], between->uncertainty_ms[1], linear, sizeof linear),
         cost_ms(between->ms[0], between->uncertainty_ms[0], cells, sizeof cells),
@@ -238,26 +244,27 @@ static void price_between(cost_study *study) {
 }
 
 void cost_summarise(cost_study *study) {
-    const cost_shot *here = &study->shots[study->here];
+    const cost_shot *here = &study->measured.shots[study->measured.here];
     char percent[48];
-    study->buy = choose_buy(study);
-    study->saving = choose_saving(study);
-    if (study->buy >= 0 && study->shots[study->buy].price_ms < here->price_ms)
-        study->saving = -1; /* it saves time as well */
+    study->judged.buy = choose_buy(study);
+    study->judged.saving = choose_saving(study);
+    if (study->judged.buy >= 0 && study->measured.shots[study->judged.buy].price_ms < here->price_ms)
+        study->judged.saving = -1; /* it saves time as well */
     state_here(study);
     price_union(study);
     price_between(study);
     name_largest(study);
     name_scatter(study);
-    if (study->noise > 10 * here->total_rms) {
-        cost_append(study->summary, sizeof study->summary,
+    if (study->subject.noise > 10 * here->total_rms) {
+        cost_append(study->judged.summary, sizeof study->judged.summary,
                     " The scene's noise is %s, so nothing needs to be bought.",
-                    cost_percent(study->noise, percent, sizeof percent));
-        study->buy = -1;
+                    cost_percent(study->subject.noise, percent, sizeof percent));
+        study->judged.buy = -1;
     }
-    if (study->buy >= 0)
-        add_change(study, "Best buy", study->buy);
-    else if (!(study->noise > 10 * here->total_rms) && study->shot_count > 1)
-        cost_append(study->summary, sizeof study->summary, " No setting that was measured errs less.");
-    if (study->saving >= 0) add_change(study, "To save time", study->saving);
+    if (study->judged.buy >= 0)
+        add_change(study, "Best buy", study->judged.buy);
+    else if (!(study->subject.noise > 10 * here->total_rms) && study->measured.shot_count > 1)
+        cost_append(study->judged.summary, sizeof study->judged.summary,
+                    " No setting that was measured errs less.");
+    if (study->judged.saving >= 0) add_change(study, "To save time", study->judged.saving);
 }

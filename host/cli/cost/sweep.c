@@ -20,11 +20,11 @@ static double making_ms(const cost_study *study, const cost_setting *setting) {
 
 /* What measuring a point takes, with its reference if that is not made yet. */
 static double effort_ms(const cost_study *study, const cost_point *point) {
-    const cost_reference *reference = &study->references[point->reference];
+    const cost_reference *reference = &study->measured.references[point->reference];
     const double phases = point->reference == COST_OF_BREATH ? COST_PHASES : 1;
     double ms = phases * cost_effort_ms(study, &point->setting);
     if (!reference->image)
-        ms += study->plan_ms + cost_estimate_ms(study, &reference->setting) +
+        ms += study->measured.plan_ms + cost_estimate_ms(study, &reference->setting) +
               making_ms(study, &reference->setting);
     return ms + making_ms(study, &point->setting);
 }
@@ -32,8 +32,8 @@ static double effort_ms(const cost_study *study, const cost_point *point) {
 /* The next point to measure: the smallest priority, then the least effort. -1: none is left. */
 static int next_point(const cost_study *study) {
     int next = -1;
-    for (int i = 0; i < study->count; i++) {
-        const cost_point *a = &study->points[i], *b = &study->points[next < 0 ? 0 : next];
+    for (int i = 0; i < study->measured.count; i++) {
+        const cost_point *a = &study->measured.points[i], *b = &study->measured.points[next < 0 ? 0 : next];
         if (a->state != COST_PLANNED) continue;
         if (next < 0 || a->priority < b->priority ||
             (a->priority == b->priority && effort_ms(study, a) < effort_ms(study, b)))
@@ -45,16 +45,17 @@ static int next_point(const cost_study *study) {
 /* Time left: that of the planned points, or the given time if they need more. */
 static void forecast(const cost_study *study, int64_t done) {
     double ms = 0;
-    for (int i = 0; i < study->count; i++)
-        if (study->points[i].state == COST_PLANNED) ms += effort_ms(study, &study->points[i]);
-    cli_progress_forecast("measuring settings", done, study->count,
+    for (int i = 0; i < study->measured.count; i++)
+        if (study->measured.points[i].state == COST_PLANNED)
+            ms += effort_ms(study, &study->measured.points[i]);
+    cli_progress_forecast("measuring settings", done, study->measured.count,
                           fmin(ms / SWEPT, fmax(cost_left_ms(study, 1), 0)));
 }
 
 static int measure_all(cost_study *study, double *image) {
     int exit_status = CLI_DONE, index;
     for (int64_t done = 0; exit_status == CLI_DONE && (index = next_point(study)) >= 0; done++) {
-        cost_point *point = &study->points[index];
+        cost_point *point = &study->measured.points[index];
         forecast(study, done);
         if (point->priority > 0 && effort_ms(study, point) > cost_left_ms(study, SWEPT)) {
             point->state = COST_LEFT_OUT;
@@ -69,18 +70,20 @@ static int measure_all(cost_study *study, double *image) {
 /* Removes the points that were not measured. The others stay in the order of their work. */
 static void drop_unmeasured(cost_study *study) {
     int kept = 0;
-    study->planned = study->count;
-    for (int i = 0; i < study->count; i++)
-        if (study->points[i].state == COST_MEASURED) study->points[kept++] = study->points[i];
-    study->count = kept;
+    study->planned = study->measured.count;
+    for (int i = 0; i < study->measured.count; i++)
+        if (study->measured.points[i].state == COST_MEASURED)
+            study->measured.points[kept++] = study->measured.points[i];
+    study->measured.count = kept;
 }
 
 /* The scene as it is: its image and its time, from which those of the others are estimated. */
 static int look_at_own(cost_study *study, double *image) {
-    skg_status status = cost_shoot(study, &study->own, image, &study->here);
+    skg_status status = cost_shoot(study, &study->subject.own, image, &study->measured.here);
     if (SKG_FAILED(status)) return cli_fail(status);
-    study->pass_ms = study->shots[study->here].wall_now_ms / cost_passes(&study->own);
-    study->plan_ms = study->shots[study->here].plan_ms;
+    study->measured.pass_ms =
+        study->measured.shots[study->measured.here].wall_now_ms / cost_passes(&study->subject.own);
+    study->measured.plan_ms = study->measured.shots[study->measured.here].plan_ms;
     return CLI_DONE;
 }
 
@@ -90,11 +93,11 @@ static int find_noise(cost_study *study, const double *image) {
     if (!options->noise && !(options->electronic_kev > 0)) return CLI_DONE;
     double *noisy = calloc((size_t)study->pixels, sizeof *noisy), squares = 0;
     if (!noisy) return cli_error(CLI_DEVICE, "out of host memory for the image");
-    study->noisy = 1;
-    skg_status status = cost_image(study, &study->own, noisy, NULL);
-    study->noisy = 0;
+    study->subject.noisy = 1;
+    skg_status status = cost_image(study, &study->subject.own, noisy, NULL);
+    study->subject.noisy = 0;
     for (int64_t i = 0; i < study->pixels; i++) squares += (noisy[i] - image[i]) * (noisy[i] - image[i]);
-    study->noise = sqrt(squares / (double)study->pixels) / study->flat_field;
+    study->subject.noise = sqrt(squares / (double)study->pixels) / study->subject.flat_field;
     free(noisy);
     return SKG_FAILED(status) ? cli_fail(status) : CLI_DONE;
 }
@@ -103,8 +106,8 @@ static int find_noise(cost_study *study, const double *image) {
  * bins, because the best ones take ten times longer; what those change is added, from images with the scene's own samples.
  * own: the scene's image. */
 static int make_best(cost_study *study, const double *own) {
-    cost_reference *best = &study->references[COST_OF_ALL];
-    const cost_reference *rays = &study->references[COST_OF_RAYS];
+    cost_reference *best = &study->measured.references[COST_OF_ALL];
+    const cost_reference *rays = &study->measured.references[COST_OF_RAYS];
     best->setting =
         cost_best_of_all(study, fmin(ALL * cost_patience_ms(study), LEFT * cost_left_ms(study, 1)));
     const int exit_status = cost_make_reference(study, COST_OF_ALL);
@@ -118,11 +121,11 @@ static int make_best(cost_study *study, const double *own) {
 
 /* The references that everything is compared with. own: the scene's image. */
 static int make_first_references(cost_study *study, const double *own) {
-    cost_setting best = study->own;
+    cost_setting best = study->subject.own;
     best.tolerance = 0;
-    best.bins = study->finest;
+    best.bins = study->subject.finest;
     best.precision = study->session.device.double_precision ? SKG_PRECISION_DOUBLE : SKG_PRECISION_SINGLE;
-    study->references[COST_OF_RAYS].setting = best;
+    study->measured.references[COST_OF_RAYS].setting = best;
     const int exit_status = cost_make_reference(study, COST_OF_RAYS);
     return exit_status == CLI_DONE ? make_best(study, own) : exit_status;
 }

@@ -56,10 +56,10 @@ static int is_this_thorax(cost_study *study, int64_t triangles) {
     skg_thorax_part_init(&generated);
     skg_part_init(&part);
     const double begun = cli_now_ms();
-    if (make_thorax(study->thorax_is_simple, triangles, &thorax) == SKG_OK)
+    if (make_thorax(study->subject.thorax_is_simple, triangles, &thorax) == SKG_OK)
         skg_thorax_part_count(thorax, &parts);
-    study->thorax_ms = cli_now_ms() - begun;
-    study->thorax_made = triangles;
+    study->subject.thorax_ms = cli_now_ms() - begun;
+    study->subject.thorax_made = triangles;
     for (int64_t i = 0; i < parts; i++)
         same += skg_thorax_part_get(thorax, i, &generated) == SKG_OK &&
                 skg_scene_part_find(study->session.scene, generated.label, &id) == SKG_OK &&
@@ -89,20 +89,20 @@ int cost_may_be_thorax(cost_study *study) {
     int64_t id = 0;
     if (skg_scene_part_find(study->session.scene, "common bile duct", &id) != SKG_OK)
         return 0; /* most scenes end here, without generating a thorax */
-    study->thorax_is_simple = skg_scene_part_find(study->session.scene, "muscle", &id) != SKG_OK;
+    study->subject.thorax_is_simple = skg_scene_part_find(study->session.scene, "muscle", &id) != SKG_OK;
     return 1;
 }
 
 int cost_is_thorax(cost_study *study) {
     int64_t usual =
         COARSEST_TRIANGLES; /* the scene's total is some per cent above N, and bounds differ with N */
-    while (usual < FINEST_TRIANGLES && 3 * usual < 2 * study->triangles) usual *= 2;
-    return is_this_thorax(study, usual) || is_this_thorax(study, study->triangles);
+    while (usual < FINEST_TRIANGLES && 3 * usual < 2 * study->subject.triangles) usual *= 2;
+    return is_this_thorax(study, usual) || is_this_thorax(study, study->subject.triangles);
 }
 
 skg_status cost_make_thorax(const cost_study *study, cost_meshing *meshing) {
     skg_thorax *thorax = NULL;
-    skg_status status = make_thorax(study->thorax_is_simple, meshing->thorax, &thorax);
+    skg_status status = make_thorax(study->subject.thorax_is_simple, meshing->thorax, &thorax);
     if (status == SKG_OK) status = skg_scene_create(NULL, &meshing->scene);
     if (status == SKG_OK) status = take_thorax(study, thorax, meshing->scene);
     if (status == SKG_OK) status = cost_count_triangles(meshing->scene, &meshing->triangles);
@@ -113,8 +113,8 @@ skg_status cost_make_thorax(const cost_study *study, cost_meshing *meshing) {
 
 double cost_making_ms(const cost_study *study, const cost_meshing *meshing) {
     if (meshing->scene || !meshing->thorax) return 0;
-    return study->thorax_ms * (FIXED_TRIANGLES + (double)meshing->thorax) /
-           (FIXED_TRIANGLES + (double)study->thorax_made);
+    return study->subject.thorax_ms * (FIXED_TRIANGLES + (double)meshing->thorax) /
+           (FIXED_TRIANGLES + (double)study->subject.thorax_made);
 }
 
 void cost_list_thorax(cost_study *study) {

@@ -6,6 +6,7 @@
 #include "common/args.h"
 
 #include <jansson.h>
+#include <skiagraph/breathing.h>
 #include <skiagraph/skiagraph.h>
 
 typedef struct {

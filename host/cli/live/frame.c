@@ -138,8 +138,7 @@ int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *
     frame.pose_parts = list.parts;
     frame.poses = list.poses;
     if (is_listed && status == SKG_OK) status = watch_scatter(scene, wish, hub, &frame);
-    if (is_listed && status == SKG_OK)
-        status = skg_plan_outputs_submit(plan, 1, &frame, output_count, outputs, &job);
+    if (is_listed && status == SKG_OK) status = skg_plan_submit(plan, 1, &frame, output_count, outputs, &job);
     if (job) status = wait_for(&job, hub, scene->frame_ms, dropped);
     if (status == SKG_ERR_CANCELLED && frame.progress) *dropped = 1;
     if (status == SKG_ERR_CANCELLED && *dropped) status = SKG_OK;

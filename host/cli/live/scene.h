@@ -6,6 +6,8 @@
 #include "register/work.h"
 #include "session/session.h"
 
+#include <skiagraph/breathing.h>
+
 /* The scene file and what the command line changes in it. */
 typedef struct {
     const cli_arguments *arguments;

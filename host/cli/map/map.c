@@ -4,6 +4,8 @@
 #include "common/say.h"
 #include "map/surface_png.h"
 
+#include <skiagraph/breathing.h>
+
 #include <math.h>
 #include <stdio.h>
 

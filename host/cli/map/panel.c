@@ -3,6 +3,8 @@
 
 #include "common/say.h"
 
+#include <skiagraph/breathing.h>
+
 #include <math.h>
 #include <stdlib.h>
 

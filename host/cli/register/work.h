@@ -4,6 +4,8 @@
 
 #include "session/session.h"
 
+#include <skiagraph/registration.h>
+
 #include <jansson.h>
 
 /* A radiograph as its flags name it. */

@@ -7,6 +7,8 @@
 #include "scan/stack.h"
 #include "verbs/verbs.h"
 
+#include <skiagraph/scanning.h>
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -5,6 +5,9 @@
 #include "scan/ranks.h"
 #include "session/session.h"
 
+#include <skiagraph/breathing.h>
+#include <skiagraph/scanning.h>
+
 typedef struct {
     cli_ranks ranks;
     cli_session session;

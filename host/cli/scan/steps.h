@@ -4,6 +4,8 @@
 
 #include "scan/state.h"
 
+#include <skiagraph/scanning.h>
+
 int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a);
 
 /* Opens the session, makes plan and motion, and opens the output. */

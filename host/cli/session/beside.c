@@ -51,7 +51,7 @@ skg_status cli_beside_frame(skg_plan *plan, const skg_output *output, const void
         outputs[count].kind = rows[i].kind;
         outputs[count++].data = beside->planes[i];
     }
-    const skg_status status = skg_plan_outputs_submit(plan, 1, NULL, count, outputs, &job);
+    const skg_status status = skg_plan_submit(plan, 1, NULL, count, outputs, &job);
     return status == SKG_OK ? skg_job_wait(&job) : status;
 }
 

@@ -8,6 +8,8 @@
 #include "common/values.h"
 #include "map/map.h"
 
+#include <skiagraph/breathing.h>
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

@@ -7,6 +7,8 @@
 #include "session/explain.h"
 #include "session/session.h"
 
+#include <skiagraph/scanning.h>
+
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>

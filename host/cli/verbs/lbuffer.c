@@ -19,7 +19,7 @@ static skg_status one_buffer(skg_plan *plan, const skg_output *output, const voi
     lengths.kind = SKG_OUTPUT_LENGTHS;
     lengths.part = wanted->part;
     lengths.lengths = wanted->kind;
-    skg_status status = skg_plan_submit(plan, 1, &frame, &lengths, &job);
+    skg_status status = skg_plan_submit(plan, 1, &frame, 1, &lengths, &job);
     return status == SKG_OK ? skg_job_wait(&job) : status;
 }
 

@@ -7,6 +7,8 @@
 #include "common/progress.h"
 #include "common/say.h"
 
+#include <skiagraph/breathing.h>
+
 #include <inttypes.h>
 #include <stdio.h>
 

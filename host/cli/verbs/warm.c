@@ -30,7 +30,7 @@ static skg_status draw(skg_plan *plan, skg_output *output) {
     if (status != SKG_OK && status != SKG_RANGE) return status;
     skg_output lengths = *output;
     lengths.kind = SKG_OUTPUT_LENGTHS;
-    status = skg_plan_submit(plan, 1, &frame, &lengths, &job);
+    status = skg_plan_submit(plan, 1, &frame, 1, &lengths, &job);
     if (status == SKG_OK) status = skg_job_wait(&job);
     return status == SKG_RANGE ? SKG_OK : status;
 }

@@ -6,6 +6,8 @@
 #include "session/sensitivity.h"
 #include "session/session.h"
 
+#include <skiagraph/breathing.h>
+
 #include <stddef.h>
 
 /* Where the things of a 3D view are: for its caption, its labels and --json. */

@@ -53,7 +53,7 @@ int view_make_image(view_work *w) {
     if (exit_status != CLI_DONE) return exit_status;
     output.data = w->values;
     skg_status status = w->motion ? skg_motion_fill(w->motion, &frame) : SKG_OK;
-    if (status == SKG_OK) status = skg_plan_submit(w->plan, 1, &frame, &output, &job);
+    if (status == SKG_OK) status = skg_plan_submit(w->plan, 1, &frame, 1, &output, &job);
     if (job) status = skg_job_wait(&job);
     if (status != SKG_OK && status != SKG_RANGE) return cli_fail(status);
     if (is_first) exit_status = find_window(w);

@@ -1,5 +1,6 @@
 /** @file
- * Breathing: includes breath.h, thorax.h and body.h.
+ * Breathing: a body that breathes, the thorax that is made by numbers, the motion of a scene, distances between meshes, and the fit
+ * of a body to a patient. Includes the headers of these.
  *
  * @since 0.1.0 */
 #ifndef SKIAGRAPH_BREATHING_H
@@ -7,6 +8,9 @@
 
 #include <skiagraph/body.h>
 #include <skiagraph/breath.h>
+#include <skiagraph/distance.h>
+#include <skiagraph/fit.h>
+#include <skiagraph/motion.h>
 #include <skiagraph/thorax.h>
 
 #endif

@@ -1,6 +1,6 @@
 /** @file
- * Skiagraph: X-ray images of triangle meshes on any OpenCL device. This header includes all others except
- * opencl.h.
+ * Skiagraph: X-ray images of triangle meshes on any OpenCL device. This header includes all that makes them. What moves a scene,
+ * scans it or finds a body in radiographs is included by name: breathing.h, scanning.h, registration.h; and so is opencl.h.
  *
  * Objects are handles. skg_X_create_... makes one, skg_X_retain adds an owner and skg_X_release removes one;
  * handles without a retain function have one owner. Results come last and by pointer. Lengths are in mm,
@@ -18,37 +18,23 @@
 #include <skiagraph/beam.h>
 #include <skiagraph/blur.h>
 #include <skiagraph/bodies.h>
-#include <skiagraph/body.h>
-#include <skiagraph/breath.h>
 #include <skiagraph/collimation.h>
 #include <skiagraph/context.h>
 #include <skiagraph/counting.h>
-#include <skiagraph/distance.h>
 #include <skiagraph/dose.h>
 #include <skiagraph/error.h>
-#include <skiagraph/fit.h>
 #include <skiagraph/image.h>
 #include <skiagraph/material.h>
 #include <skiagraph/memory.h>
 #include <skiagraph/mesh.h>
-#include <skiagraph/motion.h>
 #include <skiagraph/part_table.h>
 #include <skiagraph/plan.h>
 #include <skiagraph/progress.h>
-#include <skiagraph/readout.h>
-#include <skiagraph/reconstruct.h>
-#include <skiagraph/registration.h>
-#include <skiagraph/scan.h>
-#include <skiagraph/scan_dose.h>
-#include <skiagraph/scan_file.h>
-#include <skiagraph/scan_reader.h>
-#include <skiagraph/scan_run.h>
 #include <skiagraph/scatter.h>
 #include <skiagraph/scene.h>
 #include <skiagraph/scene_picture.h>
 #include <skiagraph/setup.h>
 #include <skiagraph/source.h>
-#include <skiagraph/thorax.h>
 #include <skiagraph/types.h>
 #include <skiagraph/version.h>
 #include <skiagraph/volume.h>

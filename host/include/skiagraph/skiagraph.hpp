@@ -10,6 +10,9 @@
 #error "skiagraph.hpp needs C++20: give -std=c++20 to gcc or clang; skiagraph.h works with every C++"
 #endif
 
+#include <skiagraph/breathing.h>
+#include <skiagraph/registration.h>
+#include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>
 
 #include <cstddef>
@@ -222,7 +225,7 @@ job submit(const plan &by, std::span<const skg_frame> frames, std::span<Pixel> i
     skg_job *submitted = nullptr;
     const skg_output output = detail::dense(images.data(), detail::type_of(images.data()));
     const skg_status status =
-        skg_plan_submit(by, static_cast<std::int64_t>(frames.size()), frames.data(), &output, &submitted);
+        skg_plan_submit(by, static_cast<std::int64_t>(frames.size()), frames.data(), 1, &output, &submitted);
     return detail::started(status, submitted);
 }
 
@@ -230,8 +233,8 @@ job submit(const plan &by, std::span<const skg_frame> frames, std::span<Pixel> i
 inline job submit(const plan &by, std::span<const skg_frame> frames, std::span<const skg_output> outputs) {
     skg_job *submitted = nullptr;
     const skg_status status =
-        skg_plan_outputs_submit(by, static_cast<std::int64_t>(frames.size()), frames.data(),
-                                static_cast<std::int64_t>(outputs.size()), outputs.data(), &submitted);
+        skg_plan_submit(by, static_cast<std::int64_t>(frames.size()), frames.data(),
+                        static_cast<std::int64_t>(outputs.size()), outputs.data(), &submitted);
     return detail::started(status, submitted);
 }
 
@@ -252,7 +255,7 @@ skg_status lengths(const plan &by, std::int64_t part, std::span<Pixel> to,
     output.kind = SKG_OUTPUT_LENGTHS;
     output.part = part;
     output.lengths = kind;
-    const skg_status status = skg_plan_submit(by, 1, nullptr, &output, &submitted);
+    const skg_status status = skg_plan_submit(by, 1, nullptr, 1, &output, &submitted);
     return detail::started(status, submitted).wait();
 }
 
@@ -264,8 +267,7 @@ template <class Pixel> skg_status scatter(const plan &by, std::span<Pixel> to, s
                             detail::dense(sigma.data(), detail::type_of(sigma.data()))};
     outputs[0].kind = SKG_OUTPUT_SCATTER;
     outputs[1].kind = SKG_OUTPUT_SCATTER_SIGMA;
-    const skg_status status =
-        skg_plan_outputs_submit(by, 1, nullptr, sigma.empty() ? 1 : 2, outputs, &submitted);
+    const skg_status status = skg_plan_submit(by, 1, nullptr, sigma.empty() ? 1 : 2, outputs, &submitted);
     return detail::started(status, submitted).wait();
 }
 
@@ -278,8 +280,7 @@ skg_status noise(const plan &by, std::span<Pixel> mean, std::span<Pixel> varianc
                             detail::dense(variance.data(), detail::type_of(variance.data()))};
     outputs[0].kind = SKG_OUTPUT_MEAN;
     outputs[1].kind = SKG_OUTPUT_VARIANCE;
-    const skg_status status =
-        skg_plan_outputs_submit(by, 1, nullptr, variance.empty() ? 1 : 2, outputs, &submitted);
+    const skg_status status = skg_plan_submit(by, 1, nullptr, variance.empty() ? 1 : 2, outputs, &submitted);
     return detail::started(status, submitted).wait();
 }
 

@@ -41,7 +41,7 @@ static skg_status render(skg_plan *plan, const skg_frame *frame, int32_t type, v
     skg_output_init(&output);
     output.type = type;
     output.data = image;
-    SKG_TRY(skg_plan_submit(plan, 1, frame, &output, &job));
+    SKG_TRY(skg_plan_submit(plan, 1, frame, 1, &output, &job));
     return skg_job_wait(&job);
 }
 

@@ -87,7 +87,8 @@ static skg_status submit_job(const skg_scan_work *work, skg_scan_slot *slot, int
     skg_output_init(&output);
     output.type = work->options.type;
     output.data = (char *)slot->images + first * work->image_elements * skg_element_bytes(output.type);
-    SKG_TRY(skg_plan_submit(work->plan, count, slot->frames + first, &output, &slot->jobs[slot->job_count]));
+    SKG_TRY(
+        skg_plan_submit(work->plan, count, slot->frames + first, 1, &output, &slot->jobs[slot->job_count]));
     slot->job_count++;
     return SKG_OK;
 }

@@ -156,26 +156,20 @@ typedef struct {
 
 SKG_INIT(skg_output)
 
-/** Starts frames with one output.
+/** Starts frames: an image of each, or several outputs, such as an image and the lengths through some of the parts. Each output is
+ * rendered by itself, and is bit for bit that of a job of its own.
  *
- *     count    number of frames, at least 1; the plan splits them into batches that fit the device's memory
- *     frames   [count]; NULL: each as plan and scene stand
- *     output   what is computed, and where it goes
- *     job      result; skg_job_wait waits for it and releases it
- *     errors   SKG_ERR_MESH with part and vertex if a vertex is not finite; SKG_ERR_SCENE, SKG_ERR_ARGUMENT
- *     stale    SKG_STALE, and nothing is started, if the scene changed in a way that the plan cannot absorb:
- *              a part was added or put elsewhere, a mesh has other triangles, a material lies outside what
- *              was verified; or if a frame's view is one that skg_plan_view_set refuses so */
-SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
-                                   const skg_output *output, skg_job **job);
-
-/** Starts frames with several outputs, such as an image and the lengths through some of the parts; otherwise as
- * skg_plan_submit. Each output is rendered by itself, and is bit for bit that of a job of its own.
- *
+ *     count          number of frames, at least 1; the plan splits them into batches that fit the device's memory
+ *     frames         [count]; NULL: each as plan and scene stand
  *     output_count   number of outputs, at least 1
- *     outputs        [output_count]; their memory must not overlap */
-SKG_API skg_status skg_plan_outputs_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
-                                           int64_t output_count, const skg_output *outputs, skg_job **job);
+ *     outputs        [output_count] what is computed, and where it goes; their memory must not overlap
+ *     job            result; skg_job_wait waits for it and releases it
+ *     errors         SKG_ERR_MESH with part and vertex if a vertex is not finite; SKG_ERR_SCENE, SKG_ERR_ARGUMENT
+ *     stale          SKG_STALE, and nothing is started, if the scene changed in a way that the plan cannot absorb:
+ *                    a part was added or put elsewhere, a mesh has other triangles, a material lies outside what
+ *                    was verified; or if a frame's view is one that skg_plan_view_set refuses so */
+SKG_API skg_status skg_plan_submit(skg_plan *plan, int64_t count, const skg_frame *frames,
+                                   int64_t output_count, const skg_output *outputs, skg_job **job);
 
 /** Asks whether a job is finished, without waiting.
  *

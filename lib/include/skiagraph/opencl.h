@@ -26,7 +26,7 @@ extern "C" {
 SKG_API skg_status skg_context_create_cl(cl_context cl, cl_device_id device, cl_command_queue queue,
                                          skg_context **context);
 
-/** Starts frames behind the caller's events; otherwise as skg_plan_outputs_submit. Nothing is waited for. An output whose
+/** Starts frames behind the caller's events; otherwise as skg_plan_submit. Nothing is waited for. An output whose
  * buffer is a cl_mem stays on the device.
  *
  *     waits       number of events in wait_list

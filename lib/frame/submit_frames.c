@@ -1,81 +1,35 @@
-/* Frames of jobs: given to the device, all at once or one after another, long ones in steps. */
+/* Submits the frames of a job: gives them to the device, all at once or one after another, long ones in steps. */
 #include "frame/jobs.h"
 
 #include "frame/frames.h"
-#include "frame/given.h"
 #include "plan/decisions.h"
 
-#include <inttypes.h>
 #include <limits.h>
 
-/* --- one frame */
+/* --- steps */
 
-skg_status skg_frame_render_output(skg_job *job, const skg_frame_output *output, int64_t index,
-                                   skg_frame_work *work) {
-    const int is_length = output->to.kind == SKG_OUTPUT_LENGTHS;
-    const skg_view *view = &job->recipe->view;
-    work->part = output->to.part;
-    work->kind = is_length ? output->to.lengths : output->to.component;
-    work->shows = output->to.kind;
-    work->reuses = output->to.kind == SKG_OUTPUT_MEAN || output->to.kind == SKG_OUTPUT_VARIANCE;
-    SKG_TRY(skg_frame_output_place(output, view, job->machine, index, &work->place));
-    SKG_TRY(skg_frame_render(job, work));
-    if (work->step + 1 < skg_frame_steps(job->recipe, output->to.kind, work->each)) return SKG_OK;
-    if (work->end && *work->end) clReleaseEvent(*work->end);
-    if (work->end) *work->end = NULL;
-    return skg_frame_output_read_back(output, view, job->machine, index, &job->staging.log, work->end);
-}
-
-/* Enqueues a step of a frame, or all its outputs. What is reported of a frame is that of its last output: images come last. */
-static skg_status render_frame(skg_job *job, int64_t index, int64_t step, skg_frame_work *work) {
-    work->each = job->each;
-    for (int images = 0; images < 2; images++)
-        for (int64_t o = 0; o < job->output_count; o++) {
-            const int32_t kind = job->outputs[o].to.kind;
-            if ((kind == SKG_OUTPUT_IMAGE) != images) continue;
-            const int64_t steps = skg_frame_steps(job->recipe, kind, job->each);
-            work->step = job->each ? step : 0;
-            if (!job->each || (step >= 0 && step < steps))
-                SKG_TRY(skg_frame_render_output(job, &job->outputs[o], index, work));
-            step -= steps;
-        }
-    return SKG_OK;
-}
-
-/* What became of a job that was cancelled. */
-static skg_status fail_cancelled(const skg_job *job) {
-    return skg_fail(SKG_ERR_CANCELLED,
-                    "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place",
-                    job->enqueued / job->steps, job->count);
-}
-
-const skg_job_kind skg_job_images = {.step = render_frame, .cancelled = fail_cancelled};
-
-/* The next step, of a frame that is drawn by itself. */
-static skg_status submit_alone(skg_job *job, const skg_frame *frames, const double **poses, int64_t end) {
-    const int64_t index = job->enqueued / job->steps;
-    skg_view view;
-    skg_frame frame;
-    skg_frame_work work = {.view = &view, .poses = poses, .frame = &frame};
-    SKG_TRY(skg_held_frame_read(job, frames, index, &frame, &view, poses, &work.noise));
-    if (job->enqueued % job->steps == 0 &&
-        !job->kind->begin) /* what came before was projected for the first step, too */
-        skg_geometry_begin_frame(&job->machine->geometry, index, 0);
-    return skg_submit_step(job, end, &work);
-}
-
-/* Enqueues steps until number `end`. */
+/* Enqueues steps until number `end`: of small frames as many as one launch draws, else one after another. */
 static skg_status submit_steps(skg_job *job, const skg_frame *frames, int64_t end) {
     const double **poses = NULL;
     skg_status status = SKG_OK;
+    skg_view view;
+    skg_frame frame;
     if (job->enqueued >= end) return SKG_OK;
     SKG_TRY(skg_alloc(job->recipe->scene->count, sizeof *poses, "poses", &poses));
-    while (status == SKG_OK && job->enqueued < end && !skg_job_is_cancelled(job)) {
+    while (job->enqueued < end && !skg_job_is_cancelled(job)) {
+        const int64_t index = job->enqueued / job->steps;
         int64_t submitted = 0;
-        if (job->together) status = skg_together_submit(job, frames, poses, end, &submitted);
-        if (submitted == 0 && job->enqueued == 0) job->together = 0; /* nor will others be */
-        if (status == SKG_OK && submitted == 0) status = submit_alone(job, frames, poses, end);
+        if (job->together) SKG_TRY_CLEANUP(skg_submit_together(job, frames, poses, end, &submitted));
+        if (submitted > 0) continue;
+        if (job->enqueued == 0) job->together = 0; /* nor will others be */
+        skg_frame_work work = {.view = &view, .poses = poses, .frame = &frame};
+        SKG_TRY_CLEANUP(skg_held_frame_read(job, frames, index, &frame, &view, poses, &work.noise));
+        if (job->enqueued % job->steps == 0 &&
+            !job->kind->begin) /* what came before was projected for the first step, too */
+            skg_geometry_begin_frame(&job->machine->geometry, index, 0);
+        SKG_TRY_CLEANUP(skg_job_step(job, end, &work));
     }
+cleanup:
     skg_free(&poses);
     return status;
 }
@@ -216,7 +170,7 @@ static skg_status begin(skg_job *job, const skg_frame *frames) {
     return status;
 }
 
-skg_status skg_frames_submit(skg_job **made, const skg_frame *frames, int at_once) {
+skg_status skg_submit_frames(skg_job **made, const skg_frame *frames, int at_once) {
     skg_job *job = *made;
     skg_status status = SKG_OK;
     const int begins = job->kind->begin != NULL, is_whole = !begins && (at_once || !is_for_later(job));

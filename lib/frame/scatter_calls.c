@@ -1,8 +1,8 @@
-/* Scatter of a series of frames: the public calls. */
+/* The public calls about scatter: that of a series of frames, and what a plan is to expect of it. */
+#include "core/clock.h"
 #include "core/text.h"
 #include "device/device.h"
 #include "frame/frames.h"
-#include "frame/given.h"
 #include "frame/plans.h"
 
 #include <inttypes.h>
@@ -122,4 +122,57 @@ skg_status skg_scatter_series_report_get(const skg_scatter_series *series,
     skg_scatter_series_report ours = series->report;
     ours.size = sizeof ours;
     return skg_struct_write(&ours, sizeof ours, "skg_scatter_series_report", report);
+}
+
+/* --- a prediction */
+
+/* A skg_scatter_render, by a plan of its own. user: the caller's plan */
+static skg_status render(void *user, const skg_view *view, const skg_plan_options *options,
+                         skg_scatter_rendering *r) {
+    const skg_plan *plan = user;
+    const skg_recipe *recipe = plan->recipe;
+    skg_plan *made = NULL;
+    skg_job *job = NULL;
+    skg_channel channel;
+    skg_output outputs[2];
+    skg_status status = SKG_OK;
+    skg_channel_init(&channel);
+    for (int k = 0; k < 2; k++) {
+        skg_output_init(&outputs[k]);
+        outputs[k].data = k ? r->scatter : r->image;
+    }
+    outputs[1].kind = SKG_OUTPUT_SCATTER;
+    SKG_TRY_CLEANUP(skg_plan_create(plan->context, recipe->scene, view, recipe->spectrum, options, &made));
+    SKG_TRY_CLEANUP(skg_plan_channel_get(made, 0, &channel));
+    r->open = channel.flat_field;
+    SKG_TRY_CLEANUP(skg_plan_submit(made, 1, NULL, 2, outputs, &job));
+    status = skg_job_wait(&job);
+cleanup:
+    skg_plan_release(&made);
+    /* Path lengths outside the verified range matter to no ratio. */
+    return status == SKG_RANGE ? SKG_OK : status;
+}
+
+/* What the caller was told of the scene is not told again. */
+static skg_status predict_silently(skg_plan *plan, skg_scatter_prediction *prediction) {
+    SKG_PLAIN;
+    SKG_NEEDS_OF("skg_plan_scatter_predict", plan);
+    SKG_NEEDS_OF("skg_plan_scatter_predict", prediction);
+    SKG_TRY(skg_context_enter(plan->context));
+    SKG_TRY(skg_plan_renew(plan));
+    const skg_logger logger = plan->context->log;
+    const double begun = skg_seconds();
+    skg_scatter_prediction ours = {
+        .size = sizeof ours, .grid_primary = 1, .grid_scatter = 1, .grid_total = 1};
+    plan->context->log = (skg_logger){0};
+    const skg_status status = skg_scatter_predict(plan->recipe, render, plan, &ours);
+    plan->context->log = logger;
+    if (status != SKG_OK) return status;
+    ours.seconds = skg_seconds() - begun;
+    return skg_struct_write(&ours, sizeof ours, "skg_scatter_prediction", prediction);
+}
+
+skg_status skg_plan_scatter_predict(skg_plan *plan, skg_scatter_prediction *prediction) {
+    const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
+    return skg_call_end(begun, predict_silently(plan, prediction));
 }
