@@ -44,7 +44,7 @@ def write(path: str | os.PathLike[str], image: NDArray[Any], *, name: str, unit:
     try:
         import pydicom
         from pydicom.dataset import FileMetaDataset
-        from pydicom.uid import ExplicitVRLittleEndian, generate_uid
+        from pydicom.uid import UID, ExplicitVRLittleEndian, generate_uid
     except ImportError as failure:
         raise ArgumentError(f"{where}: writing it needs the package pydicom (pip install pydicom)") from failure
     if image.ndim != 2:
@@ -74,7 +74,7 @@ def write(path: str | os.PathLike[str], image: NDArray[Any], *, name: str, unit:
     data.PixelData = stored.tobytes()
     data.file_meta = FileMetaDataset()
     data.file_meta.TransferSyntaxUID = ExplicitVRLittleEndian
-    data.file_meta.MediaStorageSOPClassUID, data.file_meta.MediaStorageSOPInstanceUID = _CR, data.SOPInstanceUID
+    data.file_meta.MediaStorageSOPClassUID, data.file_meta.MediaStorageSOPInstanceUID = UID(_CR), data.SOPInstanceUID
     data.is_little_endian, data.is_implicit_VR = True, False
     _replace(where, data)
 
