@@ -1,5 +1,4 @@
-/* Reads a volume from a folder of DICOM slices of one series, in the order of their places. Python reads such folders by the same rules
- * (python/skiagraph/_dicom_series.py). */
+/* Reads a volume from a folder of DICOM slices of one series, in the order of their places. */
 #include "core/files.h"
 #include "core/maths.h"
 #include "image/dicom_slice.h"

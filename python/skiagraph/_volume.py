@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from . import _arrays, _dicom_series
 from ._device import warn
-from ._interface import ENUMS, ArgumentError
+from ._interface import ENUMS, ArgumentError, Error, UnsupportedError
 from ._library import call, encode, ffi, filled, make, struct, text
 from .material import Material, as_material
 
@@ -42,6 +42,32 @@ def _cells(array: Any) -> NDArray[Any]:
     return np.ascontiguousarray(cells)
 
 
+def _load(path: pathlib.Path, source: Any) -> Any:
+    """A volume from a file, or from a folder of DICOM slices, which pydicom expands where the library does not and it is there."""
+    def load(name: str) -> Any:
+        return make("skg_volume_load", "skg_volume", encode(name, "array"), 0.0, source)
+    try:
+        return load(os.fspath(path))
+    except UnsupportedError:
+        if not path.is_dir():
+            raise
+        try:
+            with _dicom_series.expanded(path) as folder:
+                try:
+                    return load(folder)
+                except Error as failure:
+                    raise type(failure)(str(failure).replace(folder, os.fspath(path))) from None
+        except ImportError:
+            pass
+        raise
+
+
+def _digest(path: pathlib.Path) -> str:
+    """Of a file, or of all files in a folder."""
+    files = sorted(entry for entry in path.iterdir() if entry.is_file()) if path.is_dir() else [path]
+    return hashlib.sha256(b"".join(hashlib.sha256(file.read_bytes()).digest() for file in files)).hexdigest()
+
+
 def make_volume(label: str, array: Any, affine: Any, values: str, material: Material | str | None,
                 classes: Sequence[tuple[float, Material | str]] | None, interpolation: str) -> tuple[Any, list[Any]]:
     """A volume, which the caller releases, and what its hash is made of."""
@@ -62,15 +88,7 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     if isinstance(array, (str, os.PathLike)):
         if affine is not None:
             raise ArgumentError("affine is given beside a file, which says where its cells are; leave it out, or give pose")
-        if pathlib.Path(array).is_dir():
-            folder = pathlib.Path(array)
-            array, affine, no_hounsfield = _dicom_series.read(folder)
-            if no_hounsfield and source.values == _VALUES["hu"]:
-                warn(f"{label}: {folder}: its {no_hounsfield}, and its numbers are taken as Hounsfield numbers; give a CT image, or say "
-                     "what they are (density, mu)")
-    if isinstance(array, (str, os.PathLike)):
-        return (make("skg_volume_load", "skg_volume", encode(os.fspath(array), "array"), 0.0, source),
-                [values, interpolation, of_all or "", rows, hashlib.sha256(pathlib.Path(array).read_bytes()).hexdigest()])
+        return _load(pathlib.Path(array), source), [values, interpolation, of_all or "", rows, _digest(pathlib.Path(array))]
     if hasattr(array, "GetDirection") and affine is None:
         array, affine = _of_image(array)
     if affine is None:

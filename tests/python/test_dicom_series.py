@@ -1,7 +1,8 @@
-"""CT images from folders of DICOM slices, written here by pydicom: read by pydicom, and by the library as a scene file names them."""
+"""CT images from folders of DICOM slices, written here by pydicom, and read by the library."""
 import json
 import pickle
 import subprocess
+import sys
 import warnings
 
 import numpy as np
@@ -69,9 +70,23 @@ def scene_of_file(folder):
 both = pytest.mark.parametrize("reading", [scene_of, scene_of_file])
 
 
-def same(folder):
-    """The same cells in the same place whoever reads them."""
-    ours, theirs = (reading(folder) for reading in (scene_of_file, scene_of))
+def by_pydicom(folder):
+    """Cells and affine as pydicom reads the slices."""
+    slices = [pydicom.dcmread(path) for path in folder.glob("*.dcm")]
+    slices.sort(key=lambda data: float(np.array(data.ImagePositionPatient, float) @ TURN[:, 2]))
+    cells = np.stack([data.pixel_array * float(data.RescaleSlope) + float(data.RescaleIntercept) for data in slices])
+    places = np.array([data.ImagePositionPatient for data in slices], float)
+    turns, (down, right) = np.array(slices[0].ImageOrientationPatient, float), np.array(slices[0].PixelSpacing, float)
+    affine = np.eye(4)
+    affine[:3, :3] = np.column_stack([turns[:3] * right, turns[3:] * down, (places[-1] - places[0]) / (len(places) - 1)])
+    affine[:3, 3] = places[0]
+    whole = (cells == np.rint(cells)).all() and abs(cells).max() < 32768
+    return cells.astype(np.int16 if whole else np.float32), affine
+
+
+def same(folder, reading=scene_of_file):
+    """The same cells in the same place as pydicom has them."""
+    ours, theirs = reading(folder), scene_of(*by_pydicom(folder))
     for key in ("columns", "rows", "slices", "bits", "low", "high", "beyond", "classes"):
         assert ours["ct"].volume[key] == theirs["ct"].volume[key], key
     np.testing.assert_allclose(ours["ct"].volume["affine"], theirs["ct"].volume["affine"], rtol=0, atol=1e-12)  # roundings of 30 mm
@@ -165,11 +180,20 @@ def test_numbers_of_another_kind_are_warned_of(tmp_path, reading, more, says):
     assert len(found) == (says is not None) and all(says in text for text in found)
 
 
-def test_what_the_library_does_not_expand_is_named(tmp_path):
-    """Compressed pixels; and files that end early, wherever that is, end no process."""
+def test_what_the_library_does_not_expand_pydicom_does(tmp_path, monkeypatch):
     write(tmp_path, compressed=True)
     with pytest.raises(sk.Error, match="compressed .1.2.840.10008.1.2.5.; expand them"):
         scene_of_file(tmp_path)
+    same(tmp_path, scene_of)
+    (tmp_path / "3.dcm").unlink()
+    with pytest.raises(sk.Error, match=f"{tmp_path}: 6 mm lie between"):
+        scene_of(tmp_path)
+    monkeypatch.setitem(sys.modules, "pydicom", None)
+    with pytest.raises(sk.Error, match="compressed .1.2.840.10008.1.2.5.; expand them"):
+        scene_of(tmp_path)
+
+
+def test_files_that_end_early_end_no_process(tmp_path):
     write(tmp_path, IconImageSequence=Sequence([nested(2)]))
     path = tmp_path / "0.dcm"
     whole, failed = path.read_bytes(), 0
