@@ -221,7 +221,7 @@ START_TEST(test_ghosts_fade) {
     ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, half, 1, frame));
     const double left = 1 - 0.04 * (1 - exp(-EXPOSED / 20.0)) * exp(-DARK / 20.0) +
                         0.01 * (1 - exp(-EXPOSED / 3.0)) * exp(-DARK / 3.0);
-    ck_assert_double_eq_tol(frame[0], 40 * left, 1e-12 * 40);
+    ck_assert_double_eq_tol(frame[0], 40 * left, 1e-12 * 40); /* as above */
     ck_assert_double_eq(frame[1], 40);
     ck_skg(skg_lag_clear(lag));
     ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, half, 1, frame));
