@@ -1,7 +1,6 @@
 """Scenes: parts, source and detector, and their images."""
 from __future__ import annotations
 
-import html
 import os
 from collections.abc import Iterator, Mapping, Sequence
 from types import TracebackType
@@ -513,15 +512,11 @@ class Scene(_gradient.Differentiable):
     def __repr__(self) -> str:
         if self._state.setup == ffi.NULL:
             return "<Scene, closed>"
-        name, view = self._state.source.path or "scene", self._state.view
+        name, view = os.path.basename(self._state.source.path or "scene"), self._state.view
         return f"<Scene {name}: {len(self)} parts, {'no view' if view is None else repr(view)}>"
 
     def _repr_html_(self) -> str:
-        rows = "".join(f"<tr><td>{html.escape(p.label)}</td><td>{html.escape(p.material.name)}</td>"
-                       f"<td>{p.density:g}</td><td>{html.escape(p.inside or '')}</td>"
-                       f"<td>{p.mesh.health['triangles']}</td></tr>" for p in self)
-        return (f"<p>{html.escape(repr(self))}</p><table><tr><th>part</th><th>material</th><th>g/cm3</th>"
-                f"<th>inside</th><th>triangles</th></tr>{rows}</table>")
+        return _show.summary(self)
 
 
 def state_of(scene: Scene) -> State:

@@ -1,8 +1,11 @@
 """Scenes and their parts: reading, changing, failing, breathing."""
+import base64
 import json
 import pathlib
+import re
 import shutil
 import warnings
+import zlib
 
 import numpy as np
 import pytest
@@ -148,7 +151,24 @@ def test_a_plan_explains_itself(scene):
     assert dict(report)["energies"] == [(60, 1000)]
     assert 0 < report["precision_bound"] < 1e-3 and f"rounding at most {report['precision_bound']:.2g}" in str(report)
     assert report["channels"][0]["unit"] == "keV per pixel"
-    assert "<td>ball</td>" in scene._repr_html_()
+
+
+def test_a_cell_shows_the_picture_first_and_folds_a_long_table(scene):
+    shown = scene._repr_html_()
+    assert shown.startswith("<img") and "<td>ball</td>" in shown and "<details>" not in shown
+    pixels = base64.b64decode(re.search('base64,([^"]*)"', shown).group(1))
+    assert pixels.startswith(b"\x89PNG")
+    body = pixels[pixels.index(b"IDAT") + 4:pixels.index(b"IEND") - 8]
+    lines = np.frombuffer(zlib.decompress(body), np.uint8).reshape(420, 1 + 3 * 640)
+    assert (lines[:, 0] == 0).all() and (lines[:, 1:].reshape(420, 640, 3) == scene.picture((640, 420))).all()
+    for number in range(13 - len(scene)):
+        scene.add(f"crumb {number}", sk.Mesh.cube(0.1), material="Water", pose=sk.translate(0, 0, 200 + number))
+    seen, folded = scene._repr_html_().split("<details>")
+    assert seen.count("<tr>") == 1 + 12 and folded.count("<tr>") == 1 + 1 and "<summary>1 more<" in folded
+    bare = sk.Scene()
+    assert bare._repr_html_().startswith("<p>") and "<table>" in bare._repr_html_()
+    bare.close()
+    assert "closed" in bare._repr_html_()
 
 
 def test_overlaps_have_labels(scene):
