@@ -45,6 +45,7 @@ sphinx_gallery_conf = {
     "filename_pattern": "/plot_",
     "ignore_pattern": r"figure\.py",
     "download_all_examples": False,
+    "thumbnail_size": (320, 320),
     "within_subsection_order": "FileNameSortKey",
     "show_signature": False,
     "capture_repr": (),

@@ -17,3 +17,18 @@ pictures, _ = row(3, 4, 4)
 show(pictures[0], clean, pixel_at(scene.view), "the breast", "-ln(I/I0)", limits=(1.5, 3.2))
 show(pictures[1], clean[part], pixel_at(scene.view), "a part, without noise", "-ln(I/I0)", limits=(2.7, 3.2))
 show(pictures[2], noisy[part], pixel_at(scene.view), "with quantum noise", "-ln(I/I0)", limits=(2.7, 3.2))
+
+# %%
+# The compressed breast under its tube, to turn with the mouse: ``scene.show()``.
+#
+# .. raw:: html
+#
+#    <iframe class="live" src="../turn-mammography.html?bare" title="The compressed breast under its tube; drag to turn it" loading="lazy"></iframe>
+
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-mammography.png'
+# sphinx_gallery_start_ignore
+from figure import card, turning
+
+card("mammography", clean, limits=(1.5, 3.2), middle=(0.45, 0), side=0.75)
+turning("mammography", scene)
+# sphinx_gallery_end_ignore

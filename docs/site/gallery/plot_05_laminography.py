@@ -17,7 +17,7 @@ s, c = np.sin(np.radians(35)), np.cos(np.radians(35))  # the beam is 55 degrees 
 scene.view = sk.View(source=(0, -150 * c, -150 * s), detector=(0, 150 * c, 150 * s), column_step=(0.25, 0, 0),
                      row_step=(0, -0.25 * s, 0.25 * c), pixels=(400, 320))
 scene.beam = sk.Beam.tube(70, filters={"Al": 2})
-scan = sk.Scan(scene.view, 90, axis="z")
+scan = scene.trajectory = sk.Scan(scene.view, 90, axis="z")
 projections = scene.images("attenuation", views=scan)
 
 
@@ -41,3 +41,18 @@ pictures, _ = row(3, 4, 3.6)
 show(pictures[0], projections[0], 0.125, "one projection", "-ln(I/I0)")
 for axes, z, name in zip(pictures[1:], (1, -1), ("the upper layer", "the lower layer")):
     show(axes, layer(z), 0.1, name, "mean of -ln(I/I0)")
+
+# %%
+# The board and its two layers, to turn with the mouse: ``scene.show()``.
+#
+# .. raw:: html
+#
+#    <iframe class="live" src="../turn-laminography.html?bare" title="The board and its two layers; drag to turn it" loading="lazy"></iframe>
+
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-laminography.png'
+# sphinx_gallery_start_ignore
+from figure import card, turning
+
+card("laminography", layer(1), side=0.9)
+turning("laminography", scene)
+# sphinx_gallery_end_ignore

@@ -22,3 +22,18 @@ for axes, image, name in zip(pictures, bands, ("15 to 33 keV", "33 to 50 keV", "
     show(axes, image, pixel_at(scene.view), name, "-ln(N/N0)", limits=(0, 4))
 inside = np.where(bands[0] > 0.5, bands[0], np.nan)  # elsewhere the ratio is that of noise
 show(pictures[3], bands[1] / inside, pixel_at(scene.view), "second over first", "ratio", cmap="magma", limits=(0.5, 1.1))
+
+# %%
+# The phantom of bone and iodine, to turn with the mouse: ``scene.show()``.
+#
+# .. raw:: html
+#
+#    <iframe class="live" src="../turn-counting.html?bare" title="The phantom of bone and iodine; drag to turn it" loading="lazy"></iframe>
+
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-counting.png'
+# sphinx_gallery_start_ignore
+from figure import card, turning
+
+card("counting", bands[1] / inside, cmap="magma", limits=(0.5, 1.1), middle=(0.5, 0.9))
+turning("counting", scene)
+# sphinx_gallery_end_ignore

@@ -21,3 +21,9 @@ whole = flat(False, False)
 pictures, _ = row(3, 4, 3.4)
 for axes, heel, grid, name in zip(pictures, (1, 0, 1), (0, 1, 1), ("heel effect", "grid out of focus", "both")):
     show(axes, 100 * flat(heel, grid) / whole.max(), 2, name, "% of the open beam's maximum", cmap="viridis")
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-heel.png'
+# sphinx_gallery_start_ignore
+from figure import card
+
+card("heel", flat(True, True), cmap="viridis")
+# sphinx_gallery_end_ignore

@@ -30,3 +30,9 @@ curve.plot(frequency[1:], mtf[1:] ** 2 / dqe[1:], "--", label="MTF$^2$ / DQE as 
 curve.set_xlabel("line pairs per mm")
 curve.set_ylabel("noise power x photons")
 curve.legend()
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-dqe.png'
+# sphinx_gallery_start_ignore
+from figure import card
+
+card("dqe", frames[0], side=0.5)
+# sphinx_gallery_end_ignore

@@ -21,3 +21,9 @@ for k in range(12):
 show(axes, frames[0], pixel_at(scene.view), "a breath of 4 s", "-ln(I/I0)", limits=(0, 6))
 film = ArtistAnimation(made, [[axes.imshow(f, cmap="gray", vmin=0, vmax=6, animated=True)] for f in frames], interval=333)
 plt.show()
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-breathing.png'
+# sphinx_gallery_start_ignore
+from figure import card
+
+card("breathing", frames[6], limits=(0, 6), middle=(0.62, 0.4), side=0.55)
+# sphinx_gallery_end_ignore

@@ -27,3 +27,18 @@ pictures, _ = row(5, 3, 2.6)
 for axes, (label, channel) in zip(pictures, lengths.items()):
     show(axes, channel, pixel_at(scene.view), label, "mm", cmap="viridis")
 show(pictures[4], batch[20], pixel_at(scene.view), "the image", "-ln(I/I0)")
+
+# %%
+# The limb and its screw, to turn with the mouse: ``scene.show()``.
+#
+# .. raw:: html
+#
+#    <iframe class="live" src="../turn-network.html?bare" title="The limb and its screw; drag to turn it" loading="lazy"></iframe>
+
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-network.png'
+# sphinx_gallery_start_ignore
+from figure import card, turning
+
+card("network", lengths["bone"], cmap="viridis", side=0.8)
+turning("network", scene)
+# sphinx_gallery_end_ignore

@@ -18,3 +18,9 @@ slices = sk.reconstruct(scene.trajectory, projections, size=(216, 216, 1), voxel
 (image, volume), _ = row(2, 5, 4)
 show(image, projections[0], pixel_at(scene.view), "a projection", "-ln(I/I0)")
 show(volume, slices[0], 0.14, "the middle slice", "1/cm")
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-foam.png'
+# sphinx_gallery_start_ignore
+from figure import card
+
+card("foam", slices[0], side=0.6)
+# sphinx_gallery_end_ignore

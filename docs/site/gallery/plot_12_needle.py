@@ -24,3 +24,18 @@ change = scene.derivative({"poses": {"needle": np.r_[across, 0, 0, 0]}}, quantit
 show(image, scene.image("attenuation"), pixel_at(scene.view), "bile duct with contrast, needle", "-ln(I/I0)")
 limit = np.percentile(abs(change), 99.8)
 show(derivative, change, pixel_at(scene.view), "moved across its axis", "change per mm", cmap="RdBu_r", limits=(-limit, limit))
+
+# %%
+# The liver, the duct and the needle, to turn with the mouse: ``scene.show()``.
+#
+# .. raw:: html
+#
+#    <iframe class="live" src="../turn-needle.html?bare" title="The liver, the duct and the needle; drag to turn it" loading="lazy"></iframe>
+
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-needle.png'
+# sphinx_gallery_start_ignore
+from figure import card, turning
+
+card("needle", change, cmap="RdBu_r", limits=(-limit, limit), middle=(0.6, 0.42), side=0.4)
+turning("needle", scene)
+# sphinx_gallery_end_ignore

@@ -31,4 +31,11 @@ for axes, title in ((grey, "one process"), (coloured, "the first 24 projections,
     axes.set_ylabel("degrees")
 colours = np.array([[0.9, 0.4, 0.2], [0.2, 0.6, 0.9], [0.3, 0.8, 0.4], [0.9, 0.8, 0.2]])
 part = (whole[:24] / whole.max()).clip(0, 1)
-coloured.imshow(part[..., None] * colours[np.arange(24) % RANKS][:, None], aspect="auto", extent=(-48, 48, 48, 0), interpolation="nearest")
+part = part[..., None] * colours[np.arange(24) % RANKS][:, None]
+coloured.imshow(part, aspect="auto", extent=(-48, 48, 48, 0), interpolation="nearest")
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-ranks.png'
+# sphinx_gallery_start_ignore
+from figure import card
+
+card("ranks", np.repeat(255 * part, 8, axis=0).astype(np.uint8))
+# sphinx_gallery_end_ignore

@@ -19,3 +19,18 @@ print(f"scatter over primary {found['ratio']:.2f}, standard error {100 * found['
 pictures, _ = row(3, 4.2, 3.6)
 for axes, image, name in zip(pictures, (primary, found["image"], found["total"]), ("primary", "scatter", "both")):
     show(axes, image, pixel_at(scene.view), name, "keV per pixel")
+
+# %%
+# The water, the bone and the field, to turn with the mouse: ``scene.show()``.
+#
+# .. raw:: html
+#
+#    <iframe class="live" src="../turn-scatter.html?bare" title="The water, the bone and the field; drag to turn it" loading="lazy"></iframe>
+
+# sphinx_gallery_thumbnail_path = 'gallery-scripts/card-scatter.png'
+# sphinx_gallery_start_ignore
+from figure import card, turning
+
+card("scatter", found["image"], cmap="magma")
+turning("scatter", scene)
+# sphinx_gallery_end_ignore
