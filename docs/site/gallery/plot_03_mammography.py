@@ -14,9 +14,12 @@ clean, noisy = (scene.image("attenuation", noise=noise) for noise in (False, Tru
 rows, columns = clean.shape
 part = np.s_[int(0.36 * rows):int(0.52 * rows), int(0.02 * columns):int(0.32 * columns)]
 pictures, _ = row(3, 4, 4)
-show(pictures[0], clean, pixel_at(scene.view), "the breast", "-ln(I/I0)", limits=(1.5, 3.2))
-show(pictures[1], clean[part], pixel_at(scene.view), "a part, without noise", "-ln(I/I0)", limits=(2.7, 3.2))
-show(pictures[2], noisy[part], pixel_at(scene.view), "with quantum noise", "-ln(I/I0)", limits=(2.7, 3.2))
+show(pictures[0], clean, pixel_at(scene.view), "the breast", "-ln(I/I0)",
+     limits=(1.5, 3.2))
+show(pictures[1], clean[part], pixel_at(scene.view), "a part, without noise",
+     "-ln(I/I0)", limits=(2.7, 3.2))
+show(pictures[2], noisy[part], pixel_at(scene.view), "with quantum noise", "-ln(I/I0)",
+     limits=(2.7, 3.2))
 
 # %%
 # The compressed breast under its tube, to turn with the mouse: ``scene.show()``.

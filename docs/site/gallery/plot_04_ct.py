@@ -12,14 +12,17 @@ from figure import row, show
 scene = sk.Scene()
 scene.add("water", sk.Mesh.cylinder(40, 30, 96), material="water")
 for x in (-18, 18):
-    scene.add(f"pin {x}", sk.Mesh.cylinder(3, 20, 48), material="Ti", inside="water", pose=sk.translate(x, 0, 0))
-scene.view = sk.View(source=(0, -400, 0), detector=(0, 200, 0), column_step=(1, 0, 0), row_step=(0, 0, -1), pixels=(160, 5))
+    scene.add(f"pin {x}", sk.Mesh.cylinder(3, 20, 48), material="Ti", inside="water",
+              pose=sk.translate(x, 0, 0))
+scene.view = sk.View(source=(0, -400, 0), detector=(0, 200, 0), column_step=(1, 0, 0),
+                     row_step=(0, 0, -1), pixels=(160, 5))
 scene.trajectory = sk.Scan(scene.view, 360)
 
 
 def volume(beam):
     scene.beam = beam
-    return sk.reconstruct(scene.trajectory, scene.scan(quantity="attenuation"), size=(192, 192, 1), voxel=0.5, filter="hann")[0]
+    return sk.reconstruct(scene.trajectory, scene.scan(quantity="attenuation"),
+                          size=(192, 192, 1), voxel=0.5, filter="hann")[0]
 
 
 tube, one = volume(sk.Beam.tube(80, filters={"Al": 3})), volume(sk.Beam.mono(50, 1000))

@@ -10,12 +10,17 @@ import skiagraph as sk
 from figure import row, show
 
 scene = sk.Scene()
-scene.add("board", sk.Mesh.cuboid(40, 40, 3), material=sk.Material.formula("C5H8O2", 1.2))
-scene.add("star", sk.Mesh.star(12, 2, 12, 0.2), material="Cu", inside="board", pose=sk.translate(0, 0, 1))
-scene.add("lines", sk.Mesh.line_pairs([0.25, 0.5, 1], 4, 14, 0.2), material="Cu", inside="board", pose=sk.translate(0, 0, -1))
-s, c = np.sin(np.radians(35)), np.cos(np.radians(35))  # the beam is 55 degrees from the normal
-scene.view = sk.View(source=(0, -150 * c, -150 * s), detector=(0, 150 * c, 150 * s), column_step=(0.25, 0, 0),
-                     row_step=(0, -0.25 * s, 0.25 * c), pixels=(400, 320))
+scene.add("board", sk.Mesh.cuboid(40, 40, 3),
+          material=sk.Material.formula("C5H8O2", 1.2))
+scene.add("star", sk.Mesh.star(12, 2, 12, 0.2), material="Cu", inside="board",
+          pose=sk.translate(0, 0, 1))
+scene.add("lines", sk.Mesh.line_pairs([0.25, 0.5, 1], 4, 14, 0.2), material="Cu",
+          inside="board", pose=sk.translate(0, 0, -1))
+# The beam is 55 degrees from the normal.
+s, c = np.sin(np.radians(35)), np.cos(np.radians(35))
+scene.view = sk.View(source=(0, -150 * c, -150 * s), detector=(0, 150 * c, 150 * s),
+                     column_step=(0.25, 0, 0), row_step=(0, -0.25 * s, 0.25 * c),
+                     pixels=(400, 320))
 scene.beam = sk.Beam.tube(70, filters={"Al": 2})
 scan = scene.trajectory = sk.Scan(scene.view, 90, axis="z")
 projections = scene.images("attenuation", views=scan)
@@ -30,10 +35,13 @@ def layer(z, side=30, voxel=0.1):
     for view, image in zip(scan, projections):
         normal = np.cross(view.column_step, view.row_step)
         rays = points - view.source
-        hits = rays * ((normal @ (view.detector - view.source)) / (rays @ normal))[..., None] + view.source - view.detector
-        column = hits @ view.column_step / (view.column_step @ view.column_step) + (view.pixels[0] - 1) / 2
-        line = hits @ view.row_step / (view.row_step @ view.row_step) + (view.pixels[1] - 1) / 2
-        found += image[np.rint(line).astype(int).clip(0, view.pixels[1] - 1), np.rint(column).astype(int).clip(0, view.pixels[0] - 1)]
+        way = (normal @ (view.detector - view.source)) / (rays @ normal)
+        hits = rays * way[..., None] + view.source - view.detector
+        indices = []
+        for step, count in zip((view.row_step, view.column_step), image.shape):
+            index = np.rint(hits @ step / (step @ step) + (count - 1) / 2)
+            indices.append(index.astype(int).clip(0, count - 1))
+        found += image[tuple(indices)]
     return found / len(scan)
 
 

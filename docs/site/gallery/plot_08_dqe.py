@@ -9,17 +9,24 @@ import numpy as np
 import skiagraph as sk
 from figure import row, show
 
-DQE, MTF = [[0, 0.7], [1, 0.6], [2, 0.45], [5, 0.2]], [[0, 1], [1, 0.8], [2, 0.55], [5, 0.2]]
+DQE = [[0, 0.7], [1, 0.6], [2, 0.45], [5, 0.2]]
+MTF = [[0, 1], [1, 0.8], [2, 0.55], [5, 0.2]]
 STEP, PHOTONS, N = 0.2, 2000, 128  # mm, of a pixel, pixels
-scene = sk.Scene({"Source": {"Position": [0, 0, -1000, "mm"], "Shape": "ParallelBeam", "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": PHOTONS}]},
-                  "Detector": {"Position": [0, 0, 0, "mm"], "UpVector": [0, 1, 0], "NumberOfPixels": [N, N], "Spacing": [STEP, STEP, "mm"],
-                               "MTF": MTF, "DQE": DQE, "EnergyResponse": {"LUT": [[10, 10, 1, 1], [100, 100, 1, 1]]}},
-                  "Samples": [{"Label": "crumb", "Cube": [0.001, "mm"], "Material": "Air", "Transform": [["Translation", 0, 0, -500, "mm"]]}],
-                  "Noise": True})
+scene = sk.Scene({
+    "Source": {"Position": [0, 0, -1000, "mm"], "Shape": "ParallelBeam",
+               "Beam": [{"Energy": 60, "Unit": "keV", "PhotonCount": PHOTONS}]},
+    "Detector": {"Position": [0, 0, 0, "mm"], "UpVector": [0, 1, 0],
+                 "NumberOfPixels": [N, N], "Spacing": [STEP, STEP, "mm"],
+                 "MTF": MTF, "DQE": DQE,
+                 "EnergyResponse": {"LUT": [[10, 10, 1, 1], [100, 100, 1, 1]]}},
+    "Samples": [{"Label": "crumb", "Cube": [0.001, "mm"], "Material": "Air",
+                 "Transform": [["Translation", 0, 0, -500, "mm"]]}],
+    "Noise": True})
 frames = np.stack([scene.image("energy", index=k) for k in range(128)])
 # %%
 # The section of the power spectrum along the rows is that of the sums of the columns.
-power = (abs(np.fft.rfft((frames / frames.mean() - 1).sum(axis=1), axis=1)) ** 2).mean(axis=0) / N**2
+sums = (frames / frames.mean() - 1).sum(axis=1)
+power = (abs(np.fft.rfft(sums, axis=1)) ** 2).mean(axis=0) / N**2
 frequency = np.fft.rfftfreq(N, STEP)
 mtf, dqe = (np.interp(frequency, *np.transpose(table)) for table in (MTF, DQE))
 

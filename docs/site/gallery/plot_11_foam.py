@@ -8,8 +8,10 @@ from figure import pixel_at, row, show
 
 scene = sk.Scene()
 scene.add("block", sk.Mesh.cuboid(20, 20, 20), material="Al")
-scene.add("pores", sk.Mesh.foam((19, 19, 19), 0.7, spread=0.2, count=1500, segments=16), material="Air", inside="block")
-scene.view = sk.View(source=(0, -200, 0), detector=(0, 100, 0), column_step=(0.2, 0, 0), row_step=(0, 0, -0.2), pixels=(256, 200))
+scene.add("pores", sk.Mesh.foam((19, 19, 19), 0.7, spread=0.2, count=1500, segments=16),
+          material="Air", inside="block")
+scene.view = sk.View(source=(0, -200, 0), detector=(0, 100, 0), column_step=(0.2, 0, 0),
+                     row_step=(0, 0, -0.2), pixels=(256, 200))
 scene.beam = sk.Beam.mono(60, 1000)
 scene.trajectory = sk.Scan(scene.view, 200)
 projections = scene.scan(quantity="attenuation")

@@ -12,8 +12,10 @@ from figure import row
 RANKS, PROJECTIONS = 4, 180
 scene = sk.Scene()
 scene.add("block", sk.Mesh.cuboid(50, 30, 20), material="water")
-scene.add("rod", sk.Mesh.cylinder(4, 18, 48), material="Al", inside="block", pose=sk.translate(15, 5, 0))
-scene.view = sk.View(source=(0, -400, 0), detector=(0, 100, 0), column_step=(0.5, 0, 0), row_step=(0, 0, -0.5), pixels=(192, 1))
+scene.add("rod", sk.Mesh.cylinder(4, 18, 48), material="Al", inside="block",
+          pose=sk.translate(15, 5, 0))
+scene.view = sk.View(source=(0, -400, 0), detector=(0, 100, 0), column_step=(0.5, 0, 0),
+                     row_step=(0, 0, -0.5), pixels=(192, 1))
 scene.beam = sk.Beam.tube(80, filters={"Al": 3}, mas=0.05)
 scene.trajectory = sk.Scan(scene.view, PROJECTIONS)
 whole = scene.scan(quantity="attenuation", noise=True)[:, 0]
@@ -25,7 +27,8 @@ assert (shared == whole).all()
 
 (grey, coloured), _ = row(2, 5, 4)
 grey.imshow(whole, cmap="gray", aspect="auto", extent=(-48, 48, 360, 0))
-for axes, title in ((grey, "one process"), (coloured, "the first 24 projections, four processes")):
+for axes, title in ((grey, "one process"),
+                    (coloured, "the first 24 projections, four processes")):
     axes.set_title(title, fontsize=10)
     axes.set_xlabel("mm on the detector")
     axes.set_ylabel("degrees")

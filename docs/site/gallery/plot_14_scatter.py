@@ -9,15 +9,19 @@ from figure import pixel_at, row, show
 
 scene = sk.Scene()
 scene.add("water", sk.Mesh.cuboid(200, 200, 200), material="water")
-scene.add("bone", sk.Mesh.cylinder(12, 120, 64), material="Bone, cortical (ICRU-44)", inside="water", pose=sk.rotate("z", 30) @ sk.rotate("x", 90))
-scene.view = sk.View(source=(0, 0, -900), detector=(0, 0, 150), column_step=(1.5, 0, 0), row_step=(0, 1.5, 0), pixels=(140, 140))
+scene.add("bone", sk.Mesh.cylinder(12, 120, 64), material="Bone, cortical (ICRU-44)",
+          inside="water", pose=sk.rotate("z", 30) @ sk.rotate("x", 90))
+scene.view = sk.View(source=(0, 0, -900), detector=(0, 0, 150), column_step=(1.5, 0, 0),
+                     row_step=(0, 1.5, 0), pixels=(140, 140))
 scene.beam = sk.Beam.tube(80, filters={"Al": 3})
 found = scene.scatter(0.02)
 primary = found["total"] - found["image"]
-print(f"scatter over primary {found['ratio']:.2f}, standard error {100 * found['error']:.1f} %, {found['histories']} histories")
+print(f"scatter over primary {found['ratio']:.2f}, "
+      f"standard error {100 * found['error']:.1f} %, {found['histories']} histories")
 
 pictures, _ = row(3, 4.2, 3.6)
-for axes, image, name in zip(pictures, (primary, found["image"], found["total"]), ("primary", "scatter", "both")):
+for axes, image, name in zip(pictures, (primary, found["image"], found["total"]),
+                             ("primary", "scatter", "both")):
     show(axes, image, pixel_at(scene.view), name, "keV per pixel")
 
 # %%
