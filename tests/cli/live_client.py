@@ -16,10 +16,10 @@ HEADER = struct.Struct("<4sIIHHdddfHBB")  # live_header of host/cli/live/frame.h
 class Frame:
     """An image as pages receive it."""
 
-    def __init__(self, data):
+    def __init__(self, data, wanted=b"SKLF"):
         (mark, self.number, self.wish, self.columns, self.rows, self.low, self.step, self.flat, self.ms, self.factor,
          self.quantity, self.notes) = HEADER.unpack_from(data)
-        assert mark == b"SKLF"
+        assert mark == wanted
         self.numbers = struct.unpack_from(f"<{self.columns * self.rows}H", data, HEADER.size)
         assert len(data) == HEADER.size + 2 * self.columns * self.rows
 

@@ -171,6 +171,44 @@ def tape(tried):
     run("typed(byId('cut'), ''); lookAs('start')")
 
 
+def slices(tried):
+    """A slice is reconstructed, says so at once, and stays beside the next one."""
+    browser, run = tried.browser, tried.browser.run
+    sum_of = "(id => sumOf(byId(id).getContext('2d').getImageData(0, 0, 128, 128).data))"
+    check("no slice yet", run("byId('slice-box').hidden"))
+    check("no motion", run("switchOf('motion').disabled && byId('slice-why').textContent.includes('No motion: the scene does not breathe')"),
+          run("byId('slice-why').textContent"))
+    check("as in the scene", run("switchOf('spectrum').checked && !switchOf('noise').checked && !switchOf('scatter').checked"))
+    run("byId('make-tube').click()")
+    tried.still()
+    check("a spectrum", run("!switchOf('spectrum').disabled"))
+    check("computing", run("byId('reconstruct').click(); byId('slice-step').textContent === 'computing' && !byId('reconstruct-stop').hidden"))
+    browser.until("slices.after !== null && !slices.runs")
+    first = run(f"{sum_of}('slice-after')")
+    check("one slice", run("!byId('slice-box').hidden && slices.before === null && byId('slice-before').parentElement.hidden"))
+    check("its words", run("byId('slice-text').textContent.startsWith('4 projections of 80 x 60 pixels; voxels of ')"), run("byId('slice-text').textContent"))
+    for name in ("spectrum", "noise"):
+        run(f"window.last = slices.after; switchOf('{name}').click(); byId('reconstruct').click()")
+        browser.until("slices.after !== window.last && !slices.runs")
+        check("before is the last", run("slices.before === window.last && !byId('slice-before').parentElement.hidden"))
+        check(name, run("String(slices.after.frame.numbers) !== String(slices.before.frame.numbers)"))
+    check("named", run("byId('slice-after').nextElementSibling.textContent") == "after: " + run("number(slices.after.figures.mean_keV, 3)") + " keV, noise",
+          run("byId('slice-after').nextElementSibling.textContent"))
+    was = run(f"{sum_of}('slice-after')")
+    run("typed(byId('slice-high'), 0.1)")
+    check("window", run(f"{sum_of}('slice-after')") not in (was, first) and run("!slices.auto && slices.high === 0.1"))
+    run("byId('slice-auto').click(); byId('slices').click()")
+    check("automatic window", run(f"{sum_of}('slice-after')") == was)
+    check("large", run("byId('slices').offsetWidth > 400"), str(run("byId('slices').offsetWidth")))
+    run("byId('slices').click(); set('Scan.FinalAngle', 90)")
+    tried.still()
+    run("byId('reconstruct').click()")
+    browser.until("byId('slice-step').textContent.includes('needs 180 degrees')")
+    check("refused", run("!slices.runs && slices.after !== null"))
+    run("byId('reset').click()")
+    tried.still()
+
+
 def sinogram(tried):
     """Rows of projections that were seen or asked for."""
     browser, run = tried.browser, tried.browser.run

@@ -12,7 +12,7 @@ from types import SimpleNamespace
 import chromium
 from chromium import Browser
 from live_client import Page, Server
-from live_controls import cut, exposure, presets, sinogram, tape
+from live_controls import cut, exposure, presets, sinogram, slices, tape
 from live_radiograph import radiograph
 from live_test import SCENE, check_same, has_server, image
 from live_tried import Tried, check, failures
@@ -295,7 +295,7 @@ def work(folder, path):
                 for part in (geometry, view, cut, tape):
                     part(tried)
             served(tried)
-            for part in (sinogram, film):
+            for part in (slices, sinogram, film):
                 part(tried)
             shown, scene = cost_and_takes(tried)
             sizes(tried, "live")

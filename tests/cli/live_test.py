@@ -276,6 +276,52 @@ def doses(path):
         assert page.text("dosed")["dosed"] is None
 
 
+def slices(path):
+    """A slice is reconstructed beside the frames; what is newer ends it, and so does the end."""
+    scene = {**SCENE, "Scan": {"NumberOfProjections": 90, "FinalAngle": 360}}
+    scene["Samples"] = [{"Label": "ball", "Sphere": [12, 20, "mm"], "Material": ["mu", 0.2]}]
+    put(path, json.dumps(scene))
+    switches = {"spectrum": True, "noise": False, "scatter": False, "motion": False}
+    water = {"Samples.ball.Material": "Water"}  # of which there is scatter, for seconds
+
+    def middle(page, **changed):
+        """The mean of the middle, and the figures."""
+        page.send({"reconstruct": {**switches, **changed}})
+        assert page.text("reconstructing")
+        data = page.find(lambda m: isinstance(m, bytes) and m[:4] == b"SKLS")
+        its = Frame(data, b"SKLS")
+        return sum(its.value(c, r) for c in range(60, 68) for r in range(60, 68)) / 64, page.text("reconstructed")["reconstructed"]
+
+    with Server(command, path) as server:
+        page = Page(server)
+        without = page.text("scene")["scene"]["without"]
+        assert "one energy" in without["spectrum"] and "breathe" in without["motion"], without
+        page.frame()
+        value, figures = middle(page)
+        assert abs(value - 0.2) < 0.02 * 0.2, value  # of the method with 80 columns
+        assert figures["projections"] == 90 and figures["across"] == "z" and "error" not in figures, figures
+        noisy, figures = middle(page, noise=True)
+        assert noisy != value and figures["noise"] is True
+        frame = page.frame(page.wish(poses={"0": [1, 0, 0, 40, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}))
+        assert frame.wish == 1 and middle(page)[0] < 0.19  # the middle of the box is no longer that of the ball
+        for bad in ({}, {**switches, "noise": 1}, {**switches, "at": "1"}, [], True):
+            page.send({"reconstruct": bad})
+            assert "reconstruct" in page.text("refused")["refused"], bad
+        page.wish(settings={"Scan.FinalAngle": 90})
+        page.send({"reconstruct": switches})
+        assert "180 degrees" in page.text("reconstructed")["reconstructed"]["error"]
+        for newer in (lambda: page.wish(settings={}), lambda: page.send({"reconstruct": None})):
+            page.wish(settings=water)
+            page.send({"reconstruct": {**switches, "scatter": True}})
+            page.text("reconstructing")
+            newer()
+            assert "newer" in page.text("reconstructed")["reconstructed"]["error"]
+        page.wish(settings=water)
+        page.send({"reconstruct": {**switches, "scatter": True}})
+        page.text("reconstructing")
+        assert server.end(60) == 0
+
+
 def answers(path):
     with Server(command, path) as server:
         page = Page(server)
@@ -345,7 +391,7 @@ def errors(path):
 def malformed(path, seconds=4):
     """Messages at random: each gets a sentence, and the server goes on."""
     random.seed(1)
-    good = [{"wish": 1, "settings": {"Tolerance": 0.1}, "poses": {}, "drag": True}, {"ack": 1}, {"probe": [1, 2]}, {"take": "png"}, {"look": LOOK}, {"register": 1}]
+    good = [{"wish": 1, "settings": {"Tolerance": 0.1}, "poses": {}, "drag": True}, {"ack": 1}, {"probe": [1, 2]}, {"take": "png"}, {"look": LOOK}, {"register": 1}, {"reconstruct": None}]
     with Server(command, path) as server:
         page = Page(server)
         page.frame()
@@ -713,7 +759,7 @@ def fails(path):
         assert run.returncode == 4 and "cannot listen" in run.stderr, run
 
 
-TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, lag, doses, answers, looks, fixed, stopped, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
+TESTS = [token_and_origin, hosts, silent, browser, own_files, wishes, bands, lag, doses, slices, answers, looks, fixed, stopped, scatter, interrupted, long_frames, errors, malformed, second_page, one_owner, lost_pages, ends, prints_json, changed_file, fails]
 
 
 def has_server(path):

@@ -8,6 +8,9 @@
 #include <skiagraph/skiagraph.h>
 #include <stddef.h>
 
+/* The least share of the flat field that is told from nothing: less counts as this much, as skg_scan_reader_attenuation_get has it. */
+#define CLI_LEAST_TRANSMISSION 1e-6
+
 /* Refuses an output that is an input, and one that exists in the folder of an input, or below it, and that this command
  * did not write: its files name it. Inputs are the operands and the files of flags. */
 int cli_check_overwrite(const cli_arguments *arguments, const char *path);

@@ -18,4 +18,9 @@ int live_take(const live_base *base, const live_wish *wish, const char *format, 
 /* Measures what each dial costs and changes, and tells the pages each result. Ends when something else is asked for. */
 void live_measure(const live_base *base, const live_scene *scene, const live_wish *wish, live_hub *hub);
 
+/* Reconstructs a slice of the scene as a wish has it, and tells pages how far that is and what came out. Ends when a newer wish or another
+ * slice is asked for. */
+void live_reconstruct(const live_base *base, const live_wish *wish, const live_switches *switches,
+                      live_hub *hub);
+
 #endif

@@ -5,6 +5,7 @@
 #include "common/say.h"
 #include "core/maths.h"
 #include "live/page.h"
+#include "live/slice.h"
 #include "session/explain.h"
 
 #include <math.h>
@@ -107,6 +108,18 @@ static json_t *fixed_json(const register_image *fixed) {
     return object;
 }
 
+static json_t *reason_json(const char *reason) {
+    return reason ? json_string(reason) : json_null();
+}
+
+/* Why switches of a slice change nothing; null: they do. */
+static json_t *without_json(const live_scene *scene) {
+    json_t *object = json_object();
+    json_object_set_new(object, "spectrum", reason_json(live_slice_without_spectrum(scene)));
+    json_object_set_new(object, "motion", reason_json(live_slice_without_motion(scene)));
+    return object;
+}
+
 json_t *live_describe_scene(const live_base *base, live_scene *scene, const live_wish *wish,
                             int64_t geometry) {
     json_t *object = json_object(), *inner = json_object();
@@ -135,6 +148,7 @@ json_t *live_describe_scene(const live_base *base, live_scene *scene, const live
     json_object_set_new(inner, "jaws", jaws_json(scene));
     json_object_set_new(inner, "angles", angles_json(scene));
     json_object_set_new(inner, "fixed", fixed_json(base->fixed));
+    json_object_set_new(inner, "without", without_json(scene));
     json_object_set_new(object, "scene", inner);
     return object;
 }

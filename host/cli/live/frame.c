@@ -90,6 +90,17 @@ int live_frame_poses(const live_scene *scene, const live_wish *wish, double *pos
     return is_made;
 }
 
+int live_frame_place(live_scene *scene, const live_wish *wish, char *sentence) {
+    double *poses = calloc((size_t)scene->parts * 16 + 1, sizeof *poses);
+    if (!poses) return snprintf(sentence, LIVE_SENTENCE, "out of host memory"), 0;
+    int is_made = live_frame_pose(scene, wish, sentence) && live_frame_poses(scene, wish, poses, sentence);
+    for (int64_t i = 0; is_made && i < scene->parts; i++)
+        if (skg_scene_part_pose_set(scene->session.scene, i, poses + 16 * i) != SKG_OK)
+            is_made = fail(sentence);
+    free(poses);
+    return is_made;
+}
+
 /* Waits for the image, and cancels what the device was not given yet when a newer wish comes. */
 static skg_status wait_for(skg_job **job, live_hub *hub, double expected_ms, int *dropped) {
     static const struct timespec pause = {.tv_nsec = 2000000};

@@ -50,6 +50,9 @@ int live_frame_render(const live_scene *scene, const live_wish *wish, skg_plan *
 /* The poses of all parts, [parts][16]. Returns 0 with a sentence. */
 int live_frame_poses(const live_scene *scene, const live_wish *wish, double *poses, char *sentence);
 
+/* Puts the parts of a scene without a plan where the wish has them. Returns 0 with a sentence. */
+int live_frame_place(live_scene *scene, const live_wish *wish, char *sentence);
+
 /* Poses the breath of a wish. */
 int live_frame_pose(live_scene *scene, const live_wish *wish, char *sentence);
 

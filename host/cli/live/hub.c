@@ -220,6 +220,9 @@ static void keep(live_hub *hub, live_message *message) {
     } else if (message->kind == LIVE_REGISTER) {
         waiting->part = message->part;
         waiting->has_register = 1;
+    } else if (message->kind == LIVE_RECONSTRUCT) {
+        waiting->switches = message->switches;
+        waiting->has_reconstruct = 1;
     } else if (waiting->take_count < LIVE_FORMATS) {
         memcpy(waiting->takes[waiting->take_count++], message->take, sizeof message->take);
     }
@@ -272,7 +275,7 @@ char *live_hub_page_get(live_hub *hub) {
 static int has_asked(const live_hub *hub) {
     const live_asked *waiting = &hub->waiting;
     return waiting->has_wish || waiting->has_probe || waiting->has_measure || waiting->has_register ||
-           waiting->take_count > 0;
+           waiting->has_reconstruct || waiting->take_count > 0;
 }
 
 /* The page whose look has waited longest; NULL: there is none. */
@@ -332,6 +335,13 @@ int live_hub_wait(live_hub *hub, double ms, int sees_looks, live_asked *asked) {
 int live_hub_has_news(live_hub *hub) {
     pthread_mutex_lock(&hub->lock);
     const int has = hub->waiting.has_wish;
+    pthread_mutex_unlock(&hub->lock);
+    return has;
+}
+
+int live_hub_has_other_slice(live_hub *hub) {
+    pthread_mutex_lock(&hub->lock);
+    const int has = hub->waiting.has_reconstruct;
     pthread_mutex_unlock(&hub->lock);
     return has;
 }

@@ -38,10 +38,11 @@ char *live_hub_page_get(live_hub *hub);
 
 /* What pages have asked for since the last time; of each kind the newest. */
 typedef struct {
-    int has_wish, has_probe, has_measure, has_register;
+    int has_wish, has_probe, has_measure, has_register, has_reconstruct;
     live_wish wish; /* the caller frees it if has_wish */
     double probe[2];
-    int64_t part; /* to register; -1: what is under way ends */
+    int64_t part;           /* to register; -1: what is under way ends */
+    live_switches switches; /* of the slice to reconstruct */
     char takes[LIVE_FORMATS][8];
     int take_count;
 } live_asked;
@@ -57,6 +58,9 @@ void live_hub_picture(live_hub *hub, int64_t page, unsigned char *bytes, size_t 
 
 /* Whether a newer wish waits. */
 int live_hub_has_news(live_hub *hub);
+
+/* Whether another slice is to be reconstructed, or none. */
+int live_hub_has_other_slice(live_hub *hub);
 
 /* Whether a page could take a frame now; without one, frames need not be made. */
 int live_hub_is_thirsty(live_hub *hub);

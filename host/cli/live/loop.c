@@ -239,6 +239,8 @@ static void answer(live_loop *loop, const live_asked *asked) {
             tell_error(loop, loop->wish.number, sentence);
     }
     if (asked->has_register) answer_register(loop, asked->part);
+    if (asked->has_reconstruct && !asked->switches.is_stop)
+        live_reconstruct(&loop->base, &loop->wish, &asked->switches, loop->hub);
     if (asked->has_measure) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
 }
 

@@ -22,8 +22,7 @@ typedef struct {
     double *poses;
 } arrays;
 
-/* The box of the parts, for the axes and the beam, which stay where they are while parts move. */
-static int find_box(live_scene *scene) {
+int live_picture_box(live_scene *scene, char *sentence) {
     view_places places = {0};
     skg_look look;
     if (scene->has_box) return 1;
@@ -32,7 +31,7 @@ static int find_box(live_scene *scene) {
     memcpy(scene->box, places.low, sizeof places.low);
     memcpy(scene->box + 3, places.high, sizeof places.high);
     free(places.parts);
-    return scene->has_box;
+    return scene->has_box ? 1 : fail(sentence);
 }
 
 /* The colours of the library, and those of the look. */
@@ -70,7 +69,8 @@ static int fill(live_scene *scene, const live_wish *wish, const live_look *asked
         snprintf(sentence, LIVE_SENTENCE, "out of host memory for the 3D view");
         return 0;
     }
-    if (!find_box(scene) || !fill_colours(scene, asked, of->colours)) return fail(sentence);
+    if (!live_picture_box(scene, sentence)) return 0;
+    if (!fill_colours(scene, asked, of->colours)) return fail(sentence);
     if (!live_frame_poses(scene, wish, of->poses, sentence)) return 0;
     if (of->image) fill_image(scene, asked, of->image);
     for (int k = 0; k < 3; k++) of->background[k] = (uint8_t)lround(asked->background[k]);

@@ -19,4 +19,7 @@ typedef struct {
 int live_picture_make(live_scene *scene, const live_wish *wish, const live_look *look, unsigned char **bytes,
                       size_t *size, char *sentence);
 
+/* Finds the box of the parts, for the axes and the beam, which stay where they are while parts move. Returns 0 with a sentence. */
+int live_picture_box(live_scene *scene, char *sentence);
+
 #endif

@@ -74,19 +74,6 @@ static int check_view(const live_registering *r, const skg_view *view, char *sen
     return 0;
 }
 
-/* Puts the parts where the wish has them. */
-static int place_parts(const live_registering *r, live_scene *scene, char *sentence) {
-    double *poses = calloc((size_t)scene->parts * 16 + 1, sizeof *poses);
-    if (!poses) return snprintf(sentence, LIVE_SENTENCE, "out of host memory"), 0;
-    int is_made =
-        live_frame_pose(scene, &r->wish, sentence) && live_frame_poses(scene, &r->wish, poses, sentence);
-    for (int64_t i = 0; is_made && i < scene->parts; i++)
-        if (skg_scene_part_pose_set(scene->session.scene, i, poses + 16 * i) != SKG_OK)
-            is_made = fail(sentence);
-    free(poses);
-    return is_made;
-}
-
 /* What moves the part over the scene file's pose: the motion that was found after that of the wish. */
 static json_t *pose_json(const live_registering *r, const skg_registration *registration) {
     double motion[16], by[16], pose[16];
@@ -126,7 +113,7 @@ static json_t *search(live_registering *r, live_scene *scene, char *sentence) {
     skg_view view;
     json_t *found = NULL;
     if (!live_scene_view(&r->base, scene, &r->wish, &view, sentence) || !check_view(r, &view, sentence) ||
-        !place_parts(r, scene, sentence))
+        !live_frame_place(scene, &r->wish, sentence))
         return NULL;
     skg_registration_options_init(&options);
     options.progress = r->progress;

@@ -199,13 +199,36 @@ static int read_probe(json_t *value, live_message *message, char *sentence) {
     return 1;
 }
 
+static int read_switches(json_t *value, live_switches *switches, char *sentence) {
+    static const char *const names[] = {"spectrum", "noise", "scatter", "motion"};
+    int *const ours[] = {&switches->has_spectrum, &switches->has_noise, &switches->has_scatter,
+                         &switches->has_motion};
+    json_t *at = json_object_get(value, "at");
+    switches->is_stop = json_is_null(value);
+    if (switches->is_stop) return 1;
+    if (!json_is_object(value))
+        return refuse(sentence, "\"reconstruct\" is neither {SWITCH: BOOLEAN} nor null");
+    for (size_t i = 0; i < sizeof names / sizeof *names; i++) {
+        json_t *is_on = json_object_get(value, names[i]);
+        if (!json_is_boolean(is_on))
+            return refuse(sentence, "\"reconstruct\": \"%s\" is neither true nor false", names[i]);
+        *ours[i] = json_is_true(is_on);
+    }
+    switches->at_mm = json_number_value(at);
+    return (!at || json_is_number(at)) && fabs(switches->at_mm) <= 1e6
+               ? 1
+               : refuse(sentence, "\"reconstruct\": \"at\" is no number of mm");
+}
+
 static int read_object(json_t *object, live_message *message, char *sentence) {
-    static const char *const names[] = {"wish", "ack", "probe", "take", "measure", "look", "register"};
+    static const char *const names[] = {"wish",    "ack",  "probe",    "take",
+                                        "measure", "look", "register", "reconstruct"};
     json_t *value = NULL;
     for (message->kind = 0; message->kind < LIVE_KINDS; message->kind++)
         if ((value = json_object_get(object, names[message->kind]))) break;
     if (!value)
-        return refuse(sentence, "a message has the key wish, ack, probe, take, measure, look or register");
+        return refuse(sentence,
+                      "a message has the key wish, ack, probe, take, measure, look, register or reconstruct");
     if (message->kind == LIVE_WISH) return read_wish(object, &message->wish, sentence);
     if (message->kind == LIVE_PROBE) return read_probe(value, message, sentence);
     if (message->kind == LIVE_ACK) {
@@ -214,6 +237,7 @@ static int read_object(json_t *object, live_message *message, char *sentence) {
     }
     if (message->kind == LIVE_MEASURE) return 1;
     if (message->kind == LIVE_LOOK) return live_look_read(value, &message->look, sentence);
+    if (message->kind == LIVE_RECONSTRUCT) return read_switches(value, &message->switches, sentence);
     if (message->kind == LIVE_REGISTER) {
         message->part = json_is_null(value) ? -1 : json_integer_value(value);
         return json_is_null(value) || (json_is_integer(value) && message->part >= 0)

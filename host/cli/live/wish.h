@@ -21,17 +21,36 @@ typedef struct {
     int dragging, plays;                   /* plays: the phase goes on by itself */
 } live_wish;
 
-enum { LIVE_WISH, LIVE_ACK, LIVE_PROBE, LIVE_TAKE, LIVE_MEASURE, LIVE_LOOK, LIVE_REGISTER, LIVE_KINDS };
+/* How a slice is reconstructed. */
+typedef struct {
+    int is_stop;      /* 1: what is under way ends */
+    int has_spectrum; /* 0: the mean energy alone */
+    int has_noise, has_scatter, has_motion;
+    double at_mm; /* from the centre of rotation, along the axis across the slice */
+} live_switches;
+
+enum {
+    LIVE_WISH,
+    LIVE_ACK,
+    LIVE_PROBE,
+    LIVE_TAKE,
+    LIVE_MEASURE,
+    LIVE_LOOK,
+    LIVE_REGISTER,
+    LIVE_RECONSTRUCT,
+    LIVE_KINDS
+};
 
 /* A message. */
 typedef struct {
     int kind;
-    live_wish wish;  /* LIVE_WISH */
-    live_look look;  /* LIVE_LOOK */
-    int64_t ack;     /* LIVE_ACK: number of a frame */
-    double probe[2]; /* LIVE_PROBE: column and row */
-    char take[8];    /* LIVE_TAKE: "png", "tif" or "mha" */
-    int64_t part;    /* LIVE_REGISTER; -1: what is under way ends */
+    live_wish wish;         /* LIVE_WISH */
+    live_look look;         /* LIVE_LOOK */
+    int64_t ack;            /* LIVE_ACK: number of a frame */
+    double probe[2];        /* LIVE_PROBE: column and row */
+    char take[8];           /* LIVE_TAKE: "png", "tif" or "mha" */
+    int64_t part;           /* LIVE_REGISTER; -1: what is under way ends */
+    live_switches switches; /* LIVE_RECONSTRUCT */
 } live_message;
 
 /* Reads a message. Returns 1; or 0 with a sentence that says what is wrong. The caller frees the wish of a LIVE_WISH

@@ -3,6 +3,7 @@
 #include "common/file.h"
 #include "common/progress.h"
 #include "common/say.h"
+#include "common/values.h"
 #include "scan/pages.h"
 #include "scan/stack.h"
 #include "verbs/verbs.h"
@@ -125,7 +126,7 @@ static skg_status read_projection(reconstruction *r, int64_t k) {
 }
 
 static void count_dark(reconstruction *r) {
-    const float most = (float)-log(STACK_LEAST);
+    const float most = (float)-log(CLI_LEAST_TRANSMISSION);
     for (int64_t i = 0; i < r->pixels; i++) r->dark += r->image[i] == most;
 }
 

@@ -3,6 +3,7 @@
 
 #include "common/file.h"
 #include "common/say.h"
+#include "common/values.h"
 #include "core/maths.h"
 #include "scan/pages.h"
 
@@ -231,7 +232,9 @@ int stack_attenuation(stack_reader *r, int64_t index, float *image) {
         const double white = (r->white ? r->white[i] : r->flat_field) - dark;
         const double share = (value - dark) / white;
         /* what is no number stays so, and is refused where it stands */
-        image[i] = (float)(is_attenuation(r) ? value : -log(share < STACK_LEAST ? STACK_LEAST : share));
+        image[i] = (float)(is_attenuation(r)
+                               ? value
+                               : -log(share < CLI_LEAST_TRANSMISSION ? CLI_LEAST_TRANSMISSION : share));
     }
     return exit_status;
 }

@@ -17,9 +17,6 @@ void stack_close(stack_reader **reader);
 /* The views, which belong to the reader, and the axis about which they turn. */
 void stack_scan(stack_reader *reader, skg_scan **scan, double axis[3], double centre[3]);
 
-/* The least share of the flat field that is told from nothing: less counts as this much, as skg_scan_reader_attenuation_get has it. */
-#define STACK_LEAST 1e-6
-
 /* Reads a projection as -ln(I / I0). */
 int stack_attenuation(stack_reader *reader, int64_t index, float *image);
 

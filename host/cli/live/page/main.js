@@ -47,6 +47,7 @@ function takeScene(message) {
     listenToSinogram();
     fillDials();
     fillRadiograph();
+    fillSlices();
     ask3D();
   }
   showSentence('');
@@ -135,14 +136,14 @@ function begin() {
   listenToTakes();
   findHistory();
   Object.assign(net, {show: showFrame, picture: showPicture});
-  net.hear.role = message => { net.role = message.role; restartPictures(); tellRole(); registerEnded(); change(); };
+  net.hear.role = message => { net.role = message.role; restartPictures(); tellRole(); registerEnded(); endSlice(); change(); };
   Object.assign(net.hear, {registering: showStep, registered: showFound});
   net.hear.scene = takeScene;
   net.hear.adopted = adopt;
   net.hear.dosed = message => takeDose(message.dosed);
   byId('dose-reset').onclick = resetDoses;
   net.hear.error = message => { settle(message.wish); giveUp(message.wish); showSentence(message.error, true); };
-  net.hear.refused = message => { settle(net.sent); registerEnded(); showSentence(message.refused); };
+  net.hear.refused = message => { settle(net.sent); registerEnded(); endSlice(); showSentence(message.refused); };
   for (const [id, act] of Object.entries({undo, redo, reset})) byId(id).onclick = () => { act(); describe(); change(); };
   byId('help').onclick = keys['?'];
   byId('dark').onclick = () => setDark(!document.documentElement.classList.contains('dark'));

@@ -31,6 +31,7 @@ function receive(data) {
   const mark = new DataView(data).getUint32(0);
   if (mark === 0x534b4c50) return net.picture(data); // "SKLP"
   if (mark === 0x534b4c52) return takeRadiograph(readFrame(data)); // "SKLR"
+  if (mark === 0x534b4c53) { slices.frame = readFrame(data); return; } // "SKLS"
   if (mark !== 0x534b4c46) return net.file(readFile(data));
   const frame = readFrame(data);
   net.shown = frame.wish;

@@ -207,7 +207,7 @@ function listenToFilm() {
     byId('auto').setAttribute('aria-pressed', xray.auto);
     if (xray.auto && xray.frame) showFrame(xray.frame);
   };
-  byId('invert').onclick = () => { byId('invert').setAttribute('aria-pressed', xray.inverted = !xray.inverted); paint(); };
+  byId('invert').onclick = () => { byId('invert').setAttribute('aria-pressed', xray.inverted = !xray.inverted); paint(); paintSlices(); };
   byId('keep').onclick = () => {
     xray.before = xray.before ? null : xray.frame;
     byId('keep').setAttribute('aria-pressed', !!xray.before);
