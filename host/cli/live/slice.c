@@ -8,6 +8,7 @@
 #include "session/explain.h"
 
 #include <math.h>
+#include <skiagraph/scanning.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>

@@ -42,7 +42,7 @@ function takeSlice({reconstructed: found}) {
 
 function paintSlices() {
   byId('slice-box').hidden = !slices.after;
-  byId('slice-low').value = number(slices.low), byId('slice-high').value = number(slices.high);
+  byId('slice-low').value = number(slices.low, 3), byId('slice-high').value = number(slices.high, 3);
   byId('slice-auto').setAttribute('aria-pressed', slices.auto);
   for (const which of ['before', 'after']) {
     const its = slices[which], canvas = byId('slice-' + which);
