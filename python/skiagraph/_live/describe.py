@@ -28,7 +28,9 @@ def scene(subject: Subject, plan: Any, facts: dict[str, Any]) -> dict[str, Any]:
         "channel": channel["name"], "unit": channel["unit"], "plan": _plan(plan), "beam": beam(state, subject.view()),
         "dose": None,  # the page has no panel: scene.dose() is a call away
         "spot": _spot(state, options), "jaws": _jaws(options),
-        "angles": [] if scan is None else scan.angles.tolist(), "fixed": None, **facts}}
+        "angles": [] if scan is None else scan.angles.tolist(), "fixed": None,
+        "without": None,  # nor one for slices: scene.scan() and reconstruct()
+        **facts}}
 
 
 def _plan(plan: Any) -> dict[str, Any]:
