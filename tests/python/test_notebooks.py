@@ -43,6 +43,7 @@ def test_a_notebook_runs(path):
     pytest.importorskip("matplotlib").use("agg")
     import matplotlib.pyplot as pyplot
 
+    pyplot.close("all")  # those of other tests
     cells = cells_of(path)
     if any("import torch" in line for cell in cells for line in cell["source"]):
         pytest.importorskip("torch")
