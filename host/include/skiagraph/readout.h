@@ -100,7 +100,7 @@ SKG_API skg_status skg_lag_create(int64_t pixels, int64_t count, const double *t
  *     terms    [count][2] change of the sensitivity after a long exposure to `full`, above -1 together and finite; and the time constant,
  *              in frames, with which it builds up and goes, above 0
  *     errors   SKG_ERR_ARGUMENT
- *     method   The sensitivity is 1 + sum c q, where each q goes in each frame by 1 - exp(-1/t) of the way to signal / full. What a pixel
+ *     method   The sensitivity is 1 + sum c q, but not below 0, where each q goes in each frame by 1 - exp(-1/t) of the way to signal / full. What a pixel
  *              receives is multiplied by it before the lag. Flat fields of a rested detector do not take it away. */
 SKG_API skg_status skg_lag_ghosting_set(skg_lag *lag, double full, int64_t count, const double *terms);
 
