@@ -27,10 +27,10 @@ static void put_word(FILE *stream, const char *word) {
     fputc('\'', stream);
 }
 
-static void put_flag(FILE *stream, const cost_study *study, const cli_flag *flag) {
+static void put_flag(FILE *stream, const cost_study *study, const char *flag) {
     const char *value;
     for (int i = 0; (value = cli_nth_value(study->arguments, flag, i)); i++) {
-        fprintf(stream, " %s", flag->name);
+        fprintf(stream, " %s", flag);
         put_word(stream, value);
     }
 }
@@ -62,10 +62,10 @@ char *cost_command(const cost_study *study, const cost_setting *setting) {
     if (!stream) return NULL;
     put_scene(stream, study, meshing);
     fputs(" -o image.mha", stream);
-    put_flag(stream, study, &cli_flag_device);
-    put_flag(stream, study, &cli_flag_strategy);
-    put_flag(stream, study, &cli_flag_set);
-    if (cli_given(study->arguments, &cli_flag_lenient)) fputs(" --lenient", stream);
+    put_flag(stream, study, "--device");
+    put_flag(stream, study, "--strategy");
+    put_flag(stream, study, "--set");
+    if (cli_given(study->arguments, "--lenient")) fputs(" --lenient", stream);
     fprintf(stream, " --precision %s --tolerance %.3g", cost_precision_name(setting), setting->tolerance);
     if (setting->bins > 0)
         fprintf(stream, " --set Source.Beam.MaxNumberOfEnergyBins=%lld", (long long)setting->bins);

@@ -153,14 +153,14 @@ skg_status cost_load(const cost_study *study, int64_t count, const char *const *
     const char **all = calloc((size_t)(arguments->given_count + count), sizeof *all);
     int64_t used = 0;
     if (!all) return SKG_ERR_MEMORY;
-    for (const char *set; (set = cli_nth_value(arguments, &cli_flag_set, (int)used));) all[used++] = set;
+    for (const char *set; (set = cli_nth_value(arguments, "--set", (int)used));) all[used++] = set;
     for (int64_t i = 0; i < count; i++) all[used++] = settings[i];
     skg_setup_source source;
     skg_setup_source_init(&source);
     source.path = study->session.path;
     source.settings = all;
     source.setting_count = used;
-    source.lenient = cli_given(arguments, &cli_flag_lenient);
+    source.lenient = cli_given(arguments, "--lenient");
     skg_status status = skg_setup_create(NULL, &source, setup);
     free(all);
     return status;
