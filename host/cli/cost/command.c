@@ -1,6 +1,8 @@
 /* The command line that makes the image of a point. */
 #include "cost/output.h"
 
+#include "cost/dial.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -66,12 +68,14 @@ char *cost_command(const cost_study *study, const cost_setting *setting) {
     put_flag(stream, study, "--strategy");
     put_flag(stream, study, "--set");
     if (cli_given(study->arguments, "--lenient")) fputs(" --lenient", stream);
-    fprintf(stream, " --precision %s --tolerance %.3g", cost_precision_name(setting), setting->tolerance);
-    if (setting->bins > 0)
-        fprintf(stream, " --set Source.Beam.MaxNumberOfEnergyBins=%lld", (long long)setting->bins);
-    if (setting->samples > 0) fprintf(stream, " --set Source.Samples=%lld", (long long)setting->samples);
-    if (setting->supersampling != study->subject.own.supersampling)
-        fprintf(stream, " --set Detector.Oversampling=%d", (int)setting->supersampling);
+    for (int dial = COST_PRECISION; dial < COST_DIALS; dial++) {
+        char flag[128] = "";
+        const int is_own =
+            dial == COST_SUPERSAMPLING && setting->supersampling == study->subject.own.supersampling;
+        if (!cost_dials[dial].flag || is_own || !cost_has_value(dial, setting)) continue;
+        cost_append_value(study, setting, dial, cost_dials[dial].flag, flag, sizeof flag);
+        fputs(flag, stream);
+    }
     if (setting->repair >= COST_UNITE)
         fprintf(stream, " --set 'Repair=[\"%s\",\"union\"]'",
                 cost_repair_names[setting->repair - COST_UNITE]);
