@@ -11,7 +11,7 @@
 
 /* Pixels of a block; segments of a round body; the random rooms and their seeds, which begin after these; runs of a room; histories of
  * the long run over those of the first. */
-enum { BLOCK_PIXELS = 16, ROUND = 256, DRAWN = 20, DRAWN_AFTER = 100, RUNS = 3, LONGER = 9 };
+enum { BLOCK_PIXELS = 16, ROUND = 256, DRAWN = 20, DRAWN_AFTER = 100, RUNS = 3, LONGER = 4 };
 
 static skg_mesh *mesh_of(const room_body *b) {
     skg_mesh *mesh = NULL;

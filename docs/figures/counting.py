@@ -1,5 +1,5 @@
-"""Draws docs/counting.png: what detectors that count make of photons of 60 keV by the height of their pulses, and what pile-up leaves in windows.
-Needs numpy and matplotlib.
+"""Draws docs/counting.png: what detectors that count make of photons of 60 keV by the height of their pulses, what pile-up leaves in windows, and how
+sharp windows are. Needs numpy, matplotlib and skiagraph.
 
 Usage: counting.py SKIAGRAPH OUT.png
 """
@@ -15,6 +15,8 @@ import numpy as np
 
 matplotlib.use("Agg")
 from matplotlib import pyplot  # noqa: E402
+
+import skiagraph as sk  # noqa: E402
 
 KEV, LOWEST, HIGHEST, STEP, WINDOWS = 60, 6, 70, 1, 7
 CDTE = {"Material": "CdTe", "Thickness": [1, "mm"], "ElectronicNoise": 0.7}
@@ -70,8 +72,30 @@ def recorded(skiagraph, kind, pulses):
     return np.array(found) * share
 
 
+def transfer(pixel_mm, window, cycles, **fields):
+    """The modulation transfer function of a window along a row: that of the pixel, times that of the places of its counts."""
+    counter = sk.Counter("CdTe", 1, pixel_mm, [12, 50], bias_v=400, fluorescence=True, electronic_kev=0.7, **fields)
+    line = counter.spread(KEV, window).sum(axis=0)
+    places = np.arange(line.size) - line.size // 2
+    shared = (line * np.cos(2 * np.pi * cycles[:, None] * places)).sum(axis=1) / line.sum()
+    return np.sinc(cycles) * shared
+
+
+def draw_transfer(axes):
+    cycles = np.linspace(0, 0.5, 51)
+    axes.plot(cycles, np.sinc(cycles), color="#999999", linestyle=":", label="the pixel alone")
+    for pixel_mm, colour in ((0.055, "#1f6fb4"), (0.1, "#d95f02"), (0.25, "#7570b3")):
+        axes.plot(cycles, transfer(pixel_mm, 0, cycles), color=colour, label=f"{1000 * pixel_mm:g} µm, 12 to 50 keV")
+        axes.plot(cycles, transfer(pixel_mm, 1, cycles), color=colour, linestyle="--", label=f"{1000 * pixel_mm:g} µm, above 50 keV")
+    axes.plot(cycles, transfer(0.1, 0, cycles, anti_coincidence=True), color="#d95f02", linestyle="-.",
+              label="100 µm, 12 to 50 keV, anti-coincidence")
+    axes.set(xlabel="cycles a pixel", ylabel="modulation transfer function", xlim=(0, 0.5), ylim=(0, 1), title="CdTe 1 mm, 60 keV")
+    axes.legend(fontsize=7, loc="lower left")
+
+
 def draw(skiagraph, out):
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(10, 3.8))
+    figure, (left, right, last) = pyplot.subplots(1, 3, figsize=(14.5, 3.8))
+    draw_transfer(last)
     for label, sensor, colour, line in SENSORS:
         kev, found = heights(skiagraph, sensor)
         left.step(kev, found, where="mid", color=colour, linestyle=line, label=label)

@@ -22,6 +22,8 @@ static const int8_t one_first[4][4] = {{0, 1, 2, 3}, {1, 0, 3, 2}, {2, 3, 0, 1},
 static const int8_t two_first[6][4] = {{0, 1, 2, 3}, {0, 2, 3, 1}, {0, 3, 1, 2},
                                        {1, 2, 0, 3}, {1, 3, 2, 0}, {2, 3, 0, 1}};
 
+enum { GYROID_CELLS_MAX = 256 };
+
 typedef struct {
     int64_t counts[3]; /* with a layer around the volume that is outside */
     double spacing[3];
@@ -175,6 +177,27 @@ static double gyroid(const double *box, double period, double level, double cell
     return fmin(depth, level - fabs(wave));
 }
 
+/* The wave changes by at most 2 pi / period sqrt(3) a mm, and an edge of the grid is at most sqrt(3) cells long, so that with so many
+ * cells along a period no edge leaps over the sheet, which would leave a hole there. */
+static skg_status find_cells(const char *shape, double level, int64_t *cells) {
+    const int64_t least = (int64_t)ceil(3 * SKG_PI / level);
+    if (!(level > 0 && level <= 1.4))
+        return skg_fail(SKG_ERR_ARGUMENT, "gyroid: level %g: above 0 to 1.4", level);
+    if (3 * SKG_PI / level > GYROID_CELLS_MAX)
+        return skg_fail(
+            SKG_ERR_ARGUMENT,
+            "gyroid: level %g: a sheet so thin would have holes at %d cells along a period; give at least %.2g",
+            level, GYROID_CELLS_MAX, 3 * SKG_PI / GYROID_CELLS_MAX + 0.0005);
+    if (*cells == 0) *cells = least < 24 ? 24 : least;
+    SKG_TRY(skg_check_count(shape, "cells along a period", *cells, 4, GYROID_CELLS_MAX));
+    if (*cells >= least) return SKG_OK;
+    return skg_fail(SKG_ERR_ARGUMENT,
+                    "gyroid: with %" PRId64
+                    " cells along a period a sheet of level %g may have holes; give at least %" PRId64
+                    ", or 0",
+                    *cells, level, least);
+}
+
 skg_status skg_mesh_create_gyroid(const double *box, double period, double level, int64_t cells,
                                   skg_mesh **mesh) {
     SKG_PLAIN;
@@ -185,9 +208,7 @@ skg_status skg_mesh_create_gyroid(const double *box, double period, double level
     SKG_NEEDS(mesh);
     *mesh = NULL;
     SKG_TRY(skg_check_length(shape, "period", period));
-    SKG_TRY(skg_check_count(shape, "cells along a period", cells, 4, 256));
-    if (!(level > 0 && level <= 1.4))
-        return skg_fail(SKG_ERR_ARGUMENT, "gyroid: level %g: above 0 to 1.4", level);
+    SKG_TRY(find_cells(shape, level, &cells));
     const double cell = period / (double)cells, spacing[3] = {cell, cell, cell};
     for (int k = 0; k < 3; k++) {
         SKG_TRY(skg_check_length(shape, "edge of the box", box[k]));

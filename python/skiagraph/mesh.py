@@ -207,10 +207,11 @@ class Mesh:
                          doubles(steps, "spacing", keep), ffi.cast("float *", ffi.from_buffer(volume)), float(level))
 
     @classmethod
-    def gyroid(cls, box: Any, period: float, level: float = 0.3, cells: int = 24) -> Mesh:
+    def gyroid(cls, box: Any, period: float, level: float = 0.3, cells: int = 0) -> Mesh:
         """A sheet of a gyroid in a box: where abs(sin x cos y + sin y cos z + sin z cos x) is below level.
 
-        box: (x, y, z) in mm. period: mm. cells: of the grid along a period.
+        box: (x, y, z) in mm. period: mm. cells: of the grid along a period, at least 3 pi / level, so that the sheet has no holes of its own;
+        0: so many, and at least 24.
         """
         keep: list[Any] = []
         return cls._made("skg_mesh_create_gyroid", doubles(np.ones(3) * np.asarray(box, dtype=float), "box", keep),

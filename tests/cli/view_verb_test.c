@@ -57,8 +57,6 @@ START_TEST(sides_sizes_and_files) {
 }
 END_TEST
 
-/* The large cube is seen beside the small one before it: there is its dot, which its centre is not. The one behind it is not seen,
- * and has no name. */
 /* glTF has metres and y up; other programs find the parts by name. */
 START_TEST(a_model_of_the_parts) {
     ck_run(0, "view s.json -o v.glb");
@@ -105,6 +103,35 @@ START_TEST(zoom_shows_a_part_larger) {
 }
 END_TEST
 
+/* Twelve sheets of one kind, each of which shows at an edge of less than a pixel. */
+START_TEST(all_plies_are_named) {
+    char text[4096];
+    int used = snprintf(
+        text, sizeof text,
+        "{\"Source\": {\"Position\": [0, -1000, 0, \"mm\"], \"Beam\": [{\"Energy\": 60, \"Unit\": \"keV\", \"PhotonCount\": 1}]},"
+        "\"Detector\": {\"Position\": [0, 100, 0, \"mm\"], \"UpVector\": [0, 0, 1], \"NumberOfPixels\": [32, 32], \"Spacing\": [4, 4, \"mm\"]},"
+        "\"Samples\": [");
+    for (int i = 0; i < 12; i++)
+        used += snprintf(
+            text + used, sizeof text - (size_t)used,
+            "%s{\"Label\": \"ply %d\", \"Cuboid\": [100, 0.25, 60, \"mm\"], \"Material\": [\"mu\", 0.2], "
+            "\"Transform\": [[\"Translation\", 0, %g, 0, \"mm\"]]}",
+            i ? ", " : "", i, 0.25 * i);
+    snprintf(text + used, sizeof text - (size_t)used, "]}");
+    write_text("plies.json", text);
+    ck_run(0, "view plies.json -o v.png --json");
+    json_t *object = said_json();
+    const json_t *parts = member(object, "parts");
+    ck_assert_uint_eq(json_array_size(parts), 12);
+    for (size_t i = 0; i < 12; i++)
+        ck_assert_msg(json_is_array(json_object_get(json_array_get(parts, i), "dot")), "ply %zu has no name",
+                      i);
+    json_decref(object);
+}
+END_TEST
+
+/* The large cube is seen beside the small one before it: there is its dot, which its centre is not. The one behind it is not seen,
+ * and has no name. */
 START_TEST(dots_lie_where_a_part_is_seen) {
     write_text(
         "hidden.json",
@@ -168,6 +195,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, sides_sizes_and_files);
     tcase_add_test(tests, a_model_of_the_parts);
     tcase_add_test(tests, zoom_shows_a_part_larger);
+    tcase_add_test(tests, all_plies_are_named);
     tcase_add_test(tests, dots_lie_where_a_part_is_seen);
     tcase_add_test(tests, other_scenes);
     tcase_add_test(tests, wrong_words);

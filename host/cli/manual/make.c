@@ -36,7 +36,9 @@ static const cli_flag make_level = {
     "not given.",
     NULL, CLI_NAMES_NOTHING};
 static const cli_flag make_cells = {
-    "--cells", "N", "gyroid: cells of the grid along a period, 4 to 256 (24).", NULL, CLI_NAMES_NOTHING};
+    "--cells", "N",
+    "gyroid: cells of the grid along a period, 4 to 256, and at least 9.43 over the level, since a sheet would have holes otherwise; that, and at least 24, if it is not given.",
+    NULL, CLI_NAMES_NOTHING};
 static const cli_flag make_per_mm = {
     "--per-mm", "LIST",
     "lines: line pairs per mm of each group, separated by commas; 0.5,1,2 if it is not given.", NULL,

@@ -81,7 +81,7 @@ static int make_fibres(const cli_arguments *a, skg_mesh **mesh) {
 
 static int make_gyroid(const cli_arguments *a, skg_mesh **mesh) {
     double box[3] = {20, 20, 20}, period = 10, level = 0.3;
-    int64_t cells = 24;
+    int64_t cells = 0;
     int exit_status = read_box(a, box);
     if (exit_status == CLI_DONE) exit_status = number(a, "--period", &period);
     if (exit_status == CLI_DONE) exit_status = number(a, "--level", &level);

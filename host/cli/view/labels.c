@@ -43,27 +43,60 @@ static int by_row(const void *a, const void *b) {
     return (*above)->dot[1] > (*below)->dot[1] ? 1 : -((*above)->dot[1] < (*below)->dot[1]);
 }
 
+/* On which side of the line from a to b a point lies. */
+static double side_of(const double a[2], const double b[2], const double point[2]) {
+    return (b[0] - a[0]) * (point[1] - a[1]) - (b[1] - a[1]) * (point[0] - a[0]);
+}
+
+/* Whether the lines from two names to the dots of these parts cross. */
+static int is_crossed(const double names[2][2], const view_part *a, const view_part *b) {
+    return side_of(names[0], a->dot, names[1]) * side_of(names[0], a->dot, b->dot) < 0 &&
+           side_of(names[1], b->dot, names[0]) * side_of(names[1], b->dot, a->dot) < 0;
+}
+
+/* Parts whose lines cross change places. Their lines are shorter together then, so that this ends. y: of the names. */
+static void uncross(const view_part **parts, int count, double x, const double *y) {
+    for (int is_changed = 1; is_changed;) {
+        is_changed = 0;
+        for (int j = 1; j < count; j++)
+            for (int i = 0; i < j; i++) {
+                const double names[2][2] = {{x, y[i]}, {x, y[j]}};
+                if (!is_crossed(names, parts[i], parts[j])) continue;
+                const view_part *other = parts[i];
+                parts[i] = parts[j], parts[j] = other;
+                is_changed = 1;
+            }
+    }
+}
+
+/* A name with a line to the dot of its part. */
+static void name_part(const sheet *s, const view_part *part, double begin, double end, double y) {
+    cairo_set_source_rgba(s->cairo, 0.25, 0.27, 0.3, 0.6);
+    cairo_set_line_width(s->cairo, fmax(1, s->text / 16));
+    cairo_move_to(s->cairo, end, y);
+    cairo_line_to(s->cairo, part->dot[0] + 0.5, part->dot[1] + 0.5);
+    cairo_stroke(s->cairo);
+    cairo_arc(s->cairo, part->dot[0] + 0.5, part->dot[1] + 0.5, s->text / 6, 0, 7);
+    cairo_fill(s->cairo);
+    write_text(s, begin, y + 0.35 * s->text, part->label);
+}
+
 /* Names in a column beside the parts, each with a line to its part. x: where the names end on the left side, and where they
- * begin on the right. */
-static void name_side(const sheet *s, const view_part *const *parts, int count, int is_right, double x) {
+ * begin on the right. y: room for count. */
+static void name_side(const sheet *s, const view_part **parts, int count, int is_right, double x, double *y) {
     const double line = 1.5 * s->text, low = 1.5 * line, high = s->rows - 2.5 * line;
     double least = low;
     for (int i = 0; i < count; i++) {
         /* near its part, but the names after it need room as well */
-        const double y = fmin(fmax(parts[i]->dot[1], least), high - (count - 1 - i) * line);
+        y[i] = fmin(fmax(parts[i]->dot[1], least), high - (count - 1 - i) * line);
+        least = y[i] + line;
+    }
+    uncross(parts, count, x, y);
+    for (int i = 0; i < count; i++) {
         const double width = text_width(s, parts[i]->label);
         const double begin =
             is_right ? fmin(x, s->columns - width - 0.5 * s->text) : fmax(x - width, 0.5 * s->text);
-        const double end = is_right ? begin - 0.4 * s->text : begin + width + 0.4 * s->text;
-        cairo_set_source_rgba(s->cairo, 0.25, 0.27, 0.3, 0.6);
-        cairo_set_line_width(s->cairo, fmax(1, s->text / 16));
-        cairo_move_to(s->cairo, end, y);
-        cairo_line_to(s->cairo, parts[i]->dot[0] + 0.5, parts[i]->dot[1] + 0.5);
-        cairo_stroke(s->cairo);
-        cairo_arc(s->cairo, parts[i]->dot[0] + 0.5, parts[i]->dot[1] + 0.5, s->text / 6, 0, 7);
-        cairo_fill(s->cairo);
-        write_text(s, begin, y + 0.35 * s->text, parts[i]->label);
-        least = y + line;
+        name_part(s, parts[i], begin, is_right ? begin - 0.4 * s->text : begin + width + 0.4 * s->text, y[i]);
     }
 }
 
@@ -102,9 +135,14 @@ static int64_t name_parts(const sheet *s, const cli_session *session, const skg_
     const int capacity = (int)((s->rows - 6 * s->text) / (1.5 * s->text));
     const size_t named = (size_t)places->named_count;
     const view_part **sides = calloc(2 * named + 1, sizeof *sides);
+    double *y = calloc(named + 1, sizeof *y);
     double middle = 0, left = HUGE_VAL, right = -HUGE_VAL, detector[2], beside[2], x[2];
     int count[2] = {0, 0};
-    if (!sides) return 0;
+    if (!sides || !y) {
+        free(sides);
+        free(y);
+        return 0;
+    }
     for (size_t i = 0; i < named; i++) {
         middle += places->named[i]->dot[0] / (double)named;
         left = fmin(left, places->named[i]->low_column), right = fmax(right, places->named[i]->high_column);
@@ -121,9 +159,10 @@ static int64_t name_parts(const sheet *s, const cli_session *session, const skg_
     }
     for (int side = 0; side < 2; side++) {
         qsort(sides + side * (int)named, (size_t)count[side], sizeof *sides, by_row);
-        name_side(s, sides + side * (int)named, count[side], side, x[side]);
+        name_side(s, sides + side * (int)named, count[side], side, x[side], y);
     }
     free(sides);
+    free(y);
     return count[0] + count[1];
 }
 

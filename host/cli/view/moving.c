@@ -64,15 +64,21 @@ static int64_t key_frames(const view_work *w) {
     return frames < KEY_FRAMES_MAX ? (int64_t)frames : KEY_FRAMES_MAX;
 }
 
-/* Says how the page differs from the scene. */
+/* Says how the page differs from the scene, and where it is larger than its manual says. */
 static void tell_size(const view_shapes *shapes, const char *path) {
+    const int64_t most = view_max_triangles(shapes->frames);
     if (shapes->triangles < shapes->of)
         cli_note("%s: shows %lld of the scene's %lld triangles", path, (long long)shapes->triangles,
                  (long long)shapes->of);
-    else if (!view_can_thin && shapes->of > view_max_triangles(shapes->frames))
+    if (!view_can_thin && shapes->of > most)
         cli_note(
             "%s: shows all %lld triangles, which makes it large; built with libmeshoptimizer-dev, skiagraph shows %lld",
-            path, (long long)shapes->of, (long long)view_max_triangles(shapes->frames));
+            path, (long long)shapes->of, (long long)most);
+    else if (shapes->triangles > most + most / 10)
+        cli_note(
+            "%s: is large, because its surfaces have too many holes and pieces to be shown by %lld triangles; leave "
+            "parts out, or give coarser meshes",
+            path, (long long)most);
 }
 
 int view_write_page(view_work *w, const char *path) {

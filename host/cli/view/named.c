@@ -14,7 +14,7 @@ enum { NAMED_MAX = 20 };
 enum { SMALL = 480 };
 
 /* Maximum number of parts without a whole pixel that are looked for one by one. */
-enum { THIN_MAX = 10 };
+enum { THIN_MAX = NAMED_MAX };
 
 /* Pixels of a small picture that a dot keeps from the edge of what is seen of its part, if there is room. */
 enum { CLEAR = 4 };
@@ -217,26 +217,31 @@ static int is_new_kind(const view_places *places, const view_part *part) {
     return 1;
 }
 
-/* The largest part of each kind that can be seen. */
+/* Names a part if it is seen anywhere. */
+static int name(small *s, view_places *places, view_part *part) {
+    const int64_t id = part - places->parts;
+    int is_placed = 0, exit_status = CLI_DONE;
+    if (is_opaque(s, id)) {
+        find_distances(s, s->seen);
+        is_placed = place_dot(s, s->seen, (int32_t)id, part);
+        if (!is_placed && s->thin < THIN_MAX) exit_status = place_thin(s, places, id, &is_placed);
+    } else {
+        exit_status = place_translucent(s, places, id, &is_placed);
+    }
+    if (is_placed) places->named[places->named_count++] = part;
+    return exit_status;
+}
+
+/* All parts that can be seen, if there are few; or else the largest one of each kind. */
 static int choose(small *s, view_places *places, view_part **sorted) {
     int exit_status = find_seen(s, places->count);
     if (exit_status == CLI_DONE) exit_status = draw_empty(s, places->count);
     for (int64_t i = 0; i < places->count; i++) sorted[i] = places->parts + i;
     qsort(sorted, (size_t)places->count, sizeof *sorted, by_area);
-    for (int64_t i = 0; i < places->count && places->named_count < NAMED_MAX && exit_status == CLI_DONE;
-         i++) {
-        const int64_t id = sorted[i] - places->parts;
-        int is_placed = 0;
-        if (s->own[4 * id + 3] == 0 || !is_new_kind(places, sorted[i])) continue;
-        if (is_opaque(s, id)) {
-            find_distances(s, s->seen);
-            is_placed = place_dot(s, s->seen, (int32_t)id, sorted[i]);
-            if (!is_placed && s->thin < THIN_MAX) exit_status = place_thin(s, places, id, &is_placed);
-        } else {
-            exit_status = place_translucent(s, places, id, &is_placed);
-        }
-        if (is_placed) places->named[places->named_count++] = sorted[i];
-    }
+    for (int64_t i = 0; i < places->count && places->named_count < NAMED_MAX && exit_status == CLI_DONE; i++)
+        if (s->own[4 * (sorted[i] - places->parts) + 3] > 0 &&
+            (places->count <= NAMED_MAX || is_new_kind(places, sorted[i])))
+            exit_status = name(s, places, sorted[i]);
     return exit_status;
 }
 

@@ -50,28 +50,33 @@ static float *read_positions(const skg_part *part, int64_t vertices) {
 }
 
 /* Keeps the vertices that triangles have, in the order of their first use. number: room for all vertices. */
-static void drop_unused(view_surface *surface, unsigned int *number) {
-    const size_t kept =
-        meshopt_optimizeVertexFetchRemap(number, (const unsigned int *)surface->corners,
-                                         (size_t)surface->triangles * 3, (size_t)surface->vertices);
-    for (int64_t i = 0; i < 3 * surface->triangles; i++)
-        surface->corners[i] = (int32_t)number[surface->corners[i]];
-    for (int64_t v = 0; v < surface->vertices; v++)
-        if (number[v] != ~0u) surface->origin[number[v]] = (int32_t)v;
-    surface->vertices = (int64_t)kept;
+static void drop_unused(view_surface *surface, float *positions, unsigned int *number) {
+    unsigned int *corners = (unsigned int *)surface->corners;
+    const size_t count = 3 * (size_t)surface->triangles, vertices = (size_t)surface->vertices;
+    surface->vertices = (int64_t)meshopt_optimizeVertexFetchRemap(number, corners, count, vertices);
+    meshopt_remapIndexBuffer(corners, corners, count, number);
+    meshopt_remapVertexBuffer(surface->origin, surface->origin, vertices, sizeof *surface->origin, number);
+    meshopt_remapVertexBuffer(positions, positions, vertices, 3 * sizeof *positions, number);
 }
 
-static void simplify(const float *positions, const unsigned int *welded, int64_t wanted,
-                     view_surface *surface) {
+/* Each corner moves to the first vertex at its place. The other vertices there have to go before surfaces are simplified: where three
+ * and more stand, as in every STL file, meshoptimizer moves none. */
+static void weld(view_surface *surface, float *positions, unsigned int *number, unsigned int *welded) {
+    const size_t corners = 3 * (size_t)surface->triangles, stride = 3 * sizeof *positions;
+    meshopt_generateShadowIndexBuffer(welded, (const unsigned int *)surface->corners, corners, positions,
+                                      (size_t)surface->vertices, stride, stride);
+    memcpy(surface->corners, welded, corners * sizeof *welded);
+    drop_unused(surface, positions, number);
+}
+
+/* Any error that the number of triangles calls for: 1 is the size of the part. */
+static void simplify(const float *positions, int64_t wanted, view_surface *surface, unsigned int *welded) {
     const size_t corners = 3 * (size_t)surface->triangles;
-    if (surface->triangles <= wanted)
-        memcpy(surface->corners, welded, corners * sizeof *welded);
-    else /* any error that the number of triangles calls for: 1 is the size of the part */
-        surface->triangles =
-            (int64_t)meshopt_simplify((unsigned int *)surface->corners, welded, corners, positions,
-                                      (size_t)surface->vertices, 3 * sizeof *positions, 3 * (size_t)wanted, 1,
-                                      0, NULL) /
-            3;
+    memcpy(welded, surface->corners, corners * sizeof *welded);
+    surface->triangles = (int64_t)meshopt_simplify((unsigned int *)surface->corners, welded, corners,
+                                                   positions, (size_t)surface->vertices,
+                                                   3 * sizeof *positions, 3 * (size_t)wanted, 1, 0, NULL) /
+                         3;
 }
 
 int view_thin(const skg_part *part, int64_t wanted, view_surface *surface) {
@@ -82,12 +87,10 @@ int view_thin(const skg_part *part, int64_t wanted, view_surface *surface) {
     unsigned int *number = malloc((vertices + 1) * sizeof *number);
     unsigned int *welded = malloc((corners + 1) * sizeof *welded);
     const int is_whole = positions && number && welded;
-    if (is_whole) {
-        /* each corner moves to the first vertex at its place */
-        meshopt_generateShadowIndexBuffer(welded, (const unsigned int *)surface->corners, corners, positions,
-                                          vertices, 3 * sizeof *positions, 3 * sizeof *positions);
-        simplify(positions, welded, wanted, surface);
-        drop_unused(surface, number);
+    if (is_whole) weld(surface, positions, number, welded);
+    if (is_whole && surface->triangles > wanted) {
+        simplify(positions, wanted, surface, welded);
+        drop_unused(surface, positions, number);
     }
     free(positions);
     free(number);

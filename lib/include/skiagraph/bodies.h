@@ -100,7 +100,9 @@ SKG_API skg_status skg_mesh_create_isosurface(const int64_t *counts, const doubl
  *     box       [3] edges, mm
  *     period    mm
  *     level     above 0 to 1.4; 0.3 fills about a fifth of the box
- *     cells     of the grid along a period, 4 to 256 */
+ *     cells     of the grid along a period, 4 to 256, and at least 3 pi / level, so that the sheet has no holes that it should not have; 0: so
+ *               many, and at least 24
+ *     errors    SKG_ERR_ARGUMENT, SKG_ERR_MEMORY */
 SKG_API skg_status skg_mesh_create_gyroid(const double *box, double period, double level, int64_t cells,
                                           skg_mesh **mesh);
 
