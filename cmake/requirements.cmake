@@ -30,6 +30,8 @@ skg_require(JANSSON jansson libjansson-dev)
 skg_require(PNG libpng libpng-dev)
 skg_require(ZLIB zlib zlib1g-dev) # libpng needs it, too
 skg_require(TIFF libtiff-4>=4.5 libtiff-dev)
+skg_require(ZIP libzip libzip-dev) # 3MF
+skg_require(MD libmd libmd-dev) # SHA-256
 if(SKG_BUILD_COMMAND OR SKG_BUILD_DOCS)
   skg_require(CAIRO "cairo;cairo-svg;cairo-png" libcairo2-dev) # plots of `material` and `beam`
 endif()

@@ -3,7 +3,7 @@
 
 # shellcheck disable=SC2034
 skg_build_packages="gcc libc6-dev make cmake pkg-config ocl-icd-opencl-dev opencl-headers pocl-opencl-icd \
-libassimp-dev libcglm-dev libjansson-dev libpng-dev zlib1g-dev libtiff-dev libcairo2-dev"
+libassimp-dev libcglm-dev libjansson-dev libpng-dev zlib1g-dev libtiff-dev libzip-dev libmd-dev libcairo2-dev"
 
 # Without these something is left out; the README has a table of it.
 # shellcheck disable=SC2034

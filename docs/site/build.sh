@@ -22,7 +22,7 @@ if ! cmp -s "$source/docs/site/requirements.txt" "$site/venv/requirements.txt"; 
         skip "pip found no packages: $(tail -n 1 "$site/pip.log")"
     cp "$source/docs/site/requirements.txt" "$site/venv"
 fi
-cmake --install "$build" --component python --prefix "$site/python" >"$site/install.log"
+for component in python python_gvxr; do cmake --install "$build" --component $component --prefix "$site/python"; done >"$site/install.log"
 PYTHONPATH=$site/python PATH=$build/bin:$PATH
 export PYTHONPATH PATH PYTHONDONTWRITEBYTECODE=1
 

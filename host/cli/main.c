@@ -45,11 +45,11 @@ static int run_verb(const cli_verb *verb, int count, char **words) {
     } else if (exit_status == CLI_DONE) {
         cli_catch_signals();
         guard_outputs(&arguments);
-        cli_set_quiet(cli_given(&arguments, &cli_flag_quiet));
-        cli_set_verbose(cli_given(&arguments, &cli_flag_verbose));
+        cli_set_quiet(cli_given(&arguments, "--quiet"));
+        cli_set_verbose(cli_given(&arguments, "--verbose"));
         exit_status = cli_check_overwrites(&arguments);
         if (exit_status == CLI_DONE) exit_status = verb->run(&arguments);
-        if (exit_status == CLI_DONE && cli_given(&arguments, &cli_flag_strict) && cli_warning_count() > 0)
+        if (exit_status == CLI_DONE && cli_given(&arguments, "--strict") && cli_warning_count() > 0)
             exit_status = cli_error(CLI_CHECK_FAILED, "%d warning%s, which --strict makes an error",
                                     cli_warning_count(), cli_warning_count() == 1 ? "" : "s");
     }

@@ -1,7 +1,8 @@
-/* SHA-256 (FIPS 180-4), which names and checks what the library keeps on disk. Private. */
+/* SHA-256 (FIPS 180-4) by libmd, which names and checks what the library keeps on disk. Private. */
 #ifndef SKG_DIGEST_H
 #define SKG_DIGEST_H
 
+#include <sha2.h>
 #include <stddef.h>
 #include <stdint.h>
 
@@ -10,11 +11,7 @@ typedef struct {
 } skg_digest;
 
 /* A digest that is being computed. */
-typedef struct {
-    uint32_t state[8];
-    uint64_t length; /* bytes so far */
-    uint8_t block[64];
-} skg_digester;
+typedef SHA2_CTX skg_digester;
 
 void skg_digest_start(skg_digester *digester);
 void skg_digest_add(skg_digester *digester, const void *data, size_t bytes);

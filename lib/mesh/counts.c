@@ -71,7 +71,7 @@ static skg_status count_glb(const char *path, FILE *stream, int64_t size) {
 
 /* The whole text, of an archive the part with the extension of its kind. */
 static skg_status read_text(const char *path, FILE *stream, int64_t size, const char *end, char **text) {
-    if (skg_archive_is(stream)) return skg_archive_read(path, stream, size, end, 0, text);
+    if (skg_archive_is(stream)) return skg_archive_read(path, end, 0, text);
     return read_at(stream, path, 0, size, text);
 }
 

@@ -64,7 +64,7 @@ static double of_amf(skg_xml *xml) {
 
 /* The head of a text file, or of the part of an archive that ends as it should. */
 static skg_status read_head(const char *path, FILE *stream, int64_t size, const char *part, char **head) {
-    if (skg_archive_is(stream)) return skg_archive_read(path, stream, size, part, 0, head);
+    if (skg_archive_is(stream)) return skg_archive_read(path, part, 0, head);
     const int64_t most = size < HEAD ? size : HEAD;
     SKG_TRY(skg_alloc(most + 1, 1, path, head));
     if (fseek(stream, 0, SEEK_SET) != 0 || fread(*head, 1, (size_t)most, stream) != (size_t)most)

@@ -128,7 +128,7 @@ static skg_status check_scene(const char *path, int64_t size, const struct aiSce
  * root node, which has no place of its own: there the numbers of the file are kept, and the unit is used once, here. */
 static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays) {
     struct aiFileIO files;
-    SKG_TRY(skg_archive_check(path, stream, size));
+    SKG_TRY(skg_archive_check(path, stream));
     SKG_TRY(skg_mesh_check_counts(path, stream, size));
     SKG_TRY(skg_mesh_file_unit(path, stream, size, arrays->unit_mm > 0, &arrays->file_unit_mm));
     skg_assimp_files(&files);

@@ -36,7 +36,6 @@ typedef struct {
 
 typedef struct {
     const char *path;
-    FILE *stream;
     int64_t size;
     model *models;
     int64_t count;
@@ -142,8 +141,8 @@ static skg_status list_objects(reader *r, int64_t index) {
 static skg_status read_model(reader *r, int64_t index) {
     char name[LONGEST], *text = NULL;
     memcpy(name, r->models[index].name, sizeof name);
-    SKG_TRY(*name ? skg_archive_read(r->path, r->stream, r->size, name, 1, &text)
-                  : skg_archive_read_model(r->path, r->stream, r->size, (char[SKG_RELATION_MAX]){0}, &text));
+    SKG_TRY(*name ? skg_archive_read(r->path, name, 1, &text)
+                  : skg_archive_read_model(r->path, (char[SKG_RELATION_MAX]){0}, &text));
     if (!text)
         return skg_fail(SKG_ERR_FORMAT, "%s: its objects name the part \"%s\", which is not there", r->path,
                         name);
@@ -276,8 +275,8 @@ static skg_status read_build(reader *r) {
 }
 
 skg_status skg_mesh_read_3mf(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays) {
-    reader r = {.path = path, .stream = stream, .size = size, .arrays = arrays};
-    SKG_TRY(skg_archive_check(path, stream, size));
+    reader r = {.path = path, .size = size, .arrays = arrays};
+    SKG_TRY(skg_archive_check(path, stream));
     const skg_status status = read_build(&r);
     for (int64_t i = 0; i < r.count; i++) {
         skg_free(&r.models[i].text);

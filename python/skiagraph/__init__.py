@@ -15,6 +15,10 @@ the library is an Error, with a subclass for each status.
 """
 from typing import Any as _Any
 
+from ._beside import folders as _folders
+
+__path__ = _folders(__path__)
+
 from . import torch
 from ._device import Device, RangeWarning, SkiagraphWarning, devices
 from ._distance import distance
@@ -42,7 +46,7 @@ __all__ = [*_errors, "Beam", "Counter", "Device", "LabelError", "Lag", "Material
 
 
 def __getattr__(name: str) -> _Any:
-    """gVXR's modules beside its calls: `from skiagraph import gvxr, json2gvxr, gvxr2json`."""
+    """gVXR's modules beside its calls: `from skiagraph import gvxr, json2gvxr, gvxr2json`, of the package skiagraph-gvxr."""
     if name in ("gvxr", "json2gvxr", "gvxr2json"):
         import importlib
 

@@ -5,6 +5,7 @@ doubles with all their digits, so that the file reads back to the same bits.
 """
 from __future__ import annotations
 
+import functools
 import json
 import os
 import pathlib
@@ -17,6 +18,7 @@ from numpy.typing import NDArray
 
 from ._interface import ArgumentError, SceneError
 from ._library import ffi, string
+from ._source import schema
 from .beam import Beam
 from .material import Material
 from .part import Part
@@ -26,10 +28,9 @@ from .view import View
 if TYPE_CHECKING:
     from ._state import State
 
-_SHAPES = ("Path", "Unit", "Cube", "Cuboid", "Parallelepiped", "Cylinder", "Sphere", "StepWedge", "FlipNormals", "FlipNormal",
-           "FlipNormalVectors", "InvertNormal", "InvertNormals", "InvertNormalVectors")
+_SHAPES = ("Path", "Unit", "Cube", "Cuboid", "Cylinder", "Sphere", "StepWedge", "FlipNormals")
 _Z_FROM_Y = np.array([[1.0, 0, 0, 0], [0, 0, -1, 0], [0, 1, 0, 0], [0, 0, 0, 1]])
-_PLACES = ("Transform", "MoveToCentre", "MoveToCenter")
+_PLACES = ("Transform", "MoveToCentre")
 
 
 def save(state: State, path: str | os.PathLike[str]) -> None:
@@ -94,6 +95,14 @@ def _put(found: dict[str, Any], name: str, value: Any) -> None:
 def _drop(found: dict[str, Any], *names: str) -> None:
     for name in names:
         found.pop(_named(found, name), None)
+
+
+@functools.cache
+def _spellings(*names: str) -> list[str]:
+    """These keys of a sample in every spelling that the schema has."""
+    said = {f"another spelling of {name}" for name in names}
+    keys = schema()["$defs"]["Sample"]["properties"]
+    return [key for key, form in keys.items() if key in names or form.get("$comment") in said]
 
 
 def _object(found: dict[str, Any], name: str) -> dict[str, Any]:
@@ -191,8 +200,9 @@ def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> 
             sample[_named(sample, "Material")], density = material_text(_material(state, part), _writer(target, part))
             if density:
                 sample["Density"] = density
-        if not any(_named(sample, shape) in sample for shape in _SHAPES) or part.label in changed["meshes"]:
-            _drop(sample, *_SHAPES)
+        shapes = _spellings(*_SHAPES)
+        if not any(_named(sample, shape) in sample for shape in shapes) or part.label in changed["meshes"]:
+            _drop(sample, *shapes)
             sample.update(Path=_mesh_file(target, part), Unit="mm")
         made.append(sample)
     _drop(text, "SceneGraph")
@@ -229,7 +239,7 @@ def _say_all(sample: dict[str, Any], part: Part) -> None:
 
 def _place(sample: dict[str, Any], part: Part, has_mesh: bool) -> None:
     """The pose, as one matrix. has_mesh: its mesh becomes a file."""
-    _drop(sample, *_PLACES)
+    _drop(sample, *_spellings(*_PLACES))
     pose = part.pose
     if _named(sample, "Cylinder") in sample and not has_mesh:
         pose = pose @ _Z_FROM_Y  # a sample's cylinder stands along y, that of the part along z

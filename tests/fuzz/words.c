@@ -13,21 +13,21 @@ static void read_flags(const cli_arguments *arguments) {
         int32_t choice = 0;
         int64_t number = 7;
         double low = 0, high = 0;
-        if (!cli_given(arguments, flag) || !cli_flag_has_value(flag)) continue;
-        if (!cli_value(arguments, flag) || !cli_nth_value(arguments, flag, 0)) abort();
-        if (flag->values && cli_choice(arguments, flag, &choice) == CLI_DONE &&
+        if (!cli_given(arguments, flag->name) || !cli_flag_has_value(flag)) continue;
+        if (!cli_value(arguments, flag->name) || !cli_nth_value(arguments, flag->name, 0)) abort();
+        if (flag->values && cli_choice(arguments, flag->name, &choice) == CLI_DONE &&
             (choice < 0 || !flag->values[choice].name))
             abort();
-        if (cli_integer(arguments, flag, 0, 1000, &number) == CLI_DONE && (number < 0 || number > 1000))
+        if (cli_integer(arguments, flag->name, 0, 1000, &number) == CLI_DONE && (number < 0 || number > 1000))
             abort();
-        if (cli_range(arguments, flag, &low, &high) == CLI_DONE && !(low < high)) abort();
+        if (cli_range(arguments, flag->name, &low, &high) == CLI_DONE && !(low < high)) abort();
     }
 }
 
 static void use(const cli_verb *verb, const cli_arguments *arguments) {
     read_flags(arguments);
     if (verb->manual != &cli_manual_material && verb->manual != &cli_manual_beam) return;
-    if (cli_given(arguments, &cli_flag_plot)) return;
+    if (cli_given(arguments, "-o")) return;
     const int exit_status = verb->run(arguments);
     if (exit_status < CLI_DONE || exit_status > CLI_OUTPUT) abort();
 }

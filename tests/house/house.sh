@@ -40,7 +40,7 @@ awk '$1 == "hook"' "$house" >>"$work/facts"
 awk -f "$here/arrows.awk" "$work/facts" | sort -u >"$work/arrows"
 awk 'FNR == NR { rank[$1] = $2; next }
     function room(file) {
-        if (file ~ /^(cli|bench|python|kernels)\//) return substr(file, 1, index(file, "/") - 1) # these have folders inside
+        if (file ~ /^(cli|bench|python|gvxr|kernels)\//) return substr(file, 1, index(file, "/") - 1) # these have folders inside
         sub(/\/[^\/]*$/, "", file)
         return file
     }

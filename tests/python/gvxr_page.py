@@ -8,6 +8,8 @@ script names the package, `gvxrPython3` becomes `skiagraph`, and `gvxrPython3.NA
 was written from gVXR's documentation. Its values are in gVXR's units: MeV per pixel, cm of path length, matrices of 16
 numbers column by column in mm. A call that is refused raises `skiagraph.UnsupportedError` with the reason.
 
+The module is a package of its own, `skiagraph-gvxr`: `pip install . ./python/gvxr` in the folder of the project installs both.
+
 ```python
 from skiagraph import gvxr
 

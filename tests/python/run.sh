@@ -17,11 +17,27 @@ skip() {
 run_tests() {
     cd "$stage"
     "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" "$source/tests/python"
-    "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" --doctest-modules "$2"
+    "$1" -m pytest -q -c "$source/pyproject.toml" --rootdir "$stage" --doctest-modules --ignore "$2/_without" "$2"
     if "$1" -c "import mypy" 2>/dev/null; then
         MYPYPATH=${PYTHONPATH-} "$1" -m mypy --strict --config-file "$source/pyproject.toml" --cache-dir "$stage/mypy" \
             -p skiagraph
     fi
+}
+
+# skiagraph.gvxr is a package of its own: without it a sentence says what to install, and it may lie in another folder.
+# usage: try_gvxr PYTHON FOLDER OF_GVXR
+try_gvxr() {
+    for line in "import skiagraph.gvxr" "from skiagraph import gvxr" "from skiagraph import json2gvxr" "import skiagraph.gvxr.utils"; do
+        if PYTHONPATH=$2 "$1" -c "$line" 2>"$stage/without"; then
+            echo "$line: works without skiagraph-gvxr"
+            exit 1
+        fi
+        grep -q '^ModuleNotFoundError: skiagraph.gvxr is a package of its own: pip install skiagraph-gvxr' "$stage/without" ||
+            { cat "$stage/without"; exit 1; }
+    done
+    for path in "$2:$3" "$3:$2"; do
+        PYTHONPATH=$path "$1" -c "from skiagraph import gvxr, json2gvxr; import skiagraph.gvxr.utils; assert gvxr.__file__.startswith('$3')"
+    done
 }
 
 case $what in
@@ -29,6 +45,9 @@ package)
     "$python" -c "import cffi, numpy, pytest" 2>/dev/null ||
         skip "no NumPy, cffi or pytest for $python (python3-numpy, python3-cffi, python3-pytest)"
     cmake --install "$build" --component python --prefix "$stage/site" >"$stage/install.log"
+    cmake --install "$build" --component python_gvxr --prefix "$stage/gvxr" >>"$stage/install.log"
+    try_gvxr "$python" "$stage/site" "$stage/gvxr"
+    cmake --install "$build" --component python_gvxr --prefix "$stage/site" >>"$stage/install.log"
     PATH=$build/bin:$PATH PYTHONPATH=$stage/site run_tests "$python" "$stage/site/skiagraph"
     ;;
 wheel)
@@ -47,6 +66,10 @@ wheel)
         { tail -n 20 "$stage/audit.log"; exit 1; }
     ls "$stage"/repaired/skiagraph-*-py3-none-manylinux*.whl
     $python -m pip install -q --no-deps "$stage"/repaired/*.whl
+    $python -m pip wheel -q --no-build-isolation --no-deps -w "$stage/pure" "$source/python/gvxr" >"$stage/gvxr.log" 2>&1 ||
+        { tail -n 20 "$stage/gvxr.log"; exit 1; }
+    ls "$stage"/pure/skiagraph_gvxr-*-py3-none-any.whl
+    $python -m pip install -q --no-index "$stage"/pure/*.whl # it needs skiagraph, which is there
     echo "the repaired library takes nothing from the system but the C library's and the compiler's:"
     package=$(cd "$stage" && $python -c 'import skiagraph; print(skiagraph.__path__[0])')
     if ldd "$package"/lib/libskiagraph.so.* | grep '=> /' | grep -v "$stage" |

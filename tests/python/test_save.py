@@ -47,6 +47,16 @@ FILE = {"Source": {"Position": [0, -500, 0, "mm"], "Beam": [{"Energy": 60, "Unit
             {"Label": "nut", "Cube": [3, "mm"], "Material": "Fe", "MoveToCentre": True, "Parent": "rod"}]}
 
 
+@pytest.mark.parametrize("key", ["FlipNormals", "InvertNormalVectors", "invert normal"])
+def test_a_changed_mesh_is_not_turned_again(key, tmp_path):
+    """Whatever the key is called: the schema knows the spellings."""
+    scene = sk.Scene({**FILE, "Samples": [{"Label": "nut", "Cube": [3, "mm"], "Material": "Fe", key: True, "MoveToCenter": True}]})
+    scene["nut"].mesh.vertices = 2 * scene["nut"].mesh.vertices
+    again(scene, tmp_path / "scene.json")
+    sample, = json.loads((tmp_path / "scene.json").read_text())["Samples"]
+    assert set(sample) <= {"Label", "Path", "Unit", "Material", "Transform", "Parent"}
+
+
 def described(folder, **others):
     (folder / "old").mkdir()
     sk.Mesh.cuboid(30, 20, 25).save(folder / "old" / "pot.ply")

@@ -349,12 +349,12 @@ START_TEST(options_are_given_on) {
     ck_skg(skg_setup_options_get(setup, &options));
     ck_assert_int_eq(options.precision, SKG_PRECISION_DOUBLE);
     ck_assert_int_eq(options.tile, 32); /* what the file does not say stays */
-    ck_assert_double_eq(setup->tolerance, 1e-3);
+    ck_assert_double_eq(setup->said.tolerance, 1e-3);
     write_file("scene.json", good);
     ck_skg(load());
     ck_skg(skg_setup_options_get(setup, &options));
     ck_assert_int_eq(options.precision, SKG_PRECISION_DOUBLE);
-    ck_assert_double_lt(setup->tolerance, 0);
+    ck_assert_double_lt(setup->said.tolerance, 0);
 }
 END_TEST
 
@@ -420,7 +420,7 @@ START_TEST(settings_change_the_file) {
     write_file("scene.json", good);
     ck_skg(skg_setup_load(NULL, path, 5, settings, &setup));
     ck_assert_int_eq(setup->view.columns, 32);
-    ck_assert_int_eq(setup->precision, SKG_PRECISION_DOUBLE);
+    ck_assert_int_eq(setup->said.precision, SKG_PRECISION_DOUBLE);
     world_bounds(0, bounds);
     check_vector(bounds + 3, 10, 10, 10);
     check_vector(setup->view.source, 0, 400, 0); /* half a turn */

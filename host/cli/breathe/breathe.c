@@ -20,13 +20,13 @@
 enum { FRAMES_MAX = 1000000, RANGE_FRAMES = 16, RANGE_BINS = 4096 };
 static const double RANGE_HIGHEST = 32; /* -ln(I/I0) */
 
-static int read_positive(const cli_arguments *arguments, const cli_flag *flag, double *number) {
+static int read_positive(const cli_arguments *arguments, const char *flag, double *number) {
     const char *value = cli_value(arguments, flag);
     char *end = NULL;
     if (!value) return CLI_DONE;
     *number = strtod(value, &end);
     if (end == value || *end || !isfinite(*number) || !(*number > 0))
-        return cli_error(CLI_USAGE, "%s %s is not a number above 0", flag->name, value);
+        return cli_error(CLI_USAGE, "%s %s is not a number above 0", flag, value);
     return CLI_DONE;
 }
 
@@ -43,30 +43,30 @@ static int has_folder(const sequence *s) {
     return !is_one(s) && !film_is(s->place);
 }
 
-static int read_moment(const cli_arguments *arguments, const cli_flag *flag, double *number) {
+static int read_moment(const cli_arguments *arguments, const char *flag, double *number) {
     const char *value = cli_value(arguments, flag);
     char *end = NULL;
     *number = (double)NAN;
     if (!value) return CLI_DONE;
     *number = strtod(value, &end);
     if (end == value || *end || !isfinite(*number))
-        return cli_error(CLI_USAGE, "%s %s is not a number", flag->name, value);
+        return cli_error(CLI_USAGE, "%s %s is not a number", flag, value);
     return CLI_DONE;
 }
 
 static int read_flags(const cli_arguments *arguments, fluoroscopy *f, sequence *s) {
     *s = (sequence){.fps = 30};
-    s->place = cli_value(arguments, &cli_flag_breathe_output);
-    s->meshes = cli_value(arguments, &cli_flag_breathe_meshes);
+    s->place = cli_value(arguments, "-o");
+    s->meshes = cli_value(arguments, "--meshes");
     if (s->meshes) cli_guard_output(s->meshes);
     if (!s->place) return cli_error(CLI_USAGE, "breathe: no output is named; add -o DIR or -o FILE.mp4");
-    int exit_status = read_positive(arguments, &cli_flag_breathe_seconds, &s->seconds);
-    if (exit_status == CLI_DONE) exit_status = read_positive(arguments, &cli_flag_breathe_fps, &s->fps);
-    if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &f->low, &f->high);
-    const char *phase = cli_value(arguments, &cli_flag_breathe_phase);
+    int exit_status = read_positive(arguments, "--seconds", &s->seconds);
+    if (exit_status == CLI_DONE) exit_status = read_positive(arguments, "--fps", &s->fps);
+    if (exit_status == CLI_DONE) exit_status = cli_range(arguments, "--range", &f->low, &f->high);
+    const char *phase = cli_value(arguments, "--phase");
     s->phase = (double)NAN;
     if (exit_status == CLI_DONE && phase) exit_status = cli_phase("--phase", phase, &s->phase);
-    if (exit_status == CLI_DONE) exit_status = read_moment(arguments, &cli_flag_breathe_at, &s->at);
+    if (exit_status == CLI_DONE) exit_status = read_moment(arguments, "--at", &s->at);
     if (exit_status == CLI_DONE && is_film(s)) return film_check(s->place, s->fps);
     if (exit_status != CLI_DONE || !is_one(s)) return exit_status;
     if (!isnan(s->phase) && !isnan(s->at))
@@ -187,7 +187,7 @@ static int write_sequence(fluoroscopy *f, const sequence *s) {
 static int print(const cli_arguments *arguments, const fluoroscopy *f, const sequence *s) {
     const double rate = 1e3 * (double)s->frames / s->sequence_ms;
     const double range[2] = {f->low, f->high};
-    if (cli_given(arguments, &cli_flag_json)) {
+    if (cli_given(arguments, "--json")) {
         json_t *object = json_object();
         json_object_set_new(object, "frames", json_integer(s->frames));
         json_object_set_new(object, "frames_per_s", cli_json_number(rate));
@@ -222,7 +222,7 @@ static int print(const cli_arguments *arguments, const fluoroscopy *f, const seq
 }
 
 static int prepare(const cli_arguments *arguments, fluoroscopy *f, sequence *s) {
-    const char *outline = cli_value(arguments, &cli_flag_breathe_outline);
+    const char *outline = cli_value(arguments, "--outline");
     double period = 0;
     int exit_status = cli_open_session(arguments, 0, &f->session);
     if (exit_status == CLI_DONE) exit_status = cli_refuse_counting(&f->session, "breathe");

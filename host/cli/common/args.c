@@ -57,8 +57,7 @@ static int unknown_flag(const cli_manual *manual, const char *name) {
     return cli_unknown("flag", name, names, count, help);
 }
 
-/* The flag that a word names; "--name=value" names --name. */
-static const cli_flag *find_flag(const cli_manual *manual, const char *word) {
+const cli_flag *cli_find_flag(const cli_manual *manual, const char *word) {
     size_t length = strcspn(word, "=");
     for (int i = 0; manual->flags[i]; i++)
         if (strlen(manual->flags[i]->name) == length && strncmp(manual->flags[i]->name, word, length) == 0)
@@ -72,7 +71,7 @@ static int parse_flag(const cli_manual *manual, int count, char **words, int *at
         arguments->help = 1;
         return CLI_DONE;
     }
-    const cli_flag *flag = find_flag(manual, word);
+    const cli_flag *flag = cli_find_flag(manual, word);
     const char *equals = strchr(word, '='), *value = equals ? equals + 1 : NULL;
     if (!flag) {
         if (equals) word[equals - word] = '\0'; /* the message shows the name alone */
@@ -127,43 +126,45 @@ void cli_arguments_free(cli_arguments *arguments) {
     *arguments = (cli_arguments){0};
 }
 
-const char *cli_nth_value(const cli_arguments *arguments, const cli_flag *flag, int index) {
+const char *cli_nth_value(const cli_arguments *arguments, const char *flag, int index) {
     for (int i = 0; i < arguments->given_count; i++)
-        if (arguments->given[i].flag == flag && index-- == 0) return arguments->given[i].value;
+        if (strcmp(arguments->given[i].flag->name, flag) == 0 && index-- == 0)
+            return arguments->given[i].value;
     return NULL;
 }
 
-const char *cli_value(const cli_arguments *arguments, const cli_flag *flag) {
+const char *cli_value(const cli_arguments *arguments, const char *flag) {
     for (int i = arguments->given_count - 1; i >= 0; i--)
-        if (arguments->given[i].flag == flag) return arguments->given[i].value;
+        if (strcmp(arguments->given[i].flag->name, flag) == 0) return arguments->given[i].value;
     return NULL;
 }
 
-int cli_given(const cli_arguments *arguments, const cli_flag *flag) {
+int cli_given(const cli_arguments *arguments, const char *flag) {
     for (int i = 0; i < arguments->given_count; i++)
-        if (arguments->given[i].flag == flag) return 1;
+        if (strcmp(arguments->given[i].flag->name, flag) == 0) return 1;
     return 0;
 }
 
-int cli_choice(const cli_arguments *arguments, const cli_flag *flag, int32_t *choice) {
+int cli_choice(const cli_arguments *arguments, const char *flag, int32_t *choice) {
     const char *value = cli_value(arguments, flag), *names[NAMES_MAX];
     char known[256] = "";
     int count = 0;
     if (!value) return CLI_DONE;
-    for (; flag->values[count].name && count < NAMES_MAX; count++) {
+    const cli_item *const values = cli_find_flag(arguments->manual, flag)->values;
+    for (; values[count].name && count < NAMES_MAX; count++) {
         const size_t used = strlen(known);
-        names[count] = flag->values[count].name;
+        names[count] = values[count].name;
         snprintf(known + used, sizeof known - used, "%s%s", count == 0 ? "" : ", ", names[count]);
         if (!skg_same_name(value, names[count])) continue;
         *choice = count;
         return CLI_DONE;
     }
     const char *near = skg_nearest_name(value, names, count);
-    return cli_error(CLI_USAGE, "%s %s is not known%s%s; known: %s", flag->name, value,
+    return cli_error(CLI_USAGE, "%s %s is not known%s%s; known: %s", flag, value,
                      near ? "; did you mean " : "", near ? near : "", known);
 }
 
-int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t least, int64_t most,
+int cli_integer(const cli_arguments *arguments, const char *flag, int64_t least, int64_t most,
                 int64_t *number) {
     const char *value = cli_value(arguments, flag);
     if (!value) return CLI_DONE;
@@ -171,20 +172,19 @@ int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t le
     errno = 0;
     long long found = strtoll(value, &end, 10);
     if (end == value || *end || errno || found < least || found > most)
-        return cli_error(CLI_USAGE, "%s %s is not a whole number from %" PRId64 " to %" PRId64, flag->name,
-                         value, least, most);
+        return cli_error(CLI_USAGE, "%s %s is not a whole number from %" PRId64 " to %" PRId64, flag, value,
+                         least, most);
     *number = found;
     return CLI_DONE;
 }
 
-int cli_number(const cli_arguments *arguments, const cli_flag *flag, double least, double most,
-               double *number) {
+int cli_number(const cli_arguments *arguments, const char *flag, double least, double most, double *number) {
     const char *value = cli_value(arguments, flag);
     if (!value) return CLI_DONE;
     char *end = NULL;
     double found = strtod(value, &end);
     if (end == value || *end || !(found >= least && found <= most))
-        return cli_error(CLI_USAGE, "%s %s is not a number from %g to %g", flag->name, value, least, most);
+        return cli_error(CLI_USAGE, "%s %s is not a number from %g to %g", flag, value, least, most);
     *number = found;
     return CLI_DONE;
 }
@@ -196,15 +196,14 @@ int cli_phase(const char *given, const char *value, double *phase) {
     return cli_error(CLI_USAGE, "%s %s: a phase is a number from 0 to below 1", given, value);
 }
 
-int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high) {
+int cli_range(const cli_arguments *arguments, const char *flag, double *low, double *high) {
     const char *value = cli_value(arguments, flag);
     if (!value) return CLI_DONE;
     char *colon = NULL, *end = NULL;
     double a = strtod(value, &colon);
     double b = *colon == ':' ? strtod(colon + 1, &end) : 0;
     if (colon == value || *colon != ':' || end == colon + 1 || *end || !isfinite(a) || !isfinite(b) || a >= b)
-        return cli_error(CLI_USAGE, "%s %s is not two numbers LOW:HIGH, the lower number first", flag->name,
-                         value);
+        return cli_error(CLI_USAGE, "%s %s is not two numbers LOW:HIGH, the lower number first", flag, value);
     *low = a;
     *high = b;
     return CLI_DONE;

@@ -24,22 +24,25 @@ typedef struct {
 int cli_parse(const cli_manual *manual, int count, char **words, cli_arguments *arguments);
 void cli_arguments_free(cli_arguments *arguments);
 
-int cli_given(const cli_arguments *arguments, const cli_flag *flag);
+/* The flag of a verb that a word names, for its values; "--name=value" names --name. NULL: the verb does not have it. */
+const cli_flag *cli_find_flag(const cli_manual *manual, const char *word);
+
+/* Flags have their names here. A verb is not given what it does not have, so that rooms that several verbs use may ask for all. */
+int cli_given(const cli_arguments *arguments, const char *flag);
 
 /* The value given last, or NULL. */
-const char *cli_value(const cli_arguments *arguments, const cli_flag *flag);
+const char *cli_value(const cli_arguments *arguments, const char *flag);
 
 /* The value of the flag's occurrence `index`, counted from 0, or NULL. */
-const char *cli_nth_value(const cli_arguments *arguments, const cli_flag *flag, int index);
+const char *cli_nth_value(const cli_arguments *arguments, const char *flag, int index);
 
 /* These four leave their results as they are if the flag was not given. cli_choice: the index in
- * flag->values. */
-int cli_choice(const cli_arguments *arguments, const cli_flag *flag, int32_t *choice);
-int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t least, int64_t most,
+ * the flag's values. */
+int cli_choice(const cli_arguments *arguments, const char *flag, int32_t *choice);
+int cli_integer(const cli_arguments *arguments, const char *flag, int64_t least, int64_t most,
                 int64_t *number);
-int cli_number(const cli_arguments *arguments, const cli_flag *flag, double least, double most,
-               double *number);
-int cli_range(const cli_arguments *arguments, const cli_flag *flag, double *low, double *high);
+int cli_number(const cli_arguments *arguments, const char *flag, double least, double most, double *number);
+int cli_range(const cli_arguments *arguments, const char *flag, double *low, double *high);
 
 /* Reads a phase of the breath, from 0 to below 1. given: what the user wrote, for the message. */
 int cli_phase(const char *given, const char *value, double *phase);

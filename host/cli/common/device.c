@@ -16,7 +16,7 @@ static void keep_to_the_end(skg_context *context) {
 }
 
 int cli_open_context(const cli_arguments *arguments, skg_context **context, skg_device_info *device) {
-    const char *config = cli_value(arguments, &cli_flag_device);
+    const char *config = cli_value(arguments, "--device");
     int32_t untested = 0;
     int exit_status = CLI_DONE;
     char refused[CLI_REFUSED];

@@ -3,6 +3,7 @@
 
 #include "common/progress.h"
 #include "common/say.h"
+#include "cost/dial.h"
 #include "cost/measuring.h"
 #include "cost/output.h"
 
@@ -13,71 +14,39 @@
 static const double ADVISED =
     0.97; /* the share of the given time after which no recommendation is measured */
 
-static double ms_of(const cost_study *study, const cost_point *point) {
-    return study->measured.shots[point->shot].price_ms;
+/* Points of a reference by their error. Rays have prices; other points stand in the order of their work. The largest error decides where
+ * single pixels are wrong. */
+static cost_offer look_at(const cost_study *study, int index, const void *user) {
+    const int reference = *(const int *)user;
+    const cost_point *point = &study->measured.points[index];
+    const int counts = point->reference == reference &&
+                       !(reference == COST_OF_REPAIR && cost_is_other_body(study, &point->setting));
+    const double error =
+        reference == COST_OF_RAYS || reference == COST_OF_REPAIR ? point->max_flat : point->rms_flat;
+    return (cost_offer){counts ? error : (double)NAN,
+                        reference == COST_OF_RAYS ? cost_price_of(study, point) : index};
 }
 
-/* Marks the frontier of the rays' settings: no other is both faster and better. */
+/* Marks the frontier of the rays' settings. */
 static void find_frontier(cost_study *study) {
-    for (int i = 0; i < study->measured.count; i++) {
-        cost_point *point = &study->measured.points[i];
-        point->on_frontier = point->reference == COST_OF_RAYS && !isnan(point->max_flat);
-        for (int k = 0; k < study->measured.count && point->on_frontier; k++) {
-            const cost_point *other = &study->measured.points[k];
-            const double its = ms_of(study, other), ms = ms_of(study, point);
-            int no_worse =
-                other->reference == COST_OF_RAYS && its <= ms && other->max_flat <= point->max_flat;
-            int better = its < ms || other->max_flat < point->max_flat;
-            if (no_worse && better) point->on_frontier = 0;
-        }
-    }
+    const int rays = COST_OF_RAYS;
+    for (int i = 0; i < study->measured.count; i++)
+        study->measured.points[i].on_frontier =
+            cost_is_on_frontier(study, study->measured.count, look_at, &rays, i);
 }
 
-/* The fastest of the rays' settings within a bar, otherwise the most accurate. The price decides. */
-static int choose_rays(const cost_study *study, double bar) {
-    int fastest = -1, best = -1;
-    for (int i = 0; i < study->measured.count; i++) {
-        const cost_point *point = &study->measured.points[i];
-        if (point->reference != COST_OF_RAYS || isnan(point->max_flat)) continue;
-        if (best < 0 || point->max_flat < study->measured.points[best].max_flat) best = i;
-        if (!(point->max_flat <= bar)) continue;
-        if (fastest < 0 || ms_of(study, point) < ms_of(study, &study->measured.points[fastest])) fastest = i;
-    }
-    return fastest >= 0 ? fastest : best;
-}
-
-/* The first repair within a bar, otherwise the best one; -1: there is nothing to repair or to unite. */
-static int choose_repair(const cost_study *study, double bar) {
-    int best = -1;
-    for (int i = 0; i < study->measured.count; i++) { /* points stand in the order of their work */
-        if (study->measured.points[i].reference != COST_OF_REPAIR ||
-            cost_is_other_body(study, &study->measured.points[i].setting))
-            continue;
-        best = i;
-        if (study->measured.points[i].max_flat <= bar) return i;
-    }
-    return best;
-}
-
-/* The first setting of a dial within a bar, otherwise the most accurate; -1: the scene has no such dial.
- * Settings stand in the order of their work. */
-static int choose_sampling(const cost_study *study, int reference, double bar) {
-    int best = -1;
-    for (int i = 0; i < study->measured.count; i++) {
-        if (study->measured.points[i].reference != reference) continue;
-        if (study->measured.points[i].rms_flat <= bar) return i;
-        if (best < 0 || study->measured.points[i].rms_flat < study->measured.points[best].rms_flat) best = i;
-    }
-    return best;
+/* The cheapest point of a reference within a bar, otherwise the most accurate; -1: there is none. */
+static int choose(const cost_study *study, int reference, double bar) {
+    int best;
+    const int cheapest = cost_cheapest(study, study->measured.count, look_at, &reference, bar, &best);
+    return cheapest >= 0 ? cheapest : best;
 }
 
 static cost_setting whole_of(const cost_study *study, const cost_advice *advice) {
     cost_setting setting = study->measured.points[advice->rays].setting;
-    if (advice->samples >= 0) setting.samples = study->measured.points[advice->samples].setting.samples;
-    if (advice->supersampling >= 0)
-        setting.supersampling = study->measured.points[advice->supersampling].setting.supersampling;
-    if (advice->triangles >= 0) setting.meshing = study->measured.points[advice->triangles].setting.meshing;
-    if (advice->repair >= 0) setting.repair = study->measured.points[advice->repair].setting.repair;
+    for (int dial = COST_SAMPLES; dial <= COST_TRIANGLES; dial++)
+        if (advice->chosen[dial] >= 0)
+            cost_take(dial, &study->measured.points[advice->chosen[dial]].setting, &setting);
     if (setting.repair == cost_repair(study, &study->subject.own)) setting.repair = -1;
     return setting;
 }
@@ -87,7 +56,7 @@ static double reference_ms(const cost_study *study, const cost_setting *setting)
     double slowest = 0;
     for (int i = 0; i < study->measured.count; i++)
         if (study->measured.points[i].reference == COST_OF_RAYS)
-            slowest = fmax(slowest, ms_of(study, &study->measured.points[i]));
+            slowest = fmax(slowest, cost_price_of(study, &study->measured.points[i]));
     return slowest / cost_passes(&study->subject.own) * cost_passes(setting);
 }
 
@@ -95,10 +64,8 @@ static int measure_whole(cost_study *study, cost_advice *advice) {
     double *image = calloc((size_t)study->pixels, sizeof *image);
     double *reference = calloc((size_t)study->pixels, sizeof *reference);
     cost_setting best = study->measured.references[COST_OF_RAYS].setting;
-    best.samples = advice->whole.setting.samples;
-    best.supersampling = advice->whole.setting.supersampling;
-    best.meshing = advice->whole.setting.meshing;
-    best.repair = advice->whole.setting.repair;
+    for (int dial = COST_SAMPLES; dial <= COST_TRIANGLES; dial++)
+        cost_take(dial, &advice->whole.setting, &best);
     int exit_status = CLI_DONE;
     if (!image || !reference) {
         exit_status = cli_error(CLI_DEVICE, "out of host memory for the image");
@@ -137,7 +104,7 @@ static int time_whole(cost_study *study, const cost_setting *setting) {
 static int advise_whole(cost_study *study, cost_advice *advice) {
     double bar = advice->bar;
     for (int turn = 0; turn < 3; turn++, bar /= 4) {
-        advice->rays = choose_rays(study, bar);
+        advice->rays = choose(study, COST_OF_RAYS, bar);
         advice->rays_met = study->measured.points[advice->rays].max_flat <= advice->bar;
         advice->whole = (cost_point){.dial = COST_SCENE, .setting = whole_of(study, advice)};
         const cost_setting *setting = &advice->whole.setting;
@@ -195,7 +162,8 @@ static void blame_coarse(const cost_study *study, int source, int point, double 
 /* Why the tolerance is not reached. */
 static void give_reason(const cost_study *study, cost_advice *advice) {
     static const int sources[] = {COST_SOURCE_SAMPLES, COST_SOURCE_SUPERSAMPLING, COST_SOURCE_TRIANGLES};
-    const int sampled[] = {advice->samples, advice->supersampling, advice->triangles};
+    const int *const chosen = advice->chosen;
+    const int sampled[] = {chosen[COST_SAMPLES], chosen[COST_SUPERSAMPLING], chosen[COST_TRIANGLES]};
     char *text = advice->reason;
     const size_t size = sizeof advice->reason;
     const cost_point *rays = &study->measured.points[advice->rays];
@@ -208,14 +176,14 @@ static void give_reason(const cost_study *study, cost_advice *advice) {
         blame(study, sampled[k], sampled[k] < 0 ? 0 : study->measured.points[sampled[k]].rms_flat,
               advice->bar, text, size);
     for (int k = 0; k < 3; k++) blame_coarse(study, sources[k], sampled[k], advice->bar, text, size);
-    blame_coarse(study, COST_SOURCE_REPAIR, advice->repair, advice->bar, text, size);
+    blame_coarse(study, COST_SOURCE_REPAIR, chosen[COST_REPAIR], advice->bar, text, size);
     if (*text && study->left_out)
         cost_append(text, size, "; %" PRId64 " settings did not fit in the given time", study->left_out);
 }
 
 int cost_advise(cost_study *study) {
     find_frontier(study);
-    if (choose_rays(study, 0) < 0)
+    if (choose(study, COST_OF_RAYS, 0) < 0)
         return cli_error(CLI_DEVICE, "no setting could be measured: one image of the scene takes too long");
     for (int i = 0; i < COST_TOLERANCES; i++) {
         cost_advice *advice = &study->judged.advice[i];
@@ -223,13 +191,11 @@ int cost_advise(cost_study *study) {
                               fmax(cost_left_ms(study, ADVISED), 0));
         advice->tolerance = cost_tolerances[i];
         advice->bar = fmax(advice->tolerance, study->subject.noise / 10);
-        advice->samples = choose_sampling(study, COST_OF_SAMPLES, advice->bar);
-        advice->supersampling = choose_sampling(study, COST_OF_AREAS, advice->bar);
-        advice->triangles = choose_sampling(study, COST_OF_TRIANGLES, advice->bar);
-        advice->repair = choose_repair(study, advice->bar);
-        advice->sampling_met = is_met(study, advice->samples, advice->bar) &&
-                               is_met(study, advice->supersampling, advice->bar) &&
-                               is_met(study, advice->triangles, advice->bar);
+        advice->sampling_met = 1;
+        for (int dial = COST_SAMPLES; dial <= COST_TRIANGLES; dial++) {
+            advice->chosen[dial] = choose(study, cost_dials[dial].reference, advice->bar);
+            if (dial != COST_REPAIR) advice->sampling_met &= is_met(study, advice->chosen[dial], advice->bar);
+        }
         int exit_status = advise_whole(study, advice);
         if (exit_status != CLI_DONE) return exit_status;
         advice->rays_command = cost_command(study, &study->measured.points[advice->rays].setting);

@@ -28,29 +28,7 @@ static int choose_pair(const cost_study *study, int source, cost_setting *from, 
     /* Few source samples, to save time. */
     if (source == COST_SOURCE_SUPERSAMPLING && from->samples > 16) from->samples = 16;
     *to = *from;
-    switch (source) {
-    case COST_SOURCE_TRIANGLES:
-        to->meshing = cost_coarse_meshing(study);
-        return to->meshing >= 0;
-    case COST_SOURCE_PRECISION:
-        to->precision = SKG_PRECISION_DOUBLE;
-        return study->session.device.double_precision;
-    case COST_SOURCE_BINS:
-        to->bins = study->subject.finest;
-        return 1;
-    case COST_SOURCE_TOLERANCE:
-        to->tolerance = 0;
-        return 1;
-    case COST_SOURCE_SAMPLES:
-        to->samples *= 4;
-        return to->samples > 0;
-    case COST_SOURCE_SUPERSAMPLING:
-        to->supersampling *= 2;
-        return 1;
-    default:
-        to->repair = cost_best_repair(study);
-        return 1;
-    }
+    return cost_improve(study, cost_source_dial(source), to);
 }
 
 /* Every energy takes longer than the energies of a tolerance, at most in proportion to their numbers. */

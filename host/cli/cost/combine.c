@@ -2,6 +2,7 @@
 #include "cost/measuring.h"
 
 #include "common/progress.h"
+#include "cost/dial.h"
 #include "cost/dials.h"
 
 #include <math.h>
@@ -20,10 +21,6 @@ typedef struct {
     double ms, error; /* predicted */
 } guess;
 
-static double ms_of(const cost_study *study, const cost_point *point) {
-    return study->measured.shots[point->shot].price_ms;
-}
-
 static void list(const cost_study *study, int reference, values *its) {
     *its = (values){0};
     for (int i = 0; i < study->measured.count; i++) {
@@ -36,7 +33,7 @@ static void list(const cost_study *study, int reference, values *its) {
         const int is_own = reference == COST_OF_AREAS
                                ? point->setting.supersampling == study->subject.own.supersampling
                                : dial == COST_SCENE;
-        if (is_own) its->own_ms = ms_of(study, point);
+        if (is_own) its->own_ms = cost_price_of(study, point);
         if (its->count < VALUES_MAX) its->points[its->count++] = i;
     }
     if (!(its->own_ms > 0)) its->count = 0;
@@ -47,27 +44,10 @@ static guess change(const cost_study *study, const guess *before, const values *
     guess after = *before;
     const cost_point *point = &study->measured.points[its->points[value]];
     const cost_setting *to = &point->setting;
-    after.ms *= ms_of(study, point) / its->own_ms;
+    after.ms *= cost_price_of(study, point) / its->own_ms;
     after.error = hypot(before->error, point->rms_flat);
-    switch (point->reference) {
-    case COST_OF_RAYS:
-        after.setting.precision = to->precision;
-        after.setting.tolerance = to->tolerance;
-        after.setting.bins = to->bins;
-        break;
-    case COST_OF_SAMPLES:
-        after.setting.samples = to->samples;
-        break;
-    case COST_OF_AREAS:
-        after.setting.supersampling = to->supersampling;
-        break;
-    case COST_OF_REPAIR:
-        after.setting.repair = to->repair;
-        break;
-    default:
-        after.setting.meshing = to->meshing;
-        break;
-    }
+    for (int dial = COST_PRECISION; dial < COST_DIALS; dial++)
+        if (cost_dials[dial].reference == point->reference) cost_take(dial, to, &after.setting);
     return after;
 }
 
@@ -142,15 +122,13 @@ int cost_combine(cost_study *study, double share, double *image) {
     return exit_status;
 }
 
+static cost_offer look_at_shot(const cost_study *study, int index, const void *user) {
+    (void)user;
+    return (cost_offer){study->measured.shots[index].total_rms, study->measured.shots[index].price_ms};
+}
+
 void cost_find_frontier(cost_study *study) {
-    for (int i = 0; i < study->measured.shot_count; i++) {
-        cost_shot *shot = &study->measured.shots[i];
-        shot->on_frontier = !isnan(shot->total_rms);
-        for (int k = 0; k < study->measured.shot_count && shot->on_frontier; k++) {
-            const cost_shot *other = &study->measured.shots[k];
-            const int no_worse = other->price_ms <= shot->price_ms && other->total_rms <= shot->total_rms;
-            const int better = other->price_ms < shot->price_ms || other->total_rms < shot->total_rms;
-            if (no_worse && better) shot->on_frontier = 0;
-        }
-    }
+    for (int i = 0; i < study->measured.shot_count; i++)
+        study->measured.shots[i].on_frontier =
+            cost_is_on_frontier(study, study->measured.shot_count, look_at_shot, NULL, i);
 }

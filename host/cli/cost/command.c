@@ -1,6 +1,8 @@
 /* The command line that makes the image of a point. */
 #include "cost/output.h"
 
+#include "cost/dial.h"
+
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -27,10 +29,10 @@ static void put_word(FILE *stream, const char *word) {
     fputc('\'', stream);
 }
 
-static void put_flag(FILE *stream, const cost_study *study, const cli_flag *flag) {
+static void put_flag(FILE *stream, const cost_study *study, const char *flag) {
     const char *value;
     for (int i = 0; (value = cli_nth_value(study->arguments, flag, i)); i++) {
-        fprintf(stream, " %s", flag->name);
+        fprintf(stream, " %s", flag);
         put_word(stream, value);
     }
 }
@@ -62,16 +64,18 @@ char *cost_command(const cost_study *study, const cost_setting *setting) {
     if (!stream) return NULL;
     put_scene(stream, study, meshing);
     fputs(" -o image.mha", stream);
-    put_flag(stream, study, &cli_flag_device);
-    put_flag(stream, study, &cli_flag_strategy);
-    put_flag(stream, study, &cli_flag_set);
-    if (cli_given(study->arguments, &cli_flag_lenient)) fputs(" --lenient", stream);
-    fprintf(stream, " --precision %s --tolerance %.3g", cost_precision_name(setting), setting->tolerance);
-    if (setting->bins > 0)
-        fprintf(stream, " --set Source.Beam.MaxNumberOfEnergyBins=%lld", (long long)setting->bins);
-    if (setting->samples > 0) fprintf(stream, " --set Source.Samples=%lld", (long long)setting->samples);
-    if (setting->supersampling != study->subject.own.supersampling)
-        fprintf(stream, " --set Detector.Oversampling=%d", (int)setting->supersampling);
+    put_flag(stream, study, "--device");
+    put_flag(stream, study, "--strategy");
+    put_flag(stream, study, "--set");
+    if (cli_given(study->arguments, "--lenient")) fputs(" --lenient", stream);
+    for (int dial = COST_PRECISION; dial < COST_DIALS; dial++) {
+        char flag[128] = "";
+        const int is_own =
+            dial == COST_SUPERSAMPLING && setting->supersampling == study->subject.own.supersampling;
+        if (!cost_dials[dial].flag || is_own || !cost_has_value(dial, setting)) continue;
+        cost_append_value(study, setting, dial, cost_dials[dial].flag, flag, sizeof flag);
+        fputs(flag, stream);
+    }
     if (setting->repair >= COST_UNITE)
         fprintf(stream, " --set 'Repair=[\"%s\",\"union\"]'",
                 cost_repair_names[setting->repair - COST_UNITE]);

@@ -31,7 +31,7 @@ static char *table_beside(const char *path) {
 /* Checks before the long computation that every -o can be written. */
 static int check_outputs(const cli_arguments *arguments) {
     const char *path;
-    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_cost_output, i)); i++) {
+    for (int i = 0; (path = cli_nth_value(arguments, "-o", i)); i++) {
         if (!cli_has_extension(path, ".html") && !cli_has_extension(path, ".csv"))
             return cli_error(CLI_USAGE, "-o %s: its extension is neither .html nor .csv", path);
         if (cli_has_extension(path, ".html")) {
@@ -72,7 +72,7 @@ static int write_output(const cost_study *study, const char *path) {
 static int write_outputs(const cost_study *study) {
     const char *path;
     int failure = CLI_DONE;
-    for (int i = 0; (path = cli_nth_value(study->arguments, &cli_flag_cost_output, i)); i++) {
+    for (int i = 0; (path = cli_nth_value(study->arguments, "-o", i)); i++) {
         int its = write_output(study, path);
         if (failure == CLI_DONE) failure = its;
     }
@@ -81,10 +81,10 @@ static int write_outputs(const cost_study *study) {
 
 static int report(const cost_study *study) {
     const char *path;
-    if (cli_given(study->arguments, &cli_flag_json)) return cli_json_print(cost_json(study));
+    if (cli_given(study->arguments, "--json")) return cli_json_print(cost_json(study));
     if (cli_is_quiet()) return CLI_DONE;
     cost_print(study);
-    for (int i = 0; (path = cli_nth_value(study->arguments, &cli_flag_cost_output, i)); i++)
+    for (int i = 0; (path = cli_nth_value(study->arguments, "-o", i)); i++)
         printf(cli_has_extension(path, ".csv") ? "wrote %s\n" : "wrote %s, and its table as .csv\n", path);
     return CLI_DONE;
 }
@@ -92,12 +92,11 @@ static int report(const cost_study *study) {
 static int read_flags(cost_study *study) {
     const cli_arguments *arguments = study->arguments;
     double within = 60;
-    study->quick = cli_given(arguments, &cli_flag_cost_quick);
-    study->sensitive = cli_given(arguments, &cli_flag_cost_sensitivity);
+    study->quick = cli_given(arguments, "--quick");
+    study->sensitive = cli_given(arguments, "--sensitivity");
     study->frames = 1;
-    int exit_status = cli_number(arguments, &cli_flag_cost_within, 1, 86400, &within);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_cost_frames, 1, 4096, &study->frames);
+    int exit_status = cli_number(arguments, "--within", 1, 86400, &within);
+    if (exit_status == CLI_DONE) exit_status = cli_integer(arguments, "--frames", 1, 4096, &study->frames);
     study->begun_ms = cli_now_ms();
     study->within_ms = 1e3 * within;
     return exit_status;

@@ -2,6 +2,7 @@
 #include "cost/output.h"
 
 #include "cost/clock.h"
+#include "cost/dial.h"
 
 #include <inttypes.h>
 #include <math.h>
@@ -12,19 +13,6 @@
 static void put_number(FILE *stream, double value) {
     if (!isnan(value)) fprintf(stream, "%.6g", value);
     fputc(',', stream);
-}
-
-static void put_setting(FILE *stream, const cost_study *study, const cost_setting *setting) {
-    fprintf(stream, "%s,%.6g,", cost_precision_name(setting), setting->tolerance);
-    fprintf(stream, "%" PRId64 ",%" PRId64 ",%d,", setting->bins, setting->samples,
-            (int)setting->supersampling);
-    fprintf(stream, "%s,%" PRId64 ",",
-            study->subject.has_leaky || study->subject.has_shells ? cost_repair_of(study, setting) : "",
-            cost_triangles(study, setting));
-    if (setting->relaxation < 0)
-        fputs(",,", stream); /* empty: the setting has no breath */
-    else
-        fprintf(stream, "%d,%g,", (int)setting->relaxation, setting->hysteresis);
 }
 
 char *cost_csv(const cost_study *study) {
@@ -41,7 +29,8 @@ char *cost_csv(const cost_study *study) {
         const cost_point *p = &study->measured.points[i];
         const cost_shot *shot = &study->measured.shots[p->shot];
         fprintf(stream, "%s,", cost_dial_name(p->dial));
-        put_setting(stream, study, &p->setting);
+        for (int dial = COST_PRECISION; dial < COST_DIALS; dial++)
+            cost_put_value(stream, study, &p->setting, dial);
         fprintf(stream, "%" PRId64 ",%" PRId64 ",%" PRId64 ",%.6g,%.6g,", shot->nodes, shot->planes,
                 shot->runs, shot->plan_ms, shot->price_ms);
         put_number(stream, shot->uncertainty_ms);

@@ -3,6 +3,7 @@
 
 #include "common/encode.h"
 #include "cost/clock.h"
+#include "cost/dial.h"
 #include "cost/findings.h"
 #include "cost/measuring.h"
 
@@ -13,24 +14,12 @@
 #include <time.h>
 
 static json_t *setting_json(const cost_study *study, const cost_setting *setting) {
-    const int breathes = setting->relaxation >= 0;
     char text[160];
     json_t *object = json_object();
     cost_describe(study, setting, text, sizeof text);
     json_object_set_new(object, "text", cli_json_text(text));
-    json_object_set_new(object, "precision", cli_json_text(cost_precision_name(setting)));
-    json_object_set_new(object, "tolerance", cli_json_number(setting->tolerance));
-    json_object_set_new(object, "bins", setting->bins > 0 ? json_integer(setting->bins) : json_null());
-    json_object_set_new(object, "samples",
-                        setting->samples > 0 ? json_integer(setting->samples) : json_null());
-    json_object_set_new(object, "supersampling", json_integer(setting->supersampling));
-    json_object_set_new(object, "repair",
-                        study->subject.has_leaky || study->subject.has_shells
-                            ? cli_json_text(cost_repair_of(study, setting))
-                            : json_null());
-    json_object_set_new(object, "triangles", json_integer(cost_triangles(study, setting)));
-    json_object_set_new(object, "relaxation", breathes ? json_integer(setting->relaxation) : json_null());
-    json_object_set_new(object, "hysteresis", breathes ? json_real(setting->hysteresis) : json_null());
+    for (int dial = COST_PRECISION; dial < COST_DIALS; dial++)
+        json_object_set_new(object, cost_dials[dial].key, cost_value_json(study, setting, dial));
     return object;
 }
 
@@ -114,16 +103,15 @@ static json_t *index_json(int index) {
 }
 
 static json_t *advice_json(const cost_study *study, const cost_advice *advice) {
+    static const int chosen[] = {COST_SAMPLES, COST_SUPERSAMPLING, COST_TRIANGLES, COST_REPAIR};
     json_t *object = json_object();
     json_object_set_new(object, "tolerance", cli_json_number(advice->tolerance));
     json_object_set_new(object, "bar", cli_json_number(advice->bar));
     json_object_set_new(object, "rays", index_json(advice->rays));
     json_object_set_new(object, "rays_met", json_boolean(advice->rays_met));
     json_object_set_new(object, "rays_command", cli_json_text(advice->rays_command));
-    json_object_set_new(object, "samples", index_json(advice->samples));
-    json_object_set_new(object, "supersampling", index_json(advice->supersampling));
-    json_object_set_new(object, "triangles", index_json(advice->triangles));
-    json_object_set_new(object, "repair", index_json(advice->repair));
+    for (int i = 0; i < 4; i++)
+        json_object_set_new(object, cost_dials[chosen[i]].key, index_json(advice->chosen[chosen[i]]));
     json_object_set_new(object, "sampling_met", json_boolean(advice->sampling_met));
     json_object_set_new(object, "reason", *advice->reason ? cli_json_text(advice->reason) : json_null());
     json_object_set_new(object, "settings_index", index_json(cost_find_shot(study, &advice->whole.setting)));

@@ -20,6 +20,9 @@ int32_t cost_best_repair(const cost_study *study);
 /* Adds the points of all dials to the study, without measuring them, and the settings of their references. */
 void cost_choose_settings(cost_study *study);
 
+/* Changes a setting to a better value of a dial, for the coarse pass. Returns 0: there is none. */
+int cost_improve(const cost_study *study, int dial, cost_setting *setting);
+
 /* Adds a point, unless the study has it. */
 void cost_add_point(cost_study *study, int dial, int reference, int priority, cost_setting setting);
 

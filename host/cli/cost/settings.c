@@ -45,6 +45,7 @@ static void add_tolerances(cost_study *study) {
     static const double tolerances[] = {1e-1, 1e-2, 1e-3, 1e-4, 1e-5, 1e-6};
     const int32_t finest = study->measured.references[COST_OF_RAYS].setting.precision;
     cost_setting its = study->subject.own;
+    if (!study->subject.has_energies) return;
     its.bins = study->subject.finest;
     for (its.precision = SKG_PRECISION_SINGLE; its.precision <= finest; its.precision++)
         for (int i = study->quick; i < 6; i += 1 + study->quick) {
@@ -63,6 +64,7 @@ static void add_tolerances(cost_study *study) {
 static void add_bins(cost_study *study) {
     static const int64_t bins[] = {64, 32, 16, 8, 4};
     cost_setting its = study->subject.own;
+    if (!study->subject.has_energies) return;
     its.precision = study->measured.references[COST_OF_RAYS].setting.precision;
     its.tolerance = 0;
     if (study->subject.finest)
@@ -174,10 +176,9 @@ static void add_triangles(cost_study *study) {
     study->measured.references[COST_OF_TRIANGLES].setting = its;
 }
 
-/* Relaxation and hysteresis, against no relaxation with the scene's hysteresis. */
-static void add_breath(cost_study *study) {
+/* Relaxation, against none with the scene's hysteresis. */
+static void add_relaxation(cost_study *study) {
     static const int32_t relaxations[] = {0, 1, 2, 5, 10, 20};
-    static const double hystereses[] = {0, 0.25, 0.5, 0.75, 1};
     cost_setting its = study->subject.own;
     if (!study->subject.has_breath) return;
     its.hysteresis = study->subject.body.hysteresis;
@@ -189,10 +190,73 @@ static void add_breath(cost_study *study) {
     }
     its.relaxation = study->subject.body.relaxation;
     cost_add_point(study, COST_RELAXATION, COST_OF_BREATH, LAST, its);
-    for (int i = 0; i < 5; i += study->quick ? 4 : 1) {
+}
+
+/* Hysteresis, with the scene's relaxation. */
+static void add_hysteresis(cost_study *study) {
+    static const double hystereses[] = {0, 0.25, 0.5, 0.75, 1};
+    cost_setting its = study->subject.own;
+    its.relaxation = study->subject.body.relaxation;
+    for (int i = 0; study->subject.has_breath && i < 5; i += study->quick ? 4 : 1) {
         its.hysteresis = hystereses[i];
         cost_add_point(study, COST_HYSTERESIS, COST_OF_BREATH, LAST, its);
     }
+}
+
+static int improve_precision(const cost_study *study, cost_setting *setting) {
+    setting->precision = SKG_PRECISION_DOUBLE;
+    return study->session.device.double_precision;
+}
+
+static int improve_tolerance(const cost_study *study, cost_setting *setting) {
+    (void)study;
+    setting->tolerance = 0;
+    return 1;
+}
+
+static int improve_bins(const cost_study *study, cost_setting *setting) {
+    setting->bins = study->subject.finest;
+    return 1;
+}
+
+static int improve_samples(const cost_study *study, cost_setting *setting) {
+    (void)study;
+    setting->samples *= 4;
+    return setting->samples > 0;
+}
+
+static int improve_supersampling(const cost_study *study, cost_setting *setting) {
+    (void)study;
+    setting->supersampling *= 2;
+    return 1;
+}
+
+static int improve_repair(const cost_study *study, cost_setting *setting) {
+    setting->repair = cost_best_repair(study);
+    return 1;
+}
+
+static int improve_triangles(const cost_study *study, cost_setting *setting) {
+    setting->meshing = cost_coarse_meshing(study);
+    return setting->meshing >= 0;
+}
+
+/* The values of each dial, and what is better. */
+static const struct {
+    void (*add)(cost_study *study);
+    int (*improve)(const cost_study *study, cost_setting *setting);
+} rows[COST_DIALS] = {[COST_PRECISION] = {add_precision, improve_precision},
+                      [COST_TOLERANCE] = {add_tolerances, improve_tolerance},
+                      [COST_BINS] = {add_bins, improve_bins},
+                      [COST_SAMPLES] = {add_samples, improve_samples},
+                      [COST_SUPERSAMPLING] = {add_supersampling, improve_supersampling},
+                      [COST_REPAIR] = {add_repair, improve_repair},
+                      [COST_TRIANGLES] = {add_triangles, improve_triangles},
+                      [COST_RELAXATION] = {add_relaxation, NULL},
+                      [COST_HYSTERESIS] = {add_hysteresis, NULL}};
+
+int cost_improve(const cost_study *study, int dial, cost_setting *setting) {
+    return rows[dial].improve(study, setting);
 }
 
 cost_setting cost_best_of_all(const cost_study *study, double max_ms) {
@@ -216,15 +280,8 @@ cost_setting cost_best_of_all(const cost_study *study, double max_ms) {
 
 void cost_choose_settings(cost_study *study) {
     cost_add_point(study, COST_SCENE, COST_OF_RAYS, NOW, study->subject.own);
-    add_precision(study);
-    if (study->subject.has_energies) {
-        add_tolerances(study);
-        add_bins(study);
+    for (int dial = COST_PRECISION; dial < COST_DIALS; dial++) {
+        rows[dial].add(study);
+        if (dial == COST_BINS) add_changes(study);
     }
-    add_changes(study);
-    add_samples(study);
-    add_supersampling(study);
-    add_repair(study);
-    add_triangles(study);
-    add_breath(study);
 }

@@ -2,6 +2,7 @@
 #include "cost/findings.h"
 
 #include "common/say.h"
+#include "cost/dial.h"
 #include "cost/dials.h"
 #include "cost/output.h"
 
@@ -11,29 +12,21 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* The points of a source: of one dial and one reference, and with all else as in the point of today's value. */
-typedef struct {
-    int dial, reference;
-} family;
+/* The dials that are sources of error. */
+static const int dials[COST_SOURCE_SURFACE] = {
+    [COST_SOURCE_TRIANGLES] = COST_TRIANGLES, [COST_SOURCE_PRECISION] = COST_PRECISION,
+    [COST_SOURCE_BINS] = COST_BINS,           [COST_SOURCE_TOLERANCE] = COST_TOLERANCE,
+    [COST_SOURCE_SAMPLES] = COST_SAMPLES,     [COST_SOURCE_SUPERSAMPLING] = COST_SUPERSAMPLING,
+    [COST_SOURCE_REPAIR] = COST_REPAIR};
 
-static const family families[COST_SOURCES] = {
-    [COST_SOURCE_TRIANGLES] = {COST_TRIANGLES, COST_OF_TRIANGLES},
-    [COST_SOURCE_PRECISION] = {COST_PRECISION, COST_OF_RAYS},
-    [COST_SOURCE_BINS] = {COST_BINS, COST_OF_RAYS},
-    [COST_SOURCE_TOLERANCE] = {COST_TOLERANCE, COST_OF_RAYS},
-    [COST_SOURCE_SAMPLES] = {COST_SAMPLES, COST_OF_SAMPLES},
-    [COST_SOURCE_SUPERSAMPLING] = {COST_SUPERSAMPLING, COST_OF_AREAS},
-    [COST_SOURCE_REPAIR] = {COST_REPAIR, COST_OF_REPAIR}};
+static int reference_of(int source) {
+    return cost_dials[dials[source]].reference;
+}
 
-/* The setting in which only this source errs, compared with the family's reference. */
+/* The setting in which only this source errs: the scene's value, all else as the reference has it. */
 static cost_setting alone(const cost_study *study, int source) {
-    cost_setting its = study->subject.own;
-    const cost_setting *best = &study->measured.references[COST_OF_RAYS].setting;
-    if (source == COST_SOURCE_PRECISION) its.tolerance = best->tolerance, its.bins = best->bins;
-    if (source == COST_SOURCE_BINS) its.tolerance = best->tolerance, its.precision = best->precision;
-    if (source == COST_SOURCE_TOLERANCE) its.bins = best->bins, its.precision = best->precision;
-    if (source == COST_SOURCE_SUPERSAMPLING)
-        its.samples = study->measured.references[COST_OF_AREAS].setting.samples;
+    cost_setting its = study->measured.references[reference_of(source)].setting;
+    cost_take(dials[source], &study->subject.own, &its);
     return its;
 }
 
@@ -45,55 +38,19 @@ static int find_point(const cost_study *study, int reference, const cost_setting
     return -1;
 }
 
-/* Copies the value of the dial from one setting to another. */
-static void take_value(int dial, const cost_setting *from, cost_setting *to) {
-    switch (dial) {
-    case COST_PRECISION:
-        to->precision = from->precision;
-        break;
-    case COST_TOLERANCE:
-        to->tolerance = from->tolerance;
-        break;
-    case COST_BINS:
-        to->bins = from->bins;
-        break;
-    case COST_SAMPLES:
-        to->samples = from->samples;
-        break;
-    case COST_SUPERSAMPLING:
-        to->supersampling = from->supersampling;
-        break;
-    case COST_REPAIR:
-        to->repair = from->repair;
-        break;
-    default:
-        to->meshing = from->meshing;
-        break;
-    }
-}
+/* Points that differ from today's in the source's dial only. */
+typedef struct {
+    int source, today;
+} family;
 
-/* Whether a point differs from today's in the source's dial only. */
-static int is_of_family(const cost_study *study, int source, const cost_setting *today,
-                        const cost_point *point) {
-    cost_setting its = *today;
-    if (point->reference != families[source].reference) return 0;
-    take_value(families[source].dial, &point->setting, &its);
-    return cost_is_same(study, &its, &point->setting);
-}
-
-/* The fastest point of the family with half of today's error, or less. */
-static int find_halving(const cost_study *study, int source, int today) {
-    const cost_point *own = &study->measured.points[today];
-    int found = -1;
-    for (int i = 0; i < study->measured.count; i++) {
-        const cost_point *point = &study->measured.points[i];
-        if (i == today || !is_of_family(study, source, &own->setting, point)) continue;
-        if (!(point->rms_flat <= own->rms_flat / 2)) continue;
-        if (found < 0 || study->measured.shots[point->shot].price_ms <
-                             study->measured.shots[study->measured.points[found].shot].price_ms)
-            found = i;
-    }
-    return found;
+static cost_offer look_at_family(const cost_study *study, int index, const void *user) {
+    const family *its = user;
+    const cost_point *point = &study->measured.points[index];
+    cost_setting changed = study->measured.points[its->today].setting;
+    cost_take(dials[its->source], &point->setting, &changed);
+    const int is_of_it = index != its->today && point->reference == reference_of(its->source) &&
+                         cost_is_same(study, &changed, &point->setting);
+    return (cost_offer){is_of_it ? point->rms_flat : (double)NAN, cost_price_of(study, point)};
 }
 
 /* What the halving adds to the time of today's image. Where today's value was measured with other settings of the remaining
@@ -109,16 +66,16 @@ static void price(const cost_study *study, cost_source *source) {
 
 /* The scene with the dial's better value, all else as it is. */
 static int name_halving(const cost_study *study, int number, cost_source *source) {
-    const int dial = families[number].dial;
+    const int dial = dials[number];
     cost_setting setting = study->subject.own;
-    take_value(dial, &study->measured.points[source->halving].setting, &setting);
+    cost_take(dial, &study->measured.points[source->halving].setting, &setting);
     cost_describe_dial(study, &setting, dial, source->buys, sizeof source->buys);
     source->command = cost_command(study, &setting);
     return source->command ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
 }
 
 int cost_source_dial(int source) {
-    return families[source].dial;
+    return dials[source];
 }
 
 const char *cost_why_not(const cost_study *study, int source) {
@@ -169,7 +126,8 @@ static int take_fine(cost_study *study, int number) {
     source->state = COST_FINE;
     source->error = today->rms_flat;
     source->max = today->max_flat;
-    source->halving = find_halving(study, number, source->own);
+    source->halving = cost_cheapest(study, study->measured.count, look_at_family,
+                                    &(family){number, source->own}, today->rms_flat / 2, NULL);
     if (source->halving < 0) {
         snprintf(source->reason, sizeof source->reason, "%s",
                  source->error > 0 ? "no measured setting has half of this error"
@@ -197,7 +155,7 @@ static void take_coarse(cost_study *study, int number) {
 static int measure_source(cost_study *study, int number) {
     cost_source *source = &study->judged.sources[number];
     const cost_setting setting = alone(study, number);
-    source->own = find_point(study, families[number].reference, &setting);
+    source->own = find_point(study, reference_of(number), &setting);
     if (source->own >= 0) return take_fine(study, number);
     take_coarse(study, number);
     return CLI_DONE;
@@ -251,7 +209,7 @@ int cost_find_sources(cost_study *study) {
 void cost_describe_source(const cost_study *study, int number, char *text, size_t size) {
     *text = '\0';
     if (number < COST_SOURCE_SURFACE)
-        cost_describe_dial(study, &study->subject.own, families[number].dial, text, size);
+        cost_describe_dial(study, &study->subject.own, dials[number], text, size);
 }
 
 static int ascending(const void *a, const void *b) {
@@ -264,7 +222,7 @@ static double error_near(const cost_study *study, int source, const cost_setting
     double least = (double)NAN;
     for (int i = 0; i < study->measured.count; i++) {
         const cost_point *point = &study->measured.points[i];
-        if (point->reference != families[source].reference || point->dial != families[source].dial) continue;
+        if (point->reference != reference_of(source) || point->dial != dials[source]) continue;
         if (point->setting.samples > best->samples || point->setting.supersampling > best->supersampling ||
             cost_triangles(study, &point->setting) > cost_triangles(study, best))
             continue;

@@ -10,9 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-static const char *const dial_names[COST_DIALS + 1] = {
-    "scene",  "precision", "tolerance",  "bins",       "source samples", "supersampling",
-    "repair", "triangles", "relaxation", "hysteresis", "several"};
 const char *const cost_source_names[COST_SOURCES] = {"triangles", "precision",      "bins of the spectrum",
                                                      "tolerance", "source samples", "supersampling",
                                                      "repair",    "true surface",   "scatter"};
@@ -41,10 +38,6 @@ const char *cost_time_reason(void) {
                             : "not measured: the time did not suffice";
 }
 
-const char *cost_dial_name(int dial) {
-    return dial_names[dial];
-}
-
 int32_t cost_repair(const cost_study *study, const cost_setting *setting) {
     const skg_plan_options *own = &study->session.options;
     return setting->repair >= 0 ? setting->repair : own->repair + (own->unite ? COST_UNITE : 0);
@@ -62,55 +55,6 @@ int64_t cost_triangles(const cost_study *study, const cost_setting *setting) {
     return setting->meshing >= 0 ? study->meshings[setting->meshing].triangles : study->subject.triangles;
 }
 
-int cost_is_same(const cost_study *study, const cost_setting *a, const cost_setting *b) {
-    return a->precision == b->precision && a->supersampling == b->supersampling &&
-           a->tolerance == b->tolerance && a->bins == b->bins && a->samples == b->samples &&
-           cost_repair(study, a) == cost_repair(study, b) && a->meshing == b->meshing &&
-           a->relaxation == b->relaxation && a->hysteresis == b->hysteresis;
-}
-
-int cost_changed_dial(const cost_study *study, const cost_setting *setting) {
-    const cost_setting *own = &study->subject.own;
-    const int changed[COST_DIALS] = {[COST_PRECISION] = setting->precision != own->precision,
-                                     [COST_TOLERANCE] = setting->tolerance != own->tolerance,
-                                     [COST_BINS] = setting->bins != own->bins,
-                                     [COST_SAMPLES] = setting->samples != own->samples,
-                                     [COST_SUPERSAMPLING] = setting->supersampling != own->supersampling,
-                                     [COST_REPAIR] = cost_repair(study, setting) != cost_repair(study, own),
-                                     [COST_TRIANGLES] = setting->meshing != own->meshing,
-                                     [COST_RELAXATION] = setting->relaxation != own->relaxation,
-                                     [COST_HYSTERESIS] = setting->hysteresis != own->hysteresis};
-    int found = COST_SCENE;
-    for (int dial = 0; dial < COST_DIALS; dial++)
-        if (changed[dial]) found = found == COST_SCENE ? dial : COST_SEVERAL;
-    return found;
-}
-
-static void describe_bins(int64_t bins, char *text, size_t size) {
-    if (bins == COST_FINEST_BINS)
-        cost_append(text, size, "bins of 1 keV");
-    else if (bins > 0)
-        cost_append(text, size, "%" PRId64 " bins", bins);
-    else
-        cost_append(text, size, "the scene's bins");
-}
-
-void cost_describe_dial(const cost_study *study, const cost_setting *setting, int dial, char *text,
-                        size_t size) {
-    *text = '\0';
-    if (dial == COST_PRECISION) cost_append(text, size, "%s precision", cost_precision_name(setting));
-    if (dial == COST_TOLERANCE) cost_append(text, size, "tolerance %.3g", setting->tolerance);
-    if (dial == COST_BINS) describe_bins(setting->bins, text, size);
-    if (dial == COST_SAMPLES) cost_append(text, size, "%" PRId64 " source samples", setting->samples);
-    if (dial == COST_SUPERSAMPLING)
-        cost_append(text, size, "%d x %d rays a pixel", (int)setting->supersampling,
-                    (int)setting->supersampling);
-    if (dial == COST_REPAIR) cost_append(text, size, "%s repair", cost_repair_of(study, setting));
-    if (dial == COST_TRIANGLES)
-        cost_append(text, size, "%" PRId64 " triangles", cost_triangles(study, setting));
-    if (*text == '\0') cost_describe(study, setting, text, size);
-}
-
 const char *cost_precision_name(const cost_setting *setting) {
     return cli_flag_precision.values[setting->precision].name;
 }
@@ -121,23 +65,6 @@ void cost_append(char *text, size_t size, const char *format, ...) {
     va_start(arguments, format);
     vsnprintf(text + used, size - used, format, arguments);
     va_end(arguments);
-}
-
-void cost_describe(const cost_study *study, const cost_setting *setting, char *text, size_t size) {
-    *text = '\0';
-    cost_append(text, size, "%s, tolerance %.3g", cost_precision_name(setting), setting->tolerance);
-    if (setting->bins > 0) {
-        cost_append(text, size, ", ");
-        describe_bins(setting->bins, text, size);
-    }
-    if (setting->samples > 0) cost_append(text, size, ", %" PRId64 " samples", setting->samples);
-    cost_append(text, size, ", %d x %d rays", (int)setting->supersampling, (int)setting->supersampling);
-    if (setting->repair >= 0) cost_append(text, size, ", repair %s", cost_repair_names[setting->repair]);
-    if (setting->meshing >= 0)
-        cost_append(text, size, ", %" PRId64 " triangles", study->meshings[setting->meshing].triangles);
-    if (setting->relaxation >= 0)
-        cost_append(text, size, ", relaxation %d, hysteresis %g", (int)setting->relaxation,
-                    setting->hysteresis);
 }
 
 void cost_note(cost_study *study, const char *format, ...) {
@@ -153,14 +80,14 @@ skg_status cost_load(const cost_study *study, int64_t count, const char *const *
     const char **all = calloc((size_t)(arguments->given_count + count), sizeof *all);
     int64_t used = 0;
     if (!all) return SKG_ERR_MEMORY;
-    for (const char *set; (set = cli_nth_value(arguments, &cli_flag_set, (int)used));) all[used++] = set;
+    for (const char *set; (set = cli_nth_value(arguments, "--set", (int)used));) all[used++] = set;
     for (int64_t i = 0; i < count; i++) all[used++] = settings[i];
     skg_setup_source source;
     skg_setup_source_init(&source);
     source.path = study->session.path;
     source.settings = all;
     source.setting_count = used;
-    source.lenient = cli_given(arguments, &cli_flag_lenient);
+    source.lenient = cli_given(arguments, "--lenient");
     skg_status status = skg_setup_create(NULL, &source, setup);
     free(all);
     return status;

@@ -165,14 +165,14 @@ typedef struct {
 
 enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };
 
-/* The advice for one tolerance. A dial's field is the index of a point; -1: the scene has no such dial. */
+/* The advice for one tolerance. */
 typedef struct {
     double tolerance;
     double bar; /* the larger of the tolerance and a tenth of the noise */
     int rays;   /* the fastest whose largest error is within the bar, otherwise the most accurate */
-    /* The cheapest whose root mean square error is within the bar, otherwise the most accurate. */
-    int samples, supersampling, triangles;
-    int repair; /* the cheapest whose largest error is within the bar, otherwise the best one */
+    /* Of samples, supersampling, repair and triangles: the point with the least work whose error is within the bar, otherwise the
+     * most accurate; -1: the scene has no such dial. The error is the largest one of a repair, otherwise the root mean square. */
+    int chosen[COST_DIALS];
     int rays_met, sampling_met; /* 1 or 0 */
     int whole_state;            /* COST_WHOLE_... */
     cost_point whole;           /* all of these together, against the best rays of the same number */

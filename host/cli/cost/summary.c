@@ -1,6 +1,8 @@
 /* What a study found, in a few sentences. */
 #include "cost/findings.h"
 
+#include "cost/dial.h"
+
 #include <math.h>
 #include <stdio.h>
 #include <string.h>
@@ -54,40 +56,30 @@ const char *cost_more(double ms, double uncertainty_ms, char *text, size_t size)
     return text;
 }
 
-/* The shot that is best to change to: the fastest that halves the error of the whole, otherwise the most accurate one. Changes of
- * one dial come before others, unless those are faster by a tenth. -1: none is more accurate. */
-static int choose_buy(const cost_study *study) {
-    const cost_shot *here = &study->measured.shots[study->measured.here];
-    int half = -1, best = -1;
-    for (int i = 0; i < study->measured.shot_count; i++) {
-        const cost_shot *shot = &study->measured.shots[i];
-        if (!(shot->total_rms < LESS * here->total_rms)) continue;
-        if (best < 0 || shot->total_rms < study->measured.shots[best].total_rms) best = i;
-        if (!(shot->total_rms <= HALF * here->total_rms)) continue;
-        const double weight = cost_changed_dial(study, &shot->setting) == COST_SEVERAL ? 1.1 : 1;
-        const double its = weight * shot->price_ms;
-        if (half < 0) {
-            half = i;
-            continue;
-        }
-        const double other =
-            cost_changed_dial(study, &study->measured.shots[half].setting) == COST_SEVERAL ? 1.1 : 1;
-        if (its < other * study->measured.shots[half].price_ms) half = i;
-    }
-    return half >= 0 ? half : best;
+/* Shots that err less than today's. Changes of one dial come before others, unless those are faster by a tenth. */
+static cost_offer look_at_buy(const cost_study *study, int index, const void *user) {
+    const cost_shot *here = user, *shot = &study->measured.shots[index];
+    const double weight = cost_changed_dial(study, &shot->setting) == COST_SEVERAL ? 1.1 : 1;
+    return (cost_offer){shot->total_rms < LESS * here->total_rms ? shot->total_rms : (double)NAN,
+                        weight * shot->price_ms};
 }
 
-/* The fastest shot that errs no more than today's image. -1: none is faster by a tenth. */
-static int choose_saving(const cost_study *study) {
+/* Shots that are faster by a tenth. */
+static cost_offer look_at_saving(const cost_study *study, int index, const void *user) {
+    const cost_shot *here = user, *shot = &study->measured.shots[index];
+    const int is_faster = shot->price_ms + shot->uncertainty_ms < LESS * here->price_ms;
+    return (cost_offer){is_faster ? shot->total_rms : (double)NAN, shot->price_ms};
+}
+
+/* What is worth changing to: the fastest that halves the error of the whole, otherwise the most accurate; and the fastest that errs
+ * no more than today's image. */
+static void choose_changes(cost_study *study) {
     const cost_shot *here = &study->measured.shots[study->measured.here];
-    int found = -1;
-    for (int i = 0; i < study->measured.shot_count; i++) {
-        const cost_shot *shot = &study->measured.shots[i];
-        if (!(shot->total_rms <= SAME * here->total_rms)) continue;
-        if (!(shot->price_ms + shot->uncertainty_ms < LESS * here->price_ms)) continue;
-        if (found < 0 || shot->price_ms < study->measured.shots[found].price_ms) found = i;
-    }
-    return found;
+    const int count = study->measured.shot_count;
+    int best;
+    const int half = cost_cheapest(study, count, look_at_buy, here, HALF * here->total_rms, &best);
+    study->judged.buy = half >= 0 ? half : best;
+    study->judged.saving = cost_cheapest(study, count, look_at_saving, here, SAME * here->total_rms, NULL);
 }
 
 /* The values of the dials in which a shot differs from the scene: "84000 triangles, double precision". */
@@ -96,29 +88,7 @@ static void name_change(const cost_study *study, const cost_setting *setting, ch
     for (int dial = COST_PRECISION; dial <= COST_TRIANGLES; dial++) {
         char value[96];
         cost_setting its = study->subject.own;
-        switch (dial) {
-        case COST_PRECISION:
-            its.precision = setting->precision;
-            break;
-        case COST_TOLERANCE:
-            its.tolerance = setting->tolerance;
-            break;
-        case COST_BINS:
-            its.bins = setting->bins;
-            break;
-        case COST_SAMPLES:
-            its.samples = setting->samples;
-            break;
-        case COST_SUPERSAMPLING:
-            its.supersampling = setting->supersampling;
-            break;
-        case COST_REPAIR:
-            its.repair = setting->repair;
-            break;
-        default:
-            its.meshing = setting->meshing;
-            break;
-        }
+        cost_take(dial, setting, &its);
         if (cost_changed_dial(study, &its) == COST_SCENE) continue;
         cost_describe_dial(study, setting, dial, value, sizeof value);
         cost_append(text, size, "%s%s", *text ? " with " : "", value);
@@ -246,8 +216,7 @@ static void price_between(cost_study *study) {
 void cost_summarise(cost_study *study) {
     const cost_shot *here = &study->measured.shots[study->measured.here];
     char percent[48];
-    study->judged.buy = choose_buy(study);
-    study->judged.saving = choose_saving(study);
+    choose_changes(study);
     if (study->judged.buy >= 0 && study->measured.shots[study->judged.buy].price_ms < here->price_ms)
         study->judged.saving = -1; /* it saves time as well */
     state_here(study);

@@ -4,11 +4,11 @@
 #include "common/child.h"
 #include "common/file.h"
 #include "common/say.h"
-#include "core/digest.h"
 
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <sha2.h>
 #include <stdarg.h>
 #include <stdlib.h>
 #include <string.h>
@@ -94,13 +94,13 @@ static void store(dicom *d) {
 }
 
 /* "2.25." and 128 bits as a decimal number (PS3.5, B.2): here of a digest, so that the same picture has the same identifiers. */
-static void name_uid(const skg_digest *digest, char uid[UID_SIZE]) {
+static void name_uid(const uint8_t digest[SHA256_DIGEST_LENGTH], char uid[UID_SIZE]) {
     uint32_t words[4];
     char digits[40];
     int first = 40;
     for (int w = 0; w < 4; w++)
-        words[w] = (uint32_t)digest->bytes[4 * w] << 24 | (uint32_t)digest->bytes[4 * w + 1] << 16 |
-                   (uint32_t)digest->bytes[4 * w + 2] << 8 | digest->bytes[4 * w + 3];
+        words[w] = (uint32_t)digest[4 * w] << 24 | (uint32_t)digest[4 * w + 1] << 16 |
+                   (uint32_t)digest[4 * w + 2] << 8 | digest[4 * w + 3];
     do {
         uint64_t rest = 0;
         for (int w = 0; w < 4; w++) {
@@ -114,16 +114,18 @@ static void name_uid(const skg_digest *digest, char uid[UID_SIZE]) {
 
 static void name_level(const dicom *d, const char *level, const void *data, size_t bytes,
                        char uid[UID_SIZE]) {
-    skg_digester digester;
-    skg_digest_start(&digester);
-    skg_digest_add_text(&digester, level);
-    skg_digest_add_text(&digester, d->facts->study);
+    const char *study = d->facts->study ? d->facts->study : "";
+    uint8_t digest[SHA256_DIGEST_LENGTH];
+    SHA2_CTX sum;
+    SHA256Init(&sum);
+    SHA256Update(&sum, (const uint8_t *)level, strlen(level) + 1);
+    SHA256Update(&sum, (const uint8_t *)study, strlen(study) + 1);
     if (bytes > 0) {
-        skg_digest_add(&digester, &d->facts->number, sizeof d->facts->number);
-        skg_digest_add(&digester, data, bytes);
+        SHA256Update(&sum, (const uint8_t *)&d->facts->number, sizeof d->facts->number);
+        SHA256Update(&sum, data, bytes);
     }
-    const skg_digest digest = skg_digest_end(&digester);
-    name_uid(&digest, uid);
+    SHA256Final(digest, &sum);
+    name_uid(digest, uid);
 }
 
 /* Appends a line of dump2dcm's text: an attribute. */

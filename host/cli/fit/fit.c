@@ -23,7 +23,7 @@ static int resume(fit_work *work, const char *checkpoint) {
 }
 
 static int search(fit_work *work) {
-    const char *checkpoint = cli_value(work->arguments, &cli_flag_fit_checkpoint);
+    const char *checkpoint = cli_value(work->arguments, "--checkpoint");
     const int exit_status = resume(work, checkpoint);
     if (exit_status != CLI_DONE) return exit_status;
     if (checkpoint) cli_keep("%s is kept; the same command continues from it", checkpoint);
@@ -55,11 +55,10 @@ static int write_outputs(const fit_work *work) {
 
 static int print(const fit_work *work) {
     const char *path;
-    if (cli_given(work->arguments, &cli_flag_json)) return cli_json_print(fit_json(work));
+    if (cli_given(work->arguments, "--json")) return cli_json_print(fit_json(work));
     if (cli_is_quiet()) return CLI_DONE;
     fit_print(work);
-    for (int i = 0; (path = cli_nth_value(work->arguments, &cli_flag_fit_output, i)); i++)
-        cli_print("wrote %s\n", path);
+    for (int i = 0; (path = cli_nth_value(work->arguments, "-o", i)); i++) cli_print("wrote %s\n", path);
     return CLI_DONE;
 }
 

@@ -16,14 +16,14 @@ int fit_load_scene(const cli_arguments *arguments, const char *path, int with_se
     int count = 0;
     const char **settings = calloc((size_t)arguments->given_count + 1, sizeof *settings);
     if (!settings) return cli_error(CLI_DEVICE, "out of host memory");
-    for (const char *set; with_settings && (set = cli_nth_value(arguments, &cli_flag_set, count)); count++)
+    for (const char *set; with_settings && (set = cli_nth_value(arguments, "--set", count)); count++)
         settings[count] = set;
     skg_setup_source source;
     skg_setup_source_init(&source);
     source.path = path;
     source.settings = settings;
     source.setting_count = count;
-    source.lenient = cli_given(arguments, &cli_flag_lenient);
+    source.lenient = cli_given(arguments, "--lenient");
     if (with_settings) source.log = cli_log; /* the fitted scene would repeat them */
     const skg_status status = skg_setup_create(NULL, &source, setup);
     free(settings);
@@ -32,7 +32,7 @@ int fit_load_scene(const cli_arguments *arguments, const char *path, int with_se
 
 const char *fit_output(const fit_work *work, const char *extension) {
     const char *path;
-    for (int i = 0; (path = cli_nth_value(work->arguments, &cli_flag_fit_output, i)); i++)
+    for (int i = 0; (path = cli_nth_value(work->arguments, "-o", i)); i++)
         if (cli_has_extension(path, extension)) return path;
     return NULL;
 }
@@ -41,8 +41,7 @@ const char *fit_output(const fit_work *work, const char *extension) {
 static int check_outputs(const fit_work *work) {
     const char *path;
     int exit_status = CLI_DONE;
-    for (int i = 0;
-         exit_status == CLI_DONE && (path = cli_nth_value(work->arguments, &cli_flag_fit_output, i)); i++) {
+    for (int i = 0; exit_status == CLI_DONE && (path = cli_nth_value(work->arguments, "-o", i)); i++) {
         if (!cli_has_extension(path, ".json") && !cli_has_extension(path, ".html") &&
             !cli_has_extension(path, ".csv") && !cli_has_extension(path, ".png"))
             return cli_error(CLI_USAGE, "-o %s: its extension is none of .json, .html, .csv and .png", path);
@@ -93,24 +92,26 @@ static int add_target(fit_work *work, const char *word, double phase, double uni
 /* A phase holds for the targets after it; the first also for those before it. */
 static int add_targets(fit_work *work) {
     const cli_arguments *arguments = work->arguments;
-    const char *first = cli_nth_value(arguments, &cli_flag_fit_phase, 0);
+    const char *first = cli_nth_value(arguments, "--phase", 0);
     double phase = 0, unit_mm = 1;
-    if (!cli_given(arguments, &cli_flag_fit_target) || !first)
+    if (!cli_given(arguments, "--target") || !first)
         return cli_error(CLI_USAGE,
                          "fit: give at least one target and its phase: --target liver=liver.stl --phase 0");
     int exit_status = cli_mesh_unit(arguments, &unit_mm);
     if (exit_status == CLI_DONE) exit_status = cli_phase("--phase", first, &phase);
     for (int i = 0; i < arguments->given_count && exit_status == CLI_DONE; i++) {
         const struct cli_given *given = arguments->given + i;
-        if (given->flag == &cli_flag_fit_phase) exit_status = cli_phase("--phase", given->value, &phase);
-        if (given->flag == &cli_flag_fit_target) exit_status = add_target(work, given->value, phase, unit_mm);
+        if (strcmp(given->flag->name, "--phase") == 0)
+            exit_status = cli_phase("--phase", given->value, &phase);
+        if (strcmp(given->flag->name, "--target") == 0)
+            exit_status = add_target(work, given->value, phase, unit_mm);
     }
     return exit_status;
 }
 
 static int set_bounds(fit_work *work) {
     const char *value;
-    for (int i = 0; (value = cli_nth_value(work->arguments, &cli_flag_fit_bounds, i)); i++) {
+    for (int i = 0; (value = cli_nth_value(work->arguments, "--bounds", i)); i++) {
         char name[64] = "", rest = 0;
         double low = 0, high = 0;
         if (sscanf(value, "%63[^=]=%lf:%lf%c", name, &low, &high, &rest) != 3)
@@ -123,16 +124,15 @@ static int set_bounds(fit_work *work) {
 
 int fit_prepare(fit_work *work) {
     const cli_arguments *arguments = work->arguments;
-    const char *names = cli_value(arguments, &cli_flag_fit_parameters);
+    const char *names = cli_value(arguments, "--parameters");
     skg_fit_options options;
     skg_fit_options_init(&options);
     options.progress = cli_progress();
     int exit_status = check_outputs(work);
-    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_fit_method, &options.method);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--method", &options.method);
     if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_fit_evaluations, 1, 1000000000, &options.evaluations);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_fit_seed, 0, INT64_MAX, &options.seed);
+        exit_status = cli_integer(arguments, "--evaluations", 1, 1000000000, &options.evaluations);
+    if (exit_status == CLI_DONE) exit_status = cli_integer(arguments, "--seed", 0, INT64_MAX, &options.seed);
     if (exit_status == CLI_DONE)
         exit_status = fit_load_scene(arguments, arguments->operands[0], 1, &work->setup);
     if (exit_status != CLI_DONE) return exit_status;

@@ -88,10 +88,10 @@ void live_base_free(live_base *base) {
 static const char **read_settings(const live_base *base, char *tolerance, size_t size, int64_t *count) {
     const cli_arguments *arguments = base->arguments;
     const char **settings = calloc((size_t)arguments->given_count + 1, sizeof *settings),
-               *value = cli_value(arguments, &cli_flag_tolerance), *set;
+               *value = cli_value(arguments, "--tolerance"), *set;
     *count = 0;
     if (!settings) return NULL;
-    for (int i = 0; (set = cli_nth_value(arguments, &cli_flag_set, i)); i++) settings[(*count)++] = set;
+    for (int i = 0; (set = cli_nth_value(arguments, "--set", i)); i++) settings[(*count)++] = set;
     snprintf(tolerance, size, "Tolerance=%s", value ? value : "");
     if (value) settings[(*count)++] = tolerance;
     return settings;
@@ -106,7 +106,7 @@ int live_base_read(live_base *base, char *sentence) {
     const char **settings = read_settings(base, tolerance, sizeof tolerance, &source.setting_count);
     source.path = base->path;
     source.settings = settings;
-    source.lenient = cli_given(base->arguments, &cli_flag_lenient);
+    source.lenient = cli_given(base->arguments, "--lenient");
     struct timespec begun;
     clock_gettime(CLOCK_REALTIME, &begun);
     skg_status status = settings ? skg_setup_create(base->context, &source, &setup) : SKG_ERR_MEMORY;

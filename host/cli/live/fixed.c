@@ -50,15 +50,13 @@ static int pack(const register_image *fixed, live_hub *hub) {
 }
 
 int live_fixed_read(live_base *base, const live_scene *scene, live_hub *hub) {
-    register_work work = {
-        .arguments = base->arguments, .named_by = &cli_flag_live_fixed, .session = scene->session};
-    if (!cli_given(base->arguments, &cli_flag_live_fixed)) {
-        if (cli_given(base->arguments, &cli_flag_register_quantity) ||
-            cli_given(base->arguments, &cli_flag_register_flat))
+    register_work work = {.arguments = base->arguments, .named_by = "--fixed", .session = scene->session};
+    if (!cli_given(base->arguments, "--fixed")) {
+        if (cli_given(base->arguments, "--quantity") || cli_given(base->arguments, "--flat"))
             return cli_error(CLI_USAGE, "live: --quantity and --flat are of the radiograph of --fixed FILE");
         return CLI_DONE;
     }
-    if (cli_nth_value(base->arguments, &cli_flag_live_fixed, 1))
+    if (cli_nth_value(base->arguments, "--fixed", 1))
         return cli_error(CLI_USAGE,
                          "live: --fixed is given twice; the page shows one radiograph, the verb register "
                          "takes several");

@@ -50,7 +50,7 @@ static int announce(const cli_arguments *arguments, const char *address, int por
     int exit_status = CLI_DONE;
     name_host(address, host, sizeof host);
     snprintf(url, sizeof url, "http://%s:%d/?token=%s", host, port, token);
-    if (cli_given(arguments, &cli_flag_json)) {
+    if (cli_given(arguments, "--json")) {
         json_t *object = json_object();
         json_object_set_new(object, "url", cli_json_text(url));
         json_object_set_new(object, "port", json_integer(port));
@@ -66,8 +66,7 @@ static int announce(const cli_arguments *arguments, const char *address, int por
             "and nothing that is sent is encrypted; ssh -L %d:localhost:%d does without --bind",
             address, port, port);
     cli_note("live: open the address in a browser; Ctrl-C ends");
-    if (exit_status == CLI_DONE && !cli_given(arguments, &cli_flag_live_no_open))
-        live_browser_open(url, file);
+    if (exit_status == CLI_DONE && !cli_given(arguments, "--no-open")) live_browser_open(url, file);
     return exit_status;
 }
 
@@ -78,11 +77,10 @@ typedef struct {
 } flags;
 
 static int read_flags(const cli_arguments *arguments, flags *given) {
-    const char *address = cli_value(arguments, &cli_flag_live_bind);
+    const char *address = cli_value(arguments, "--bind");
     *given = (flags){.address = address ? address : own_address};
-    int exit_status = cli_integer(arguments, &cli_flag_live_port, 0, 65535, &given->port);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_number(arguments, &cli_flag_live_idle, 0.1, 1e7, &given->idle);
+    int exit_status = cli_integer(arguments, "--port", 0, 65535, &given->port);
+    if (exit_status == CLI_DONE) exit_status = cli_number(arguments, "--idle", 0.1, 1e7, &given->idle);
     if (exit_status == CLI_DONE && address &&
         (!*address || strlen(address) > 200 || address[strcspn(address, ", /;@?#\"\\")]))
         return cli_error(CLI_USAGE, "--bind %s is no address such as 0.0.0.0", address);
@@ -118,8 +116,7 @@ int cli_live(const cli_arguments *arguments) {
     live_server *none = NULL;
     int exit_status = read_flags(arguments, &given);
     if (exit_status == CLI_DONE && !live_has_server) return live_server_start(NULL, NULL, &none);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_choice(arguments, &cli_flag_precision, &loop.base.precision);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--precision", &loop.base.precision);
     if (exit_status == CLI_DONE)
         exit_status = cli_open_context(arguments, &loop.base.context, &loop.base.device);
     if (exit_status == CLI_DONE) {

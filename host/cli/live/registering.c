@@ -140,7 +140,7 @@ static void *run(void *user) {
     char sentence[LIVE_SENTENCE] = "";
     live_scene scene = {0};
     json_t *found = NULL, *object = json_object();
-    if (skg_context_create(cli_value(r->base.arguments, &cli_flag_device), &r->base.context) != SKG_OK)
+    if (skg_context_create(cli_value(r->base.arguments, "--device"), &r->base.context) != SKG_OK)
         fail(sentence);
     else if (live_scene_load(&r->base, &r->wish, &scene, sentence))
         found = search(r, &scene, sentence);

@@ -87,7 +87,7 @@ static int read_light(const live_base *base, const live_wish *wish, skg_setup **
     source.path = base->path;
     source.settings = (const char *const *)settings;
     source.partial = 1;
-    source.lenient = cli_given(base->arguments, &cli_flag_lenient);
+    source.lenient = cli_given(base->arguments, "--lenient");
     const skg_status status = text && settings ? skg_setup_create(NULL, &source, setup) : SKG_ERR_MEMORY;
     free_settings(settings, source.setting_count);
     free(text);
@@ -154,7 +154,7 @@ static skg_status read_setup(const live_base *base, const live_wish *wish, live_
     source.text = base->text;
     source.path = base->path;
     source.settings = (const char *const *)settings;
-    source.lenient = cli_given(base->arguments, &cli_flag_lenient);
+    source.lenient = cli_given(base->arguments, "--lenient");
     skg_status status = settings ? skg_setup_create(base->context, &source, &scene->setup) : SKG_ERR_MEMORY;
     free_settings(settings, source.setting_count);
     if (status == SKG_OK) status = skg_setup_scene_get(scene->setup, &session->scene);

@@ -1,31 +1,31 @@
 /* The manual of `breathe`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_breathe_output = {
+static const cli_flag breathe_output = {
     "-o", "DIR|FILE",
     "The folder of the frames, made if it does not exist; or the file of a film, .gif, .mp4 or .webm. With --phase or "
     "--at the file of the one picture: .png, .tif or .mha.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_breathe_seconds = {
+static const cli_flag breathe_seconds = {
     "--seconds", "T", "The length of the sequence in s. The default is one breath.", NULL, CLI_NAMES_NOTHING};
 const cli_flag cli_flag_breathe_fps = {
     "--fps", "N",
     "The number of frames per second of the patient's time, which is also the rate of a film. The default is 30.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_breathe_phase = {
+static const cli_flag breathe_phase = {
     "--phase", "P",
     "Makes one picture at this phase of the breath: from 0, end-inspiration, to below 1; 0.5 is about end-expiration. Events are "
     "left out: they happen at a time, and a phase comes back in every breath.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_breathe_at = {
+static const cli_flag breathe_at = {
     "--at", "T",
     "Makes one picture at this time in s, with the events until then. It equals the frame that a sequence has at "
     "this time.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_breathe_outline = {
+static const cli_flag breathe_outline = {
     "--outline", "PARTS@P", "Draws the outlines that parts have at phase P, as ribs,diaphragm@0.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_breathe_meshes = {
+static const cli_flag breathe_meshes = {
     "--meshes", "DIR",
     "Writes, for every frame and every part that moves, a binary PLY file with the displacement of each vertex in "
     "mm to this folder.",
@@ -44,13 +44,13 @@ static const char *const text[] = {
     "air_kerma_uGy, kap_uGy_cm2, detector_air_kerma_uGy}, plan}, and for a film {file}.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_breathe_output,
-                                        &cli_flag_breathe_seconds,
+static const cli_flag *const flags[] = {&breathe_output,
+                                        &breathe_seconds,
                                         &cli_flag_breathe_fps,
-                                        &cli_flag_breathe_phase,
-                                        &cli_flag_breathe_at,
-                                        &cli_flag_breathe_outline,
-                                        &cli_flag_breathe_meshes,
+                                        &breathe_phase,
+                                        &breathe_at,
+                                        &breathe_outline,
+                                        &breathe_meshes,
                                         &cli_flag_range,
                                         &cli_flag_device,
                                         &cli_flag_precision,

@@ -1,25 +1,25 @@
 /* The manual of `cost`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_cost_output = {
+static const cli_flag cost_output = {
     "-o", "FILE",
     "The file to write: .html (plots, pictures and advice in one page; its table is written beside it as .csv) or "
     ".csv. May be repeated.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_cost_quick = {"--quick", NULL, "Measures fewer settings, with fewer runs of each.",
-                                      NULL, CLI_NAMES_NOTHING};
+static const cli_flag cost_quick = {"--quick", NULL, "Measures fewer settings, with fewer runs of each.",
+                                    NULL, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_cost_within = {
+static const cli_flag cost_within = {
     "--within", "SECONDS",
     "Measures for about SECONDS, 1 to 86400 (default 60): every source of error coarsely, then the settings that say most. What "
     "does not fit is left out, and said.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_cost_frames = {
+static const cli_flag cost_frames = {
     "--frames", "N",
     "Times batches of N images, 1 to 4096 (default 1), and gives the time of one: what an image costs in a sequence or a scan.",
     NULL, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_cost_sensitivity = {
+static const cli_flag cost_sensitivity = {
     "--sensitivity", NULL,
     "Also prints how much the image changes when each part moves: the root mean square over all pixels of the derivative, as a "
     "share of the open beam for a mm along x, y and z and along the direction that changes it most. Takes three derivatives for "
@@ -41,20 +41,10 @@ static const char *const text[] = {
     "price: {ms, uncertainty, clock} and wall_now_ms; advice names points by their number.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_cost_output,
-                                        &cli_flag_cost_within,
-                                        &cli_flag_cost_frames,
-                                        &cli_flag_cost_quick,
-                                        &cli_flag_cost_sensitivity,
-                                        &cli_flag_device,
-                                        &cli_flag_strategy,
-                                        &cli_flag_set,
-                                        &cli_flag_lenient,
-                                        &cli_flag_json,
-                                        &cli_flag_verbose,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {
+    &cost_output,       &cost_within,  &cost_frames,      &cost_quick,    &cost_sensitivity, &cli_flag_device,
+    &cli_flag_strategy, &cli_flag_set, &cli_flag_lenient, &cli_flag_json, &cli_flag_verbose, &cli_flag_strict,
+    &cli_flag_quiet,    NULL};
 
 static const cli_item examples[] = {
     {"skiagraph cost scene.json -o cost.html", "writes cost.html and cost.csv and prints the result"},

@@ -1,13 +1,13 @@
 /* The manual of `devices`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_devices_warm = {
+static const cli_flag devices_warm = {
     "--warm", "SCENE",
     "Instead of listing devices, compiles the kernels that a scene needs by rendering it once; of a folder, those of all its "
     "scene files. Jobs that follow find the kernels in the driver's cache. May be repeated.",
     NULL, CLI_NAMES_SCENE};
 
-const cli_flag cli_flag_devices_test = {
+static const cli_flag devices_test = {
     "--test", NULL,
     "Instead of listing devices, tests every device with all kernels, in processes of their own and for 30 s a test at most, "
     "and prints a table.",
@@ -36,13 +36,8 @@ static const char *const text[] = {
     "score, reason}]}]}, where verdict is right, wrong, unsupported or failed.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_device,
-                                        &cli_flag_devices_test,
-                                        &cli_flag_devices_warm,
-                                        &cli_flag_json,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {&cli_flag_device, &devices_test,   &devices_warm, &cli_flag_json,
+                                        &cli_flag_strict, &cli_flag_quiet, NULL};
 
 static const cli_item examples[] = {
     {"skiagraph devices", "lists the devices"},

@@ -1,13 +1,13 @@
 /* The manual of `distance`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_distance_map = {"--map", "FILE.ply",
-                                        "Writes A with the distance from B and its colour at each vertex.",
-                                        NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_distance_output = {
+static const cli_flag distance_map = {"--map", "FILE.ply",
+                                      "Writes A with the distance from B and its colour at each vertex.",
+                                      NULL, CLI_NAMES_NOTHING};
+static const cli_flag distance_output = {
     "-o", "FILE.png", "Draws both surfaces in the colours of their distances, from in front and from behind.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_distance_high = {
+static const cli_flag distance_high = {
     "--high", "MM",
     "The distance at the bright end of the colours. If it is not given, the greatest one, rounded up.", NULL,
     CLI_NAMES_NOTHING};
@@ -15,9 +15,9 @@ const cli_flag cli_flag_distance_high = {
 static const cli_item samplings[] = {{"surface", "over the area of the triangles (the default)"},
                                      {"vertices", "at the vertices alone, all with the same weight"},
                                      {NULL, NULL}};
-const cli_flag cli_flag_distance_sampling = {"--sampling", NULL, "Where distances are computed.", samplings,
-                                             CLI_NAMES_NOTHING};
-const cli_flag cli_flag_distance_spacing = {
+static const cli_flag distance_sampling = {"--sampling", NULL, "Where distances are computed.", samplings,
+                                           CLI_NAMES_NOTHING};
+static const cli_flag distance_spacing = {
     "--spacing", "MM",
     "The largest side of the triangles that a sample of the surface stands for. If it is not given, such that there are "
     "about 200,000.",
@@ -32,16 +32,9 @@ static const char *const text[] = {
     "hausdorff_mm, sampling}.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_distance_map,
-                                        &cli_flag_distance_output,
-                                        &cli_flag_distance_high,
-                                        &cli_flag_distance_sampling,
-                                        &cli_flag_distance_spacing,
-                                        &cli_flag_mesh_unit,
-                                        &cli_flag_json,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {
+    &distance_map,       &distance_output, &distance_high,   &distance_sampling, &distance_spacing,
+    &cli_flag_mesh_unit, &cli_flag_json,   &cli_flag_strict, &cli_flag_quiet,    NULL};
 
 static const cli_item files[] = {{"FILE.ply", "A with the properties distance, red, green and blue"},
                                  {"FILE.png", "the maps of A and B"},

@@ -1,17 +1,17 @@
 /* The manual of `dose`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_dose_at = {
+static const cli_flag dose_at = {
     "--at", "X,Y,Z",
     "A place in mm, in the axes of the world, where air kerma is wanted; several flags give several places. Without it: "
     "where the middle ray of the field enters the first part.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_dose_histories = {
+static const cli_flag dose_histories = {
     "--histories", "N",
     "Photons that are followed through the parts; 200000 if it is not given. Four times as many halve the errors. 0: "
     "none, and doses of parts and backscatter factors are not known.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_dose_seed = {
+static const cli_flag dose_seed = {
     "--seed", "N", "Of these photons: another seed gives an independent result.", NULL, CLI_NAMES_NOTHING};
 
 static const char *const text[] = {
@@ -28,10 +28,10 @@ static const char *const text[] = {
     "noise there is darkest: {row, column, signal, snr}, too; of a scan projections, and neither exposure_index nor darkest.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_dose_at, &cli_flag_dose_histories, &cli_flag_dose_seed,
-                                        &cli_flag_device,  &cli_flag_strategy,       &cli_flag_set,
-                                        &cli_flag_lenient, &cli_flag_json,           &cli_flag_verbose,
-                                        &cli_flag_strict,  &cli_flag_quiet,          NULL};
+static const cli_flag *const flags[] = {&dose_at,          &dose_histories,    &dose_seed,
+                                        &cli_flag_device,  &cli_flag_strategy, &cli_flag_set,
+                                        &cli_flag_lenient, &cli_flag_json,     &cli_flag_verbose,
+                                        &cli_flag_strict,  &cli_flag_quiet,    NULL};
 
 static const cli_item examples[] = {
     {"skiagraph dose scene.json", "prints the dose of an exposure"},

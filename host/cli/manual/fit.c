@@ -1,21 +1,21 @@
 /* The manual of `fit`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_fit_target = {
+static const cli_flag fit_target = {
     "--target", "PART=FILE",
     "A surface that this part of the scene has to reach, as it was segmented at the phase of --phase. May be given several "
     "times.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_fit_phase = {
+static const cli_flag fit_phase = {
     "--phase", "P",
     "The phase of the targets that follow, and of those before the first --phase: 0 to below 1, from end-inspiration.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_fit_output = {
+static const cli_flag fit_output = {
     "-o", "FILE",
     "The scene with the fitted parameters (.json); further ones for a page with maps (.html), a table (.csv) and a picture "
     "of the errors (.png).",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_fit_parameters = {
+static const cli_flag fit_parameters = {
     "--parameters", "NAMES",
     "What is fitted, separated by commas: tendon-x, tendon-y, tendon-z, dome-left, dome-right, dome-back, muscle-length, "
     "rib-angle, rib-fall, liver-follows, liver-held, or the groups tendon, domes, muscle, ribs and follow; tissues "
@@ -24,20 +24,20 @@ const cli_flag cli_flag_fit_parameters = {
     "links, instead of those from dome-left to liver-held. If it is not given: what Breathing.Fit of the scene says, or all but tissues; with the coupling "
     "\"Paper\" all.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_fit_bounds = {"--bounds", "NAME=LOW:HIGH",
-                                      "The range of a parameter. May be given several times.", NULL,
-                                      CLI_NAMES_NOTHING};
-const cli_flag cli_flag_fit_evaluations = {"--evaluations", "N",
-                                           "Poses the body at most N times; 4000 if it is not given.", NULL,
-                                           CLI_NAMES_NOTHING};
-const cli_flag cli_flag_fit_seed = {"--seed", "N", "Another seed gives another search; 1 if it is not given.",
-                                    NULL, CLI_NAMES_NOTHING};
+static const cli_flag fit_bounds = {"--bounds", "NAME=LOW:HIGH",
+                                    "The range of a parameter. May be given several times.", NULL,
+                                    CLI_NAMES_NOTHING};
+static const cli_flag fit_evaluations = {"--evaluations", "N",
+                                         "Poses the body at most N times; 4000 if it is not given.", NULL,
+                                         CLI_NAMES_NOTHING};
+static const cli_flag fit_seed = {"--seed", "N", "Another seed gives another search; 1 if it is not given.",
+                                  NULL, CLI_NAMES_NOTHING};
 /* In the order of enum skg_fit_method. */
 static const cli_item methods[] = {
     {"cma", "CMA-ES (the default)"}, {"de", "differential evolution"}, {NULL, NULL}};
-const cli_flag cli_flag_fit_method = {"--method", NULL, "How parameters are searched.", methods,
-                                      CLI_NAMES_NOTHING};
-const cli_flag cli_flag_fit_checkpoint = {
+static const cli_flag fit_method = {"--method", NULL, "How parameters are searched.", methods,
+                                    CLI_NAMES_NOTHING};
+static const cli_flag fit_checkpoint = {
     "--checkpoint", "FILE",
     "Keeps the state of the search here after each generation, and continues from it if the file exists.",
     NULL, CLI_NAMES_NOTHING};
@@ -55,10 +55,10 @@ static const char *const text[] = {
     NULL};
 
 static const cli_flag *const flags[] = {
-    &cli_flag_fit_target,     &cli_flag_fit_phase,       &cli_flag_fit_output, &cli_flag_fit_parameters,
-    &cli_flag_fit_bounds,     &cli_flag_fit_evaluations, &cli_flag_fit_seed,   &cli_flag_fit_method,
-    &cli_flag_fit_checkpoint, &cli_flag_mesh_unit,       &cli_flag_set,        &cli_flag_lenient,
-    &cli_flag_json,           &cli_flag_strict,          &cli_flag_quiet,      NULL};
+    &fit_target,     &fit_phase,          &fit_output,     &fit_parameters,
+    &fit_bounds,     &fit_evaluations,    &fit_seed,       &fit_method,
+    &fit_checkpoint, &cli_flag_mesh_unit, &cli_flag_set,   &cli_flag_lenient,
+    &cli_flag_json,  &cli_flag_strict,    &cli_flag_quiet, NULL};
 
 static const cli_item files[] = {{"FILE.json", "a scene that every verb takes"},
                                  {"FILE.html", "tables, errors and maps on one page"},

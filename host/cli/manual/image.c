@@ -15,10 +15,10 @@ const cli_flag cli_flag_image_quantity = {"--quantity", "NAME", "The quantity of
 static const cli_item displays[] = {{"radiograph", "-ln(I/I0): dense parts are white (the default)"},
                                     {"transmission", "I/I0: dense parts are dark"},
                                     {NULL, NULL}};
-const cli_flag cli_flag_image_display = {"--display", "CURVE", "The curve from quantity to grey of a .png.",
-                                         displays, CLI_NAMES_NOTHING};
+static const cli_flag image_display = {"--display", "CURVE", "The curve from quantity to grey of a .png.",
+                                       displays, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_image_bands = {
+static const cli_flag image_bands = {
     "--bands", "KEV,KEV,...",
     "The edges of photon-counting bands, rising. Each band from one edge to the next is a channel.", NULL,
     CLI_NAMES_NOTHING};
@@ -27,41 +27,41 @@ const cli_flag cli_flag_image_bands = {
 static const cli_item weights[] = {{"photons", "every recorded photon counts 1 (the default)"},
                                    {"energy", "photons count by their recorded energy"},
                                    {NULL, NULL}};
-const cli_flag cli_flag_image_band_weight = {
+static const cli_flag image_band_weight = {
     "--band-weight", "NAME",
     "How photons count in the transmission and attenuation of bands, in the place of BandWeight of the scene.",
     weights, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_image_scatter = {
+static const cli_flag image_scatter = {
     "--scatter", "ERROR|histories=N",
     "Adds scattered photons, to a standard error of the scatter over its mean, such as 0.01, or with N histories. The "
     "flag overrides the accuracy of the scene's key Scatter.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_image_scatter_image = {
+static const cli_flag image_scatter_image = {
     "--scatter-image", "FILE",
     "The file for the scattered part of the image, in any format of -o, without noise and blur. Scatter is then simulated "
     "also without the key, with an error of 1 %.",
     NULL, CLI_NAMES_OUTPUT};
-const cli_flag cli_flag_image_scatter_sigma = {
+static const cli_flag image_scatter_sigma = {
     "--scatter-sigma", "FILE", "Likewise the file for the standard error of the scatter in each pixel.", NULL,
     CLI_NAMES_OUTPUT};
-const cli_flag cli_flag_image_mean = {
+static const cli_flag image_mean = {
     "--mean", "FILE",
     "The file for the image that is expected, without noise and steps, in any format of -o.", NULL,
     CLI_NAMES_OUTPUT};
-const cli_flag cli_flag_image_variance = {
+static const cli_flag image_variance = {
     "--variance", "FILE",
     "Likewise the file for the variance that noise gives to each pixel, in the square of the image's unit. The scene needs Noise, "
     "electronic noise or steps.",
     NULL, CLI_NAMES_OUTPUT};
 
-const cli_flag cli_flag_image_only = {
+static const cli_flag image_only = {
     "--only", "PART,...",
     "Only the parts with these labels, in which * stands for any text. What lies in a part that is left out lies in what that lay in; "
     "view and beam stay. May be repeated.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_image_without = {"--without", "PART,...", "All parts but these, likewise.", NULL,
-                                         CLI_NAMES_NOTHING};
+static const cli_flag image_without = {"--without", "PART,...", "All parts but these, likewise.", NULL,
+                                       CLI_NAMES_NOTHING};
 
 static const char *const text[] = {
     "Computes one image and writes it to the file of every -o. A .png holds 16-bit grey levels through --display "
@@ -83,14 +83,14 @@ static const char *const text[] = {
 
 static const cli_flag *const flags[] = {&cli_flag_output,
                                         &cli_flag_image_quantity,
-                                        &cli_flag_image_bands,
-                                        &cli_flag_image_band_weight,
-                                        &cli_flag_image_scatter,
-                                        &cli_flag_image_scatter_image,
-                                        &cli_flag_image_scatter_sigma,
-                                        &cli_flag_image_mean,
-                                        &cli_flag_image_variance,
-                                        &cli_flag_image_display,
+                                        &image_bands,
+                                        &image_band_weight,
+                                        &image_scatter,
+                                        &image_scatter_image,
+                                        &image_scatter_sigma,
+                                        &image_mean,
+                                        &image_variance,
+                                        &image_display,
                                         &cli_flag_range,
                                         &cli_flag_repeat,
                                         &cli_flag_meshes_material,
@@ -98,8 +98,8 @@ static const cli_flag *const flags[] = {&cli_flag_output,
                                         &cli_flag_meshes_kev,
                                         &cli_flag_meshes_filter,
                                         &cli_flag_meshes_from,
-                                        &cli_flag_image_only,
-                                        &cli_flag_image_without,
+                                        &image_only,
+                                        &image_without,
                                         &cli_flag_mesh_unit,
                                         &cli_flag_device,
                                         &cli_flag_precision,

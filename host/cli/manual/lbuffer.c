@@ -1,11 +1,11 @@
 /* The manual of `lbuffer`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_lbuffer_part = {
+static const cli_flag lbuffer_part = {
     "--part", "LABEL",
     "The label of the sample whose path lengths are computed; of one mesh with --material it may be left out.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_lbuffer_surface = {
+static const cli_flag lbuffer_surface = {
     "--surface", NULL,
     "Writes the path lengths inside the part's mesh, the parts inside it included. The default is the net length, "
     "without the parts inside it.",
@@ -21,13 +21,13 @@ static const char *const text[] = {
     NULL};
 
 static const cli_flag *const flags[] = {
-    &cli_flag_lbuffer_part, &cli_flag_output,     &cli_flag_lbuffer_surface,
-    &cli_flag_range,        &cli_flag_repeat,     &cli_flag_meshes_material,
-    &cli_flag_meshes_kvp,   &cli_flag_meshes_kev, &cli_flag_meshes_filter,
-    &cli_flag_meshes_from,  &cli_flag_mesh_unit,  &cli_flag_device,
-    &cli_flag_precision,    &cli_flag_strategy,   &cli_flag_set,
-    &cli_flag_lenient,      &cli_flag_json,       &cli_flag_verbose,
-    &cli_flag_strict,       &cli_flag_quiet,      NULL};
+    &lbuffer_part,         &cli_flag_output,     &lbuffer_surface,
+    &cli_flag_range,       &cli_flag_repeat,     &cli_flag_meshes_material,
+    &cli_flag_meshes_kvp,  &cli_flag_meshes_kev, &cli_flag_meshes_filter,
+    &cli_flag_meshes_from, &cli_flag_mesh_unit,  &cli_flag_device,
+    &cli_flag_precision,   &cli_flag_strategy,   &cli_flag_set,
+    &cli_flag_lenient,     &cli_flag_json,       &cli_flag_verbose,
+    &cli_flag_strict,      &cli_flag_quiet,      NULL};
 
 static const cli_item examples[] = {
     {"skiagraph lbuffer scene.json --part liver -o liver.mha", "writes the path lengths through the liver"},

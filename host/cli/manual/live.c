@@ -1,21 +1,21 @@
 /* The manual of `live`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_live_port = {"--port", "N",
-                                     "The port to listen on; by default, and with 0, one that is free.", NULL,
-                                     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_live_no_open = {
+static const cli_flag live_port = {"--port", "N",
+                                   "The port to listen on; by default, and with 0, one that is free.", NULL,
+                                   CLI_NAMES_NOTHING};
+static const cli_flag live_no_open = {
     "--no-open", NULL, "Does not open a browser. Without a graphical desktop none is opened anyway.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_live_bind = {
+static const cli_flag live_bind = {
     "--bind", "ADDRESS",
     "The address to listen on, 127.0.0.1 by default: this machine alone. With another one whoever has the printed "
     "address can see and change the scene, and a warning says so.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_live_idle = {
+static const cli_flag live_idle = {
     "--idle", "SECONDS", "Ends when no page has asked for anything for so long.", NULL, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_live_fixed = {
+static const cli_flag live_fixed = {
     "--fixed", "FILE[@K]",
     "A radiograph that lies over the image, and to which the chosen part is registered by a button: .mha, .mhd, .tif, .png or .dcm. K is "
     "the projection of the scene's Scan that it was taken from, and the page of a file that has several; without it the view is that of "
@@ -36,11 +36,22 @@ static const char *const text[] = {
     "--json prints {url, port, token}.",
     NULL};
 
-static const cli_flag *const flags[] = {
-    &cli_flag_live_port,  &cli_flag_live_no_open,      &cli_flag_live_bind,     &cli_flag_live_idle,
-    &cli_flag_live_fixed, &cli_flag_register_quantity, &cli_flag_register_flat, &cli_flag_device,
-    &cli_flag_precision,  &cli_flag_tolerance,         &cli_flag_set,           &cli_flag_lenient,
-    &cli_flag_json,       &cli_flag_verbose,           &cli_flag_quiet,         NULL};
+static const cli_flag *const flags[] = {&live_port,
+                                        &live_no_open,
+                                        &live_bind,
+                                        &live_idle,
+                                        &live_fixed,
+                                        &cli_flag_register_quantity,
+                                        &cli_flag_register_flat,
+                                        &cli_flag_device,
+                                        &cli_flag_precision,
+                                        &cli_flag_tolerance,
+                                        &cli_flag_set,
+                                        &cli_flag_lenient,
+                                        &cli_flag_json,
+                                        &cli_flag_verbose,
+                                        &cli_flag_quiet,
+                                        NULL};
 
 static const cli_item examples[] = {
     {"skiagraph live scene.json", "opens the scene in a browser"},

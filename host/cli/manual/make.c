@@ -1,63 +1,63 @@
 /* The manual of `make`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_make_output = {"-o", "FILE", "The mesh to write, .ply or .stl. Required.", NULL,
-                                       CLI_NAMES_FILE};
-const cli_flag cli_flag_make_box = {
+static const cli_flag make_output = {"-o", "FILE", "The mesh to write, .ply or .stl. Required.", NULL,
+                                     CLI_NAMES_FILE};
+static const cli_flag make_box = {
     "--box", "X,Y,Z",
     "foam, fibres, gyroid: edges of the box, or one number for a cube; 20 if it is not given.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_radius = {
-    "--radius", "MM", "Of the spheres of a foam (1), of the fibres (0.5) or of the star (20).", NULL,
-    CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_fraction = {
+static const cli_flag make_radius = {"--radius", "MM",
+                                     "Of the spheres of a foam (1), of the fibres (0.5) or of the star (20).",
+                                     NULL, CLI_NAMES_NOTHING};
+static const cli_flag make_fraction = {
     "--fraction", "F", "foam: the share of the box that the spheres fill, to 0.6; 0.1 if it is not given.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_count = {"--count", "N",
-                                      "The number of spheres, instead of --fraction, or of fibres (50).",
-                                      NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_spread = {"--spread", "S",
-                                       "foam: standard deviation of the radius as a share of it, 0 to 0.5.",
-                                       NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_gap = {"--gap", "MM", "foam, fibres: the least distance between two.", NULL,
+static const cli_flag make_count = {"--count", "N",
+                                    "The number of spheres, instead of --fraction, or of fibres (50).", NULL,
                                     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_tilt = {"--tilt", "DEGREES", "fibres: the greatest angle to z, 0 to 60.", NULL,
-                                     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_seed = {"--seed", "N", "foam, fibres: another seed gives another body.", NULL,
-                                     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_segments = {"--segments", "N",
-                                         "foam, fibres: corners around a sphere (12) or a fibre (16).", NULL,
-                                         CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_period = {"--period", "MM", "gyroid: its period; 10 if it is not given.", NULL,
+static const cli_flag make_spread = {"--spread", "S",
+                                     "foam: standard deviation of the radius as a share of it, 0 to 0.5.",
+                                     NULL, CLI_NAMES_NOTHING};
+static const cli_flag make_gap = {"--gap", "MM", "foam, fibres: the least distance between two.", NULL,
+                                  CLI_NAMES_NOTHING};
+static const cli_flag make_tilt = {"--tilt", "DEGREES", "fibres: the greatest angle to z, 0 to 60.", NULL,
+                                   CLI_NAMES_NOTHING};
+static const cli_flag make_seed = {"--seed", "N", "foam, fibres: another seed gives another body.", NULL,
+                                   CLI_NAMES_NOTHING};
+static const cli_flag make_segments = {"--segments", "N",
+                                       "foam, fibres: corners around a sphere (12) or a fibre (16).", NULL,
                                        CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_level = {
+static const cli_flag make_period = {"--period", "MM", "gyroid: its period; 10 if it is not given.", NULL,
+                                     CLI_NAMES_NOTHING};
+static const cli_flag make_level = {
     "--level", "L",
     "gyroid: where |sin x cos y + sin y cos z + sin z cos x| is below this, there is matter; 0.3 if it is "
     "not given.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_cells = {
+static const cli_flag make_cells = {
     "--cells", "N",
     "gyroid: cells of the grid along a period, 4 to 256, and at least 9.43 over the level, since a sheet would have holes otherwise; that, and at least 24, if it is not given.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_per_mm = {
+static const cli_flag make_per_mm = {
     "--per-mm", "LIST",
     "lines: line pairs per mm of each group, separated by commas; 0.5,1,2 if it is not given.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_bars = {"--bars", "N", "lines: bars of each group; 4 if it is not given.", NULL,
-                                     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_length = {
+static const cli_flag make_bars = {"--bars", "N", "lines: bars of each group; 4 if it is not given.", NULL,
+                                   CLI_NAMES_NOTHING};
+static const cli_flag make_length = {
     "--length", "MM", "lines: of a bar (20). steps: of the wedge along x (50).", NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_width = {"--width", "MM", "steps: of the wedge along y; 20 if it is not given.",
-                                      NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_thickness = {"--thickness", "MM", "lines, star: along z; 1 if it is not given.",
-                                          NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_heights = {
+static const cli_flag make_width = {"--width", "MM", "steps: of the wedge along y; 20 if it is not given.",
+                                    NULL, CLI_NAMES_NOTHING};
+static const cli_flag make_thickness = {"--thickness", "MM", "lines, star: along z; 1 if it is not given.",
+                                        NULL, CLI_NAMES_NOTHING};
+static const cli_flag make_heights = {
     "--heights", "LIST", "steps: heights of the steps in mm, rising; 5,10,15,20,25 if it is not given.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_inner = {
+static const cli_flag make_inner = {
     "--inner", "MM", "star: radius where the spokes begin; 1 if it is not given.", NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_make_spokes = {"--spokes", "N", "star: number of spokes; 36 if it is not given.",
-                                       NULL, CLI_NAMES_NOTHING};
+static const cli_flag make_spokes = {"--spokes", "N", "star: number of spokes; 36 if it is not given.", NULL,
+                                     CLI_NAMES_NOTHING};
 
 static const char *const text[] = {
     "Makes a body as one closed mesh, in mm, centred at the origin. KIND is one of foam (spheres in a box that do not "
@@ -66,31 +66,12 @@ static const char *const text[] = {
     "A foam is its pores: in a scene, give the matrix as a Cuboid and the pores as a sample inside it.",
     "--json prints {kind, triangles, vertices, components, volume_mm3, bounds, file}.", NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_make_output,
-                                        &cli_flag_make_box,
-                                        &cli_flag_make_radius,
-                                        &cli_flag_make_fraction,
-                                        &cli_flag_make_count,
-                                        &cli_flag_make_spread,
-                                        &cli_flag_make_gap,
-                                        &cli_flag_make_tilt,
-                                        &cli_flag_make_seed,
-                                        &cli_flag_make_segments,
-                                        &cli_flag_make_period,
-                                        &cli_flag_make_level,
-                                        &cli_flag_make_cells,
-                                        &cli_flag_make_per_mm,
-                                        &cli_flag_make_bars,
-                                        &cli_flag_make_length,
-                                        &cli_flag_make_width,
-                                        &cli_flag_make_thickness,
-                                        &cli_flag_make_heights,
-                                        &cli_flag_make_inner,
-                                        &cli_flag_make_spokes,
-                                        &cli_flag_json,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {
+    &make_output, &make_box,      &make_radius,     &make_fraction,  &make_count,
+    &make_spread, &make_gap,      &make_tilt,       &make_seed,      &make_segments,
+    &make_period, &make_level,    &make_cells,      &make_per_mm,    &make_bars,
+    &make_length, &make_width,    &make_thickness,  &make_heights,   &make_inner,
+    &make_spokes, &cli_flag_json, &cli_flag_strict, &cli_flag_quiet, NULL};
 
 static const cli_item files[] = {{"FILE", "the mesh"}, {NULL, NULL}};
 

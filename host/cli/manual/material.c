@@ -1,19 +1,19 @@
 /* The manual of `material`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_material_energy = {
+static const cli_flag material_energy = {
     "--energy", "KEV[:KEV[:STEP]]",
     "One energy in keV, or a range with a step, which is 1 keV unless given. The default is ten energies from 10 to "
     "150 keV.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_material_density = {
-    "--density", "G_CM3", "The density, g/cm3, instead of the table's.", NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_material_list = {
+static const cli_flag material_density = {"--density", "G_CM3", "The density, g/cm3, instead of the table's.",
+                                          NULL, CLI_NAMES_NOTHING};
+static const cli_flag material_list = {
     "--list", NULL, "Prints the names and densities of the tables instead.", NULL, CLI_NAMES_NOTHING};
 
 static const cli_item interpolations[] = {
     {"bilinear", "straight lines"}, {"bilogarithmic", "straight lines between logarithms"}, {NULL, NULL}};
-const cli_flag cli_flag_material_naive = {
+static const cli_flag material_naive = {
     "--naive", NULL,
     "For HU:... also prints mu interpolated between water, soft tissue and bone by Hounsfield number (Eq. 13 of "
     "Vidal and Villard 2016), to show its error.",
@@ -31,15 +31,9 @@ static const char *const text[] = {
     "that is not known is null.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_material_energy,
-                                        &cli_flag_material_density,
-                                        &cli_flag_plot,
-                                        &cli_flag_material_naive,
-                                        &cli_flag_material_list,
-                                        &cli_flag_json,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {&material_energy, &material_density, &cli_flag_plot,
+                                        &material_naive,  &material_list,    &cli_flag_json,
+                                        &cli_flag_strict, &cli_flag_quiet,   NULL};
 
 static const cli_item examples[] = {
     {"skiagraph material H2O --energy 60", "prints the coefficients of water at 60 keV"},

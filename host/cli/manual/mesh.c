@@ -12,23 +12,23 @@ const cli_flag cli_flag_mesh_unit = {
     "(3MF, AMF, COLLADA, X3D, glTF, FBX, MetaImage, NRRD, NIfTI), otherwise mm.",
     units, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_mesh_fix = {
-    "--fix", NULL, "Turns inverted components and writes the mesh, in mm, to the file of -o.", NULL,
-    CLI_NAMES_NOTHING};
-const cli_flag cli_flag_mesh_output = {"-o", "FILE", "With --fix: the file to write, .ply or .stl.", NULL,
-                                       CLI_NAMES_FILE};
+static const cli_flag mesh_fix = {"--fix", NULL,
+                                  "Turns inverted components and writes the mesh, in mm, to the file of -o.",
+                                  NULL, CLI_NAMES_NOTHING};
+static const cli_flag mesh_output = {"-o", "FILE", "With --fix: the file to write, .ply or .stl.", NULL,
+                                     CLI_NAMES_FILE};
 
-const cli_flag cli_flag_mesh_groups = {
+static const cli_flag mesh_groups = {
     "--groups", NULL,
     "Lists the groups and objects of the files: of OBJ, 3MF, and the nodes of glTF and others.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_mesh_group = {"--group", "NAME", "Reads only the group or object of this name.", NULL,
-                                      CLI_NAMES_NOTHING};
-const cli_flag cli_flag_mesh_split = {
+static const cli_flag mesh_group = {"--group", "NAME", "Reads only the group or object of this name.", NULL,
+                                    CLI_NAMES_NOTHING};
+static const cli_flag mesh_split = {
     "--split", "DIR",
     "Writes each group or object of one file as a .ply in mm to this folder, and with --scene a scene of them.",
     NULL, CLI_NAMES_FOLDER};
-const cli_flag cli_flag_mesh_scene = {
+static const cli_flag mesh_scene = {
     "--scene", "FILE",
     "With --split: the scene file to write, a part for each group, all of water until you say otherwise.",
     NULL, CLI_NAMES_OUTPUT};
@@ -53,17 +53,9 @@ static const char *const text[] = {
     "turned, duplicates, overlapping_components, inverted_components, leaving_cavities, ...}]}.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_mesh_unit,
-                                        &cli_flag_mesh_groups,
-                                        &cli_flag_mesh_group,
-                                        &cli_flag_mesh_split,
-                                        &cli_flag_mesh_scene,
-                                        &cli_flag_mesh_fix,
-                                        &cli_flag_mesh_output,
-                                        &cli_flag_json,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {&cli_flag_mesh_unit, &mesh_groups,    &mesh_group,  &mesh_split,
+                                        &mesh_scene,         &mesh_fix,       &mesh_output, &cli_flag_json,
+                                        &cli_flag_strict,    &cli_flag_quiet, NULL};
 
 static const cli_item examples[] = {
     {"skiagraph mesh liver.stl lungs.ply", "reports the health of two meshes"},

@@ -1,8 +1,8 @@
 /* The manual of `parts`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_parts_output = {"-o", "FILE.csv", "The table as a file, a line a part.", NULL,
-                                        CLI_NAMES_FILE};
+static const cli_flag parts_output = {"-o", "FILE.csv", "The table as a file, a line a part.", NULL,
+                                      CLI_NAMES_FILE};
 
 static const char *const text[] = {
     "Prints a table of the parts of a scene, for a report: material, density, volume, mass, mean path and share of the "
@@ -15,7 +15,7 @@ static const char *const text[] = {
     "value that is not known is null.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_parts_output,  &cli_flag_meshes_material,
+static const cli_flag *const flags[] = {&parts_output,           &cli_flag_meshes_material,
                                         &cli_flag_meshes_kvp,    &cli_flag_meshes_kev,
                                         &cli_flag_meshes_filter, &cli_flag_meshes_from,
                                         &cli_flag_mesh_unit,     &cli_flag_device,

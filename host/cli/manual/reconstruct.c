@@ -1,19 +1,19 @@
 /* The manual of `reconstruct`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_reconstruct_output = {"-o", "FILE", "The volume to write, a .mha. Required.", NULL,
-                                              CLI_NAMES_FILE};
-const cli_flag cli_flag_reconstruct_geometry = {
+static const cli_flag reconstruct_output = {"-o", "FILE", "The volume to write, a .mha. Required.", NULL,
+                                            CLI_NAMES_FILE};
+static const cli_flag reconstruct_geometry = {
     "--geometry", "FILE",
     "The places of a point source and the detector for the projections of a stack or a folder: a .csv with a line each, which scan "
     "--geometry FILE.csv writes, or the .xtekct of a Nikon scanner.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_reconstruct_size = {
+static const cli_flag reconstruct_size = {
     "--size", "N",
     "The number of voxels along each side, 1 to 4096, of the edge of --voxel: fewer than the default, the number of columns of a "
     "projection, crop the volume about its middle, which is said where --voxel is not given.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_reconstruct_voxel = {
+static const cli_flag reconstruct_voxel = {
     "--voxel", "MM",
     "The edge of a voxel in mm. The default is the step of the detector's columns, as it is seen at the axis.",
     NULL, CLI_NAMES_NOTHING};
@@ -22,8 +22,8 @@ const cli_flag cli_flag_reconstruct_voxel = {
 static const cli_item filters[] = {{"ramp", "the band-limited ramp (the default)"},
                                    {"hann", "the ramp times a Hann window: less noise, less sharp"},
                                    {NULL, NULL}};
-const cli_flag cli_flag_reconstruct_filter = {"--filter", NULL, "The filter of the rows of the projections.",
-                                              filters, CLI_NAMES_NOTHING};
+static const cli_flag reconstruct_filter = {"--filter", NULL, "The filter of the rows of the projections.",
+                                            filters, CLI_NAMES_NOTHING};
 
 /* In the order of SKG_FDK_TRUNCATION_. */
 static const cli_item truncations[] = {
@@ -31,9 +31,9 @@ static const cli_item truncations[] = {
     {"extrapolate",
      "rows are continued as the projection of an ellipse that fits, else by their mirror image (Ohnesorge 2000)"},
     {NULL, NULL}};
-const cli_flag cli_flag_reconstruct_truncation = {
-    "--truncation", NULL, "What is done about projections that the detector cuts off.", truncations,
-    CLI_NAMES_NOTHING};
+static const cli_flag reconstruct_truncation = {"--truncation", NULL,
+                                                "What is done about projections that the detector cuts off.",
+                                                truncations, CLI_NAMES_NOTHING};
 
 static const char *const text[] = {
     "Reconstructs a circular scan by the method of Feldkamp, Davis and Kress, to look at what the scan gives. "
@@ -47,16 +47,11 @@ static const char *const text[] = {
     "truncated the share of the rows that are cut off.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_reconstruct_output,
-                                        &cli_flag_reconstruct_geometry,
-                                        &cli_flag_reconstruct_size,
-                                        &cli_flag_reconstruct_voxel,
-                                        &cli_flag_reconstruct_filter,
-                                        &cli_flag_reconstruct_truncation,
-                                        &cli_flag_json,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {&reconstruct_output, &reconstruct_geometry,
+                                        &reconstruct_size,   &reconstruct_voxel,
+                                        &reconstruct_filter, &reconstruct_truncation,
+                                        &cli_flag_json,      &cli_flag_strict,
+                                        &cli_flag_quiet,     NULL};
 
 static const cli_item examples[] = {
     {"skiagraph reconstruct scan.h5 -o volume.mha --size 256 --filter hann", "writes 256 x 256 x 256 voxels"},

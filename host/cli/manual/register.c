@@ -1,20 +1,20 @@
 /* The manual of `register`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_register_image = {
+static const cli_flag register_image = {
     "--image", "FILE[@K]",
     "A radiograph: .mha, .mhd, .tif, .png or .dcm. K is the projection of the scene's Scan that it was taken from, and the page of a file that "
     "has several; without it the view is that of the scene's Source and Detector. May be given several times.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_register_part = {
+static const cli_flag register_part = {
     "--part", "LABELS",
     "The body: labels of parts, separated by commas, in which * stands for any text; all parts that fit move as one. Given again, "
     "another body, which is registered when the one before has found its place.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_output = {
+static const cli_flag register_output = {
     "-o", "FILE", "The scene with the parts, or the views, where they were found (.json).", NULL,
     CLI_NAMES_FILE};
-const cli_flag cli_flag_register_report = {
+static const cli_flag register_report = {
     "--report", "FILE",
     "A page with the overlays, what is left, the path of the loss and the table of freedoms (.html).", NULL,
     CLI_NAMES_OUTPUT};
@@ -24,7 +24,7 @@ static const cli_item frees[] = {{"pose", "the parts (the default)"},
                                  {"detector", "the detector, of each view"},
                                  {"geometry", "both: nine numbers of each view"},
                                  {NULL, NULL}};
-const cli_flag cli_flag_register_free = {
+static const cli_flag register_free = {
     "--free", NULL,
     "What is found. Source and detector need parts whose place is known, such as a phantom of balls.", frees,
     CLI_NAMES_NOTHING};
@@ -34,15 +34,15 @@ static const cli_item losses[] = {
     {"ncc", "correlation of attenuations"},
     {"gradient-ncc", "correlation of their differences from pixel to pixel"},
     {NULL, NULL}};
-const cli_flag cli_flag_register_loss = {"--loss", NULL, "What is minimized.", losses, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_polish = {"--polish", NULL, "Ends the search with --loss gradient-ncc.",
-                                           NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_start = {
+static const cli_flag register_loss = {"--loss", NULL, "What is minimized.", losses, CLI_NAMES_NOTHING};
+static const cli_flag register_polish = {"--polish", NULL, "Ends the search with --loss gradient-ncc.", NULL,
+                                         CLI_NAMES_NOTHING};
+static const cli_flag register_start = {
     "--start", "TX,TY,TZ,RX,RY,RZ",
     "Where the search starts: a twist of the first body in mm and radians, in the axes of the world and about its origin, in addition to "
     "the poses of the scene.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_mask = {
+static const cli_flag register_mask = {
     "--mask", "FILE",
     "An image that is 0 where pixels do not count. Given once, it holds for all radiographs; otherwise one for each.",
     NULL, CLI_NAMES_FILE};
@@ -60,22 +60,22 @@ const cli_flag cli_flag_register_flat = {
     "The intensity without parts, as a number or an image. Given once, it holds for all radiographs; otherwise one for each. Without it, "
     "it is the largest intensity of the radiograph.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_restarts = {
+static const cli_flag register_restarts = {
     "--restarts", "N",
     "Ranks N further starts on small images, and follows the best three; 0 if it is not given.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_seed = {
+static const cli_flag register_seed = {
     "--seed", "N", "Another seed gives other starts; 1 if it is not given.", NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_spread = {
+static const cli_flag register_spread = {
     "--spread", "MM:DEGREES", "How far from the first start others are at most; 20:15 if it is not given.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_margin = {
+static const cli_flag register_margin = {
     "--margin", "MM",
     "Pixels count that are at most this far from the body's shadow, measured at the body; 25 if it is not given.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_register_need = {"--need", "MM",
-                                         "How well each direction has to be known; 1 if it is not given.",
-                                         NULL, CLI_NAMES_NOTHING};
+static const cli_flag register_need = {"--need", "MM",
+                                       "How well each direction has to be known; 1 if it is not given.", NULL,
+                                       CLI_NAMES_NOTHING};
 
 static const char *const text[] = {
     "Moves parts of a scene until their rendered attenuation agrees with radiographs, by the derivatives of the images. What does not move is "
@@ -89,19 +89,19 @@ static const char *const text[] = {
     "row_step}], loss, loss_start, residual, noise, explained, agreement, energy_kev, worst: {view, row, column}, evaluations, jacobians, seconds}.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_register_image,  &cli_flag_register_part,
-                                        &cli_flag_register_output, &cli_flag_register_report,
-                                        &cli_flag_register_free,   &cli_flag_register_loss,
-                                        &cli_flag_register_polish, &cli_flag_register_start,
-                                        &cli_flag_register_mask,   &cli_flag_register_quantity,
-                                        &cli_flag_register_flat,   &cli_flag_register_restarts,
-                                        &cli_flag_register_seed,   &cli_flag_register_spread,
-                                        &cli_flag_register_margin, &cli_flag_register_need,
-                                        &cli_flag_device,          &cli_flag_precision,
-                                        &cli_flag_strategy,        &cli_flag_set,
-                                        &cli_flag_lenient,         &cli_flag_json,
-                                        &cli_flag_strict,          &cli_flag_quiet,
-                                        &cli_flag_verbose,         NULL};
+static const cli_flag *const flags[] = {&register_image,         &register_part,
+                                        &register_output,        &register_report,
+                                        &register_free,          &register_loss,
+                                        &register_polish,        &register_start,
+                                        &register_mask,          &cli_flag_register_quantity,
+                                        &cli_flag_register_flat, &register_restarts,
+                                        &register_seed,          &register_spread,
+                                        &register_margin,        &register_need,
+                                        &cli_flag_device,        &cli_flag_precision,
+                                        &cli_flag_strategy,      &cli_flag_set,
+                                        &cli_flag_lenient,       &cli_flag_json,
+                                        &cli_flag_strict,        &cli_flag_quiet,
+                                        &cli_flag_verbose,       NULL};
 
 static const cli_item files[] = {
     {"FILE.json", "a scene that every verb takes"},

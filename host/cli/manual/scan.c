@@ -1,84 +1,84 @@
 /* What help says of scan: its flags, text and examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_scan_output = {
+static const cli_flag scan_output = {
     "-o", "FILE",
     "The output: .h5 (HDF5 in the layout of Data Exchange, if it was built with HDF5), .nxs (the same as NXtomo, too), .mha (MetaImage), .raw (with its header in a .mhd beside it), .tif (BigTIFF), or a folder, which has no "
     "extension. Required.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_scan_from = {"--from", "K", "The first projection to compute, counted from 0.", NULL,
-                                     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_to = {"--to", "K", "The last projection to compute.", NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_only = {"--only", "K,K,...", "Computes these projections only, in rising order.",
-                                     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_overwrite = {
+static const cli_flag scan_from = {"--from", "K", "The first projection to compute, counted from 0.", NULL,
+                                   CLI_NAMES_NOTHING};
+static const cli_flag scan_to = {"--to", "K", "The last projection to compute.", NULL, CLI_NAMES_NOTHING};
+static const cli_flag scan_only = {"--only", "K,K,...", "Computes these projections only, in rising order.",
+                                   NULL, CLI_NAMES_NOTHING};
+static const cli_flag scan_overwrite = {
     "--overwrite", NULL, "Replaces an output that holds another scan. Without this flag it is refused.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_breathing = {
+static const cli_flag scan_breathing = {
     "--breathing", NULL,
     "Poses the scene for each projection at its own time (Interval and StartTime of Scan), as its key Breathing says.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_phases = {
+static const cli_flag scan_phases = {
     "--phases", "N",
     "With --breathing: also writes the projections of each of N phases of the breath to a file of their own, when the scan "
     "is finished: scan.phase-K-of-N.h5 for -o scan.h5. Phase 1 is end-inspiration.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_dicom = {
+static const cli_flag scan_dicom = {
     "--dicom", "DIR",
     "Also writes each projection as DIR/projection-00000.dcm when the scan is finished: Computed Radiography with the pixels' "
     "spacing, distances and voltage. Needs the program dump2dcm of DCMTK, and an output that is one file.",
     NULL, CLI_NAMES_FOLDER};
-const cli_flag cli_flag_scan_subframes = {
+static const cli_flag scan_subframes = {
     "--subframes", "N",
     "Averages each projection from N frames, spread over its exposure (Exposure of Scan), during which the scan turns "
     "and the scene breathes. The default is 1.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_flats = {
+static const cli_flag scan_flats = {
     "--flats", "N",
     "The number of flat fields: the beam without parts. In an .h5 the default is 1. In a folder they are flat-00000.tif and on, and "
     "beside a .mha, .raw or .tif they are a stack, scan-flats.mha for scan.mha: both only with --flats, --darks or Flats or Darks of Scan. "
     "Geometry files name them in a comment.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_darks = {
+static const cli_flag scan_darks = {
     "--darks", "N",
     "The number of dark fields: no beam, but the electronic noise of the data. As --flats; "
     "dark-00000.tif, scan-darks.mha.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_shard = {
+static const cli_flag scan_shard = {
     "--shard", "I/N",
     "Computes block I of N blocks of consecutive projections, I from 1 to N, and writes it to a file of its own: "
     "scan.I-of-N.h5 for -o scan.h5. For job arrays.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_join = {
+static const cli_flag scan_join = {
     "--join", NULL,
     "Puts the files of all shards together in the file of -o. Projections that no shard has are computed.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_mixed = {
+static const cli_flag scan_mixed = {
     "--mixed", NULL,
     "Under MPI: allows devices that give different bits. Without this flag they are refused.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_grey16 = {
+static const cli_flag scan_grey16 = {
     "--grey16", NULL,
     "Writes grey values of 16 bits: as GreyValues of the detector says, or 60000 where the free beam is strongest and 0 "
     "without radiation. Scenes with GreyValues, such as CTSimU scenarios, are written as grey values unless --quantity is "
     "given.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_packed = {
+static const cli_flag scan_packed = {
     "--packed", "FILE",
     "When the scan is finished: also writes the .h5 again to this .h5, compressed in chunks, without loss. May be given later, "
     "with the same command.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_scan_packed_grey16 = {
+static const cli_flag scan_packed_grey16 = {
     "--packed-grey16", NULL,
     "With --packed: the copy has grey values of 16 bits, 60000 where the mean flat field is strongest.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_verify = {
+static const cli_flag scan_verify = {
     "--verify", NULL,
     "Computes nothing: reads the projections of the output and compares them with their checksums. Damaged ones are marked as "
     "missing, so that the same command without --verify computes them again. The exit status is 1 if one is damaged or "
     "missing.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_scan_geometry = {
+static const cli_flag scan_geometry = {
     "--geometry", "FILE",
     "Writes where source and detector are in each projection: .csv (a table, which Scan.Table reads and which is the "
     "cone_vec of ASTRA), .xml (RTK), .tigre.py (TIGRE), .cil.py (CIL) or transforms.json (NeRF, Gaussian splatting). A .ctsimu.json gets the scene itself as a CTSimU scenario, with "
@@ -103,36 +103,21 @@ static const char *const text[] = {
     "many projections the scan has, how many were computed now, and how many the output had before.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_scan_output,
-                                        &cli_flag_image_quantity,
-                                        &cli_flag_scan_from,
-                                        &cli_flag_scan_to,
-                                        &cli_flag_scan_only,
-                                        &cli_flag_scan_overwrite,
-                                        &cli_flag_scan_breathing,
-                                        &cli_flag_scan_phases,
-                                        &cli_flag_scan_dicom,
-                                        &cli_flag_scan_subframes,
-                                        &cli_flag_scan_geometry,
-                                        &cli_flag_scan_flats,
-                                        &cli_flag_scan_darks,
-                                        &cli_flag_scan_shard,
-                                        &cli_flag_scan_join,
-                                        &cli_flag_scan_mixed,
-                                        &cli_flag_scan_grey16,
-                                        &cli_flag_scan_packed,
-                                        &cli_flag_scan_packed_grey16,
-                                        &cli_flag_scan_verify,
-                                        &cli_flag_device,
-                                        &cli_flag_precision,
-                                        &cli_flag_tolerance,
-                                        &cli_flag_strategy,
-                                        &cli_flag_set,
-                                        &cli_flag_lenient,
-                                        &cli_flag_json,
-                                        &cli_flag_strict,
-                                        &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {&scan_output,        &cli_flag_image_quantity,
+                                        &scan_from,          &scan_to,
+                                        &scan_only,          &scan_overwrite,
+                                        &scan_breathing,     &scan_phases,
+                                        &scan_dicom,         &scan_subframes,
+                                        &scan_geometry,      &scan_flats,
+                                        &scan_darks,         &scan_shard,
+                                        &scan_join,          &scan_mixed,
+                                        &scan_grey16,        &scan_packed,
+                                        &scan_packed_grey16, &scan_verify,
+                                        &cli_flag_device,    &cli_flag_precision,
+                                        &cli_flag_tolerance, &cli_flag_strategy,
+                                        &cli_flag_set,       &cli_flag_lenient,
+                                        &cli_flag_json,      &cli_flag_strict,
+                                        &cli_flag_quiet,     NULL};
 
 static const cli_item files[] = {{"FILE", "the projections"},
                                  {"FILE.progress", "which of them are finished; removed at the end"},

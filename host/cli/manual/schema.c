@@ -1,9 +1,9 @@
 /* The manual of `schema`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_schema_output = {"-o", "FILE.json", "The schema as a file.", NULL, CLI_NAMES_FILE};
+static const cli_flag schema_output = {"-o", "FILE.json", "The schema as a file.", NULL, CLI_NAMES_FILE};
 
-const cli_flag cli_flag_schema_paths = {
+static const cli_flag schema_paths = {
     "--paths", NULL, "Prints the keys as --set takes them instead, a line each: Detector.NumberOfPixels=.",
     NULL, CLI_NAMES_NOTHING};
 
@@ -15,8 +15,7 @@ static const char *const text[] = {
     "share/skiagraph/scene.schema.json. `skiagraph help keys` lists the keys as text.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_schema_output, &cli_flag_schema_paths, &cli_flag_quiet,
-                                        NULL};
+static const cli_flag *const flags[] = {&schema_output, &schema_paths, &cli_flag_quiet, NULL};
 
 static const cli_item files[] = {{"FILE.json", "the schema"}, {NULL, NULL}};
 

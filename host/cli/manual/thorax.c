@@ -1,14 +1,14 @@
 /* The manual of `thorax`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_thorax_output = {
+static const cli_flag thorax_output = {
     "-o", "DIR", "The folder to write to. It is made if it does not exist.", NULL, CLI_NAMES_FOLDER};
-const cli_flag cli_flag_thorax_triangles = {
+static const cli_flag thorax_triangles = {
     "--triangles", "N",
     "The approximate number of triangles of all meshes, 10000 to 20000000. The default is 42000.", NULL,
     CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_thorax_simple = {
+static const cli_flag thorax_simple = {
     "--simple", NULL,
     "Generates the simple thorax: 67 parts in a body of fat, without muscle, great vessels, vessels of the lungs, "
     "marrow, shoulder blades and bowel.",
@@ -21,9 +21,9 @@ static const char *const text[] = {
     "The scene file names tissues, the beam of a tube, and a percutaneous cholangiography for `breathe`.",
     "--json prints {parts, triangles, folder}.", NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_thorax_output,
-                                        &cli_flag_thorax_triangles,
-                                        &cli_flag_thorax_simple,
+static const cli_flag *const flags[] = {&thorax_output,
+                                        &thorax_triangles,
+                                        &thorax_simple,
                                         &cli_flag_json,
                                         &cli_flag_strict,
                                         &cli_flag_quiet,

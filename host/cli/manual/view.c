@@ -1,41 +1,41 @@
 /* The manual of `view`: operands, flags, text, examples. */
 #include "manual/manual.h"
 
-const cli_flag cli_flag_view_output = {
+static const cli_flag view_output = {
     "-o", "FILE",
     "The file to write: a picture, .png; a page, .html, in which the scene can be turned; a model of the parts for other viewers, "
     ".glb (glTF 2.0); or a film, .gif, .mp4 or .webm. "
     "May be repeated.",
     NULL, CLI_NAMES_FILE};
-const cli_flag cli_flag_view_from = {
+static const cli_flag view_from = {
     "--from", "front|side|top|ANGLES|X,Y,Z",
     "The side from which the scene is seen: front is -y, side is +x, top is +z; AP, PA, LAT or the ANGLES of a C-arm such as 'LAO 30 CRAN "
     "20', as its radiograph is seen; or the direction from the scene to the "
     "eye. From a side +z is up, from the top +y. By default the scene is seen obliquely from the side of the source, with "
     "the detector's row 0 on top.",
     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_view_size = {"--size", "W,H", "Columns and rows of the picture; 1280,800 by default.",
-                                     NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_view_orthographic = {
+static const cli_flag view_size = {"--size", "W,H", "Columns and rows of the picture; 1280,800 by default.",
+                                   NULL, CLI_NAMES_NOTHING};
+static const cli_flag view_orthographic = {
     "--orthographic", NULL, "Keeps parallel lines parallel, without perspective.", NULL, CLI_NAMES_NOTHING};
-const cli_flag cli_flag_view_phase = {
+static const cli_flag view_phase = {
     "--phase", "P", "Shows the scene at this phase of its breath: from 0, end-inspiration, to below 1.", NULL,
     CLI_NAMES_NOTHING};
-const cli_flag cli_flag_view_at = {"--at", "SECONDS", "Shows the scene at this time of its breath.", NULL,
-                                   CLI_NAMES_NOTHING};
+static const cli_flag view_at = {"--at", "SECONDS", "Shows the scene at this time of its breath.", NULL,
+                                 CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_view_seconds = {
+static const cli_flag view_seconds = {
     "--seconds", "T",
     "Shows the breath for T seconds: in a page, or as a film, which lasts one breath otherwise.", NULL,
     CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_view_zoom = {
+static const cli_flag view_zoom = {
     "--zoom", "Z[@PART]",
     "Shows the parts Z times as large as they fill a picture or a film, about the middle of all parts or of one PART, whatever else "
     "is then beyond its edges: 1 for all of them without source and detector, 8@needle for a small one.",
     NULL, CLI_NAMES_NOTHING};
 
-const cli_flag cli_flag_view_sensitivity = {
+static const cli_flag view_sensitivity = {
     "--sensitivity", NULL,
     "In a page, colours each part by how much the image changes when it moves by a mm, and writes the number beside its name: what "
     "`cost --sensitivity` prints. Takes three derivatives for each part.",
@@ -60,16 +60,16 @@ static const char *const text[] = {
     "column and row are where the centre of a part is in the picture. With --sensitivity it has the key sensitivity of `cost --json`.",
     NULL};
 
-static const cli_flag *const flags[] = {&cli_flag_view_output,
-                                        &cli_flag_view_from,
-                                        &cli_flag_view_size,
-                                        &cli_flag_view_zoom,
-                                        &cli_flag_view_orthographic,
-                                        &cli_flag_view_phase,
-                                        &cli_flag_view_at,
-                                        &cli_flag_view_seconds,
+static const cli_flag *const flags[] = {&view_output,
+                                        &view_from,
+                                        &view_size,
+                                        &view_zoom,
+                                        &view_orthographic,
+                                        &view_phase,
+                                        &view_at,
+                                        &view_seconds,
                                         &cli_flag_breathe_fps,
-                                        &cli_flag_view_sensitivity,
+                                        &view_sensitivity,
                                         &cli_flag_device,
                                         &cli_flag_tolerance,
                                         &cli_flag_set,

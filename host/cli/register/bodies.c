@@ -16,8 +16,7 @@
 static int add_parts(register_work *work, const char *label, char *chosen) {
     memset(chosen, label ? 0 : 1, (size_t)work->part_count);
     int exit_status =
-        label ? cli_mark_parts(work->session.scene, &cli_flag_register_part, label, work->part_count, chosen)
-              : CLI_DONE;
+        label ? cli_mark_parts(work->session.scene, "--part", label, work->part_count, chosen) : CLI_DONE;
     for (int64_t p = 0; p < work->part_count && exit_status == CLI_DONE; p++) {
         if (!chosen[p]) continue;
         const skg_status status = skg_registration_part_add(work->last, p);
@@ -123,7 +122,7 @@ static int reserve(register_work *work, size_t bodies) {
 int register_run(register_work *work) {
     const char *label;
     int count = 0;
-    while (cli_nth_value(work->arguments, &cli_flag_register_part, count)) count++;
+    while (cli_nth_value(work->arguments, "--part", count)) count++;
     if (count == 0 && work->options.free == SKG_REGISTRATION_FREE_POSE)
         return cli_error(CLI_USAGE, "register: say which part moves: --part LABEL");
     if (count > 1 && work->options.free != SKG_REGISTRATION_FREE_POSE)
@@ -135,7 +134,7 @@ int register_run(register_work *work) {
     cli_keep("the best pose so far is written");
     cli_stop_gently();
     for (int i = 0; exit_status == CLI_DONE && i < (count > 0 ? count : 1) && !work->is_stopped; i++) {
-        label = cli_nth_value(work->arguments, &cli_flag_register_part, i);
+        label = cli_nth_value(work->arguments, "--part", i);
         exit_status = register_one(work, label, chosen);
     }
     free(chosen);

@@ -42,12 +42,12 @@ static int find_view(const register_work *work, register_image *image) {
                          "%s %s@%" PRId64
                          ": the scene has no Scan that gives the view of a projection; leave @%" PRId64
                          " out, or add the key Scan",
-                         work->named_by->name, image->path, image->projection, image->projection);
+                         work->named_by, image->path, image->projection, image->projection);
     status = skg_scan_projection_count(scan, &count);
     if (status != SKG_OK) return cli_fail(status);
     if (image->projection >= count)
         return cli_error(CLI_INPUT, "%s %s@%" PRId64 ": the Scan has %" PRId64 " projections, counted from 0",
-                         work->named_by->name, image->path, image->projection, count);
+                         work->named_by, image->path, image->projection, count);
     status = skg_scan_view_get(scan, image->projection, &image->view);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -99,20 +99,20 @@ static int read_values(const char *path, const skg_view *view, int64_t page, dou
     return read_file(path, contents.pages > 1 ? page : 0, &contents, *values);
 }
 
-static int count_values(const cli_arguments *arguments, const cli_flag *flag) {
+static int count_values(const cli_arguments *arguments, const char *flag) {
     int count = 0;
     while (cli_nth_value(arguments, flag, count)) count++;
     return count;
 }
 
 /* The value of a flag that is given once for all radiographs, or once for each; NULL: not given. */
-static int value_for(const register_work *work, const cli_flag *flag, int64_t image, const char **value) {
+static int value_for(const register_work *work, const char *flag, int64_t image, const char **value) {
     const int count = count_values(work->arguments, flag);
     *value = NULL;
     if (count > 1 && count != work->image_count)
         return cli_error(CLI_USAGE,
                          "%s is given %d times for %" PRId64 " radiographs; give it once, or once for each",
-                         flag->name, count, work->image_count);
+                         flag, count, work->image_count);
     if (count > 0) *value = cli_nth_value(work->arguments, flag, count > 1 ? (int)image : 0);
     return CLI_DONE;
 }
@@ -120,8 +120,8 @@ static int value_for(const register_work *work, const cli_flag *flag, int64_t im
 static int read_beside(const register_work *work, int64_t index, register_image *image) {
     const char *flat = NULL, *mask = NULL;
     char *end = NULL;
-    int exit_status = value_for(work, &cli_flag_register_flat, index, &flat);
-    if (exit_status == CLI_DONE) exit_status = value_for(work, &cli_flag_register_mask, index, &mask);
+    int exit_status = value_for(work, "--flat", index, &flat);
+    if (exit_status == CLI_DONE) exit_status = value_for(work, "--mask", index, &mask);
     if (exit_status == CLI_DONE && flat) {
         image->flat_field = strtod(flat, &end);
         if (end == flat || *end) {
@@ -142,8 +142,7 @@ static int read_image(const register_work *work, int64_t index, const char *valu
     if (exit_status == CLI_DONE) exit_status = find_view(work, image);
     if (exit_status == CLI_DONE)
         exit_status = read_values(image->path, &image->view, image->projection, &image->values, &said);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_choice(work->arguments, &cli_flag_register_quantity, &chosen);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(work->arguments, "--quantity", &chosen);
     image->quantity = chosen >= 0 ? register_quantities[chosen] : said >= 0 ? said : SKG_QUANTITY_ENERGY;
     if (exit_status == CLI_DONE) exit_status = read_beside(work, index, image);
     const int is_ratio =

@@ -10,8 +10,7 @@
 #include <stdlib.h>
 
 static int check_outputs(const cli_arguments *arguments) {
-    const char *scene = cli_value(arguments, &cli_flag_register_output),
-               *page = cli_value(arguments, &cli_flag_register_report);
+    const char *scene = cli_value(arguments, "-o"), *page = cli_value(arguments, "--report");
     if (!scene)
         return cli_error(CLI_USAGE, "register: no file is named for the scene; add -o registered.json");
     if (!cli_has_extension(scene, ".json"))
@@ -55,12 +54,11 @@ static int write_scene(const register_work *work, const char *path) {
 }
 
 static int write_outputs(const register_work *work) {
-    const char *scene = cli_value(work->arguments, &cli_flag_register_output),
-               *page = cli_value(work->arguments, &cli_flag_register_report);
+    const char *scene = cli_value(work->arguments, "-o"), *page = cli_value(work->arguments, "--report");
     int exit_status = write_scene(work, scene);
     if (exit_status == CLI_DONE && page) exit_status = register_write_page(work, page);
     if (exit_status != CLI_DONE) return exit_status;
-    if (cli_given(work->arguments, &cli_flag_json)) return cli_json_print(register_json(work));
+    if (cli_given(work->arguments, "--json")) return cli_json_print(register_json(work));
     if (cli_is_quiet()) return CLI_DONE;
     register_print(work);
     cli_print("wrote %s\n", scene);
@@ -79,7 +77,7 @@ static void close_work(register_work *work) {
 }
 
 int cli_register(const cli_arguments *arguments) {
-    register_work work = {.arguments = arguments, .named_by = &cli_flag_register_image};
+    register_work work = {.arguments = arguments, .named_by = "--image"};
     int exit_status = check_outputs(arguments);
     if (exit_status == CLI_DONE) exit_status = register_read_options(&work);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &work.session);

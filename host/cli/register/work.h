@@ -28,7 +28,7 @@ typedef struct {
 
 typedef struct {
     const cli_arguments *arguments;
-    const cli_flag *named_by; /* the flag that names radiographs */
+    const char *named_by; /* the flag that names radiographs */
     cli_session session;
     skg_registration_options options;
     int64_t image_count, body_count, part_count;

@@ -16,7 +16,7 @@ enum { PROJECTIONS_MAX = 10000000, SUBFRAMES_MAX = 1000, FIELDS_MAX = 1000, NOTE
 
 /* Reads "3,7,12". */
 static int read_only(const cli_arguments *arguments, cli_acquisition *a) {
-    const char *value = cli_value(arguments, &cli_flag_scan_only), *at = value;
+    const char *value = cli_value(arguments, "--only"), *at = value;
     if (!value) return CLI_DONE;
     a->only = calloc(strlen(value) / 2 + 1, sizeof *a->only);
     if (!a->only) return cli_error(CLI_DEVICE, "out of host memory");
@@ -37,25 +37,21 @@ int acquisition_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
     int64_t to = -1;
     skg_scan_run_options_init(&a->options);
     a->flats = a->darks = 1;
-    a->place = cli_value(arguments, &cli_flag_scan_output);
+    a->place = cli_value(arguments, "-o");
     if (!a->place)
         return cli_error(CLI_USAGE,
                          "scan: no output is named; add -o FILE (.h5, .nxs, .mha, .raw, .tif or a folder)");
-    if (cli_given(arguments, &cli_flag_scan_grey16) && cli_given(arguments, &cli_flag_image_quantity))
+    if (cli_given(arguments, "--grey16") && cli_given(arguments, "--quantity"))
         return cli_error(CLI_USAGE,
                          "--grey16 and --quantity exclude each other: grey values are made of energies");
     const skg_status status = skg_scan_file_path_check(a->place);
     if (status != SKG_OK) return cli_fail(status);
-    int exit_status = cli_integer(arguments, &cli_flag_scan_from, 0, PROJECTIONS_MAX, &a->options.from);
+    int exit_status = cli_integer(arguments, "--from", 0, PROJECTIONS_MAX, &a->options.from);
+    if (exit_status == CLI_DONE) exit_status = cli_integer(arguments, "--to", 0, PROJECTIONS_MAX, &to);
     if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_scan_to, 0, PROJECTIONS_MAX, &to);
-    if (exit_status == CLI_DONE)
-        exit_status =
-            cli_integer(arguments, &cli_flag_scan_subframes, 1, SUBFRAMES_MAX, &a->options.subframes);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_scan_flats, 0, FIELDS_MAX, &a->flats);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_scan_darks, 0, FIELDS_MAX, &a->darks);
+        exit_status = cli_integer(arguments, "--subframes", 1, SUBFRAMES_MAX, &a->options.subframes);
+    if (exit_status == CLI_DONE) exit_status = cli_integer(arguments, "--flats", 0, FIELDS_MAX, &a->flats);
+    if (exit_status == CLI_DONE) exit_status = cli_integer(arguments, "--darks", 0, FIELDS_MAX, &a->darks);
     if (exit_status == CLI_DONE) exit_status = read_only(arguments, a);
     a->options.to = to + 1;
     if (exit_status == CLI_DONE) exit_status = shards_read_flag(arguments, a);
@@ -110,20 +106,20 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.darks = a->darks;
     options.from = a->part_from;
     options.count = a->part_count;
-    options.overwrite = cli_given(arguments, &cli_flag_scan_overwrite);
+    options.overwrite = cli_given(arguments, "--overwrite");
     options.helper = a->ranks.rank > 0;
     a->file_options = options;
     if (status == SKG_OK) status = skg_scan_file_open(a->place, &options, &a->file);
     if (status != SKG_OK) return cli_fail(status);
-    const int is_joined = cli_given(arguments, &cli_flag_scan_join) && a->ranks.rank == 0;
+    const int is_joined = cli_given(arguments, "--join") && a->ranks.rank == 0;
     if (is_joined) {
         const int exit_status = shards_join(a, &options);
         if (exit_status != CLI_DONE) return exit_status;
     }
     status = skg_scan_file_done_count(a->file, &a->found);
     if (status != SKG_OK) return cli_fail(status);
-    const int is_open = is_joined || a->found < a->projections ||
-                        (a->fields_beside && !cli_given(arguments, &cli_flag_scan_verify));
+    const int is_open =
+        is_joined || a->found < a->projections || (a->fields_beside && !cli_given(arguments, "--verify"));
     return a->has_fields && a->ranks.rank == 0 && is_open ? fields_write(a) : CLI_DONE;
 }
 
@@ -131,12 +127,10 @@ static int write_geometry(const cli_arguments *arguments, const cli_acquisition 
     const char *path;
     char note[NOTE_LENGTH];
     int exit_status = fields_describe(a, note, sizeof note);
-    for (int i = 0; exit_status == CLI_DONE && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
-         i++)
+    for (int i = 0; exit_status == CLI_DONE && (path = cli_nth_value(arguments, "--geometry", i)); i++)
         exit_status = cli_check_file_kept(a->session.setup, path);
     if (exit_status != CLI_DONE) return exit_status;
-    for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
-         i++) {
+    for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, "--geometry", i)); i++) {
         if (scenario_is(path)) continue; /* once there is a plan */
         const skg_status status = skg_scan_geometry_save_noted(a->record.known ? a->record.known : a->scan,
                                                                path, *note ? note : NULL);
@@ -167,7 +161,7 @@ static int check_chosen(const cli_acquisition *a) {
 /* Scene, scan, motion and plan: of every rank its own. */
 static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     int32_t quantity = -1;
-    int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
+    int exit_status = cli_choice(arguments, "--quantity", &quantity);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &a->session);
     if (exit_status != CLI_DONE) return exit_status;
     if (a->ranks.rank == 0) cli_note_no_noise(&a->session);
@@ -178,7 +172,7 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
         a->session.options.precision == SKG_PRECISION_DOUBLE ? SKG_TYPE_FLOAT64 : SKG_TYPE_FLOAT32;
     skg_status status = skg_setup_scan_get(a->session.setup, &a->scan);
     if (status == SKG_OK) status = skg_scan_projection_count(a->scan, &a->projections);
-    if (status == SKG_OK && cli_given(arguments, &cli_flag_scan_breathing))
+    if (status == SKG_OK && cli_given(arguments, "--breathing"))
         status = skg_motion_create(a->session.context, a->session.setup, &a->motion);
     a->options.motion = a->motion;
     if (status == SKG_OK)

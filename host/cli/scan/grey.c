@@ -30,15 +30,14 @@ static int has_stem(const cli_acquisition *a) {
 static void decide_fields(const cli_arguments *arguments, cli_acquisition *a) {
     const int is_inside = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5") ||
                           cli_has_extension(a->place, ".nxs") || (has_stem(a) && cli_names_folder(a->place));
-    const int asked = a->record.fields || cli_given(arguments, &cli_flag_scan_flats) ||
-                      cli_given(arguments, &cli_flag_scan_darks);
-    a->fields_beside = !is_inside && asked && !cli_given(arguments, &cli_flag_scan_shard);
+    const int asked = a->record.fields || cli_given(arguments, "--flats") || cli_given(arguments, "--darks");
+    a->fields_beside = !is_inside && asked && !cli_given(arguments, "--shard");
     a->has_fields = is_inside || a->fields_beside;
 }
 
 int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
-    const int asked = cli_given(arguments, &cli_flag_scan_grey16);
-    const int has_quantity = cli_given(arguments, &cli_flag_image_quantity);
+    const int asked = cli_given(arguments, "--grey16");
+    const int has_quantity = cli_given(arguments, "--quantity");
     skg_scan_record_init(&a->record);
     skg_readout_init(&a->readout);
     skg_status status = skg_setup_record_get(a->session.setup, &a->record);
@@ -48,8 +47,8 @@ int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
     if (asked) a->readout.bits = 16;
     if (a->is_grey) mark_hash(a->hash);
     decide_fields(arguments, a);
-    if (a->record.fields && !cli_given(arguments, &cli_flag_scan_flats)) a->flats = a->record.flats;
-    if (a->record.fields && !cli_given(arguments, &cli_flag_scan_darks)) a->darks = a->record.darks;
+    if (a->record.fields && !cli_given(arguments, "--flats")) a->flats = a->record.flats;
+    if (a->record.fields && !cli_given(arguments, "--darks")) a->darks = a->record.darks;
     a->options.moving_count = a->record.moving_count;
     a->options.moving_parts = a->record.moving_parts;
     a->options.moving_poses = a->record.moving_poses;

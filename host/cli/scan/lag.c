@@ -17,9 +17,8 @@ static const char *name_of(const cli_acquisition *a) {
 int lag_check(const cli_arguments *arguments, const cli_acquisition *a) {
     const char *what = NULL;
     if (!has_past(a)) return CLI_DONE;
-    if (cli_given(arguments, &cli_flag_scan_shard) || cli_given(arguments, &cli_flag_scan_join))
-        what = "shards";
-    if (cli_given(arguments, &cli_flag_scan_only)) what = "--only";
+    if (cli_given(arguments, "--shard") || cli_given(arguments, "--join")) what = "shards";
+    if (cli_given(arguments, "--only")) what = "--only";
     if (a->options.from > 0) what = "--from";
     if (a->ranks.count > 1) what = "several processes (MPI)";
     if (!what) return CLI_DONE;

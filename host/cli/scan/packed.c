@@ -9,11 +9,11 @@ static int is_hdf5(const char *path) {
 }
 
 int packed_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
-    const char *to = cli_value(arguments, &cli_flag_scan_packed);
-    if (!to && cli_given(arguments, &cli_flag_scan_packed_grey16))
+    const char *to = cli_value(arguments, "--packed");
+    if (!to && cli_given(arguments, "--packed-grey16"))
         return cli_error(CLI_USAGE, "--packed-grey16 says how --packed FILE is written; add it");
     if (!to) return CLI_DONE;
-    if (cli_given(arguments, &cli_flag_scan_shard))
+    if (cli_given(arguments, "--shard"))
         return cli_error(CLI_USAGE, "--packed writes a whole scan; give it with --join, not with --shard");
     if (!is_hdf5(to) || !(is_hdf5(a->place) || cli_has_extension(a->place, ".nxs")))
         return cli_error(CLI_USAGE, "--packed %s: a scan that is an .h5 is packed to another .h5", to);
@@ -22,11 +22,11 @@ int packed_read_flags(const cli_arguments *arguments, cli_acquisition *a) {
 }
 
 int packed_write(const cli_arguments *arguments, const cli_acquisition *a) {
-    const char *to = cli_value(arguments, &cli_flag_scan_packed);
+    const char *to = cli_value(arguments, "--packed");
     skg_scan_pack_options options;
     int64_t done = 0;
     skg_scan_pack_options_init(&options);
-    options.grey16 = cli_given(arguments, &cli_flag_scan_packed_grey16);
+    options.grey16 = cli_given(arguments, "--packed-grey16");
     if (!to) return CLI_DONE;
     skg_status status = skg_scan_file_done_count(a->file, &done);
     if (status == SKG_OK && done < a->projections) {

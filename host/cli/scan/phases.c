@@ -13,11 +13,11 @@
 enum { PHASES_MAX = 100 };
 
 int phases_read_flag(const cli_arguments *arguments, cli_acquisition *a) {
-    const int exit_status = cli_integer(arguments, &cli_flag_scan_phases, 1, PHASES_MAX, &a->phases);
+    const int exit_status = cli_integer(arguments, "--phases", 1, PHASES_MAX, &a->phases);
     if (exit_status != CLI_DONE || a->phases == 0) return exit_status;
-    if (!cli_given(arguments, &cli_flag_scan_breathing))
+    if (!cli_given(arguments, "--breathing"))
         return cli_error(CLI_USAGE, "--phases sorts a scan of a breathing scene; add --breathing");
-    if (cli_given(arguments, &cli_flag_scan_shard))
+    if (cli_given(arguments, "--shard"))
         return cli_error(CLI_USAGE, "--phases sorts a whole scan; give it with --join, not with --shard");
     const char *slash = strrchr(a->place, '/'), *dot = strrchr(slash ? slash : a->place, '.');
     if (!dot || !dot[1])

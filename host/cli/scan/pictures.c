@@ -12,9 +12,9 @@
 #include <string.h>
 
 int pictures_read_flag(const cli_arguments *arguments, cli_acquisition *a) {
-    a->pictures = cli_value(arguments, &cli_flag_scan_dicom);
+    a->pictures = cli_value(arguments, "--dicom");
     if (!a->pictures) return CLI_DONE;
-    if (cli_given(arguments, &cli_flag_scan_shard))
+    if (cli_given(arguments, "--shard"))
         return cli_error(CLI_USAGE, "--dicom writes a whole scan; give it with --join, not with --shard");
     if (cli_names_folder(a->place))
         return cli_error(CLI_USAGE,

@@ -43,12 +43,11 @@ static int is_bare(const char *path) {
 /* The file that has the places of source and detector; NULL: the scan itself has them. */
 static const char *geometry_of(const cli_arguments *arguments) {
     const char *path = arguments->operands[0];
-    return cli_has_extension(path, ".xtekct") ? path : cli_value(arguments, &cli_flag_reconstruct_geometry);
+    return cli_has_extension(path, ".xtekct") ? path : cli_value(arguments, "--geometry");
 }
 
 static int check_geometry(const cli_arguments *arguments) {
-    const char *path = arguments->operands[0],
-               *geometry = cli_value(arguments, &cli_flag_reconstruct_geometry);
+    const char *path = arguments->operands[0], *geometry = cli_value(arguments, "--geometry");
     if (cli_has_extension(path, ".raw"))
         return cli_error(CLI_INPUT, "%s: does not say what its bytes mean; name the .mhd beside it", path);
     if (is_bare(path) && !geometry)
@@ -63,18 +62,16 @@ static int check_geometry(const cli_arguments *arguments) {
 }
 
 static int read_flags(const cli_arguments *arguments, reconstruction *r, int64_t *size) {
-    r->place = cli_value(arguments, &cli_flag_reconstruct_output);
+    r->place = cli_value(arguments, "-o");
     if (!r->place) return cli_error(CLI_USAGE, "reconstruct: no volume is named; add -o FILE.mha");
     if (!cli_has_extension(r->place, ".mha"))
         return cli_error(CLI_USAGE, "reconstruct: %s is no .mha; give -o FILE.mha", r->place);
-    int exit_status = cli_integer(arguments, &cli_flag_reconstruct_size, 1, VOXELS_MAX, size);
+    int exit_status = cli_integer(arguments, "--size", 1, VOXELS_MAX, size);
     if (exit_status == CLI_DONE) exit_status = check_geometry(arguments);
     if (exit_status == CLI_DONE)
-        exit_status = cli_number(arguments, &cli_flag_reconstruct_voxel, 1e-6, 1e6, &r->options.voxel_mm);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_choice(arguments, &cli_flag_reconstruct_filter, &r->options.filter);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_choice(arguments, &cli_flag_reconstruct_truncation, &r->options.truncation);
+        exit_status = cli_number(arguments, "--voxel", 1e-6, 1e6, &r->options.voxel_mm);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--filter", &r->options.filter);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--truncation", &r->options.truncation);
     return exit_status;
 }
 
@@ -108,8 +105,7 @@ static skg_status prepare(const cli_arguments *arguments, reconstruction *r, int
     if (status == SKG_OK) status = skg_scan_projection_count(r->scan, &r->projections);
     if (status == SKG_OK) status = skg_scan_view_get(r->scan, 0, &view);
     if (status != SKG_OK) return status;
-    if (!cli_given(arguments, &cli_flag_reconstruct_voxel))
-        r->options.voxel_mm = step_at_axis(&view, r->options.centre);
+    if (!cli_given(arguments, "--voxel")) r->options.voxel_mm = step_at_axis(&view, r->options.centre);
     for (int k = 0; k < 3; k++) {
         r->options.voxels[k] = size > 0 ? size : view.columns < VOXELS_MAX ? view.columns : VOXELS_MAX;
         r->options.middle[k] = r->options.centre[k];
@@ -147,13 +143,12 @@ static skg_status add_projections(reconstruction *r) {
 /* --size alone keeps the voxels' size and takes the middle. */
 static void note_crop(const cli_arguments *arguments, const reconstruction *r) {
     const double width = (double)r->options.voxels[0] * r->options.voxel_mm, seen = 2 * r->report.covered_mm;
-    if (!cli_given(arguments, &cli_flag_reconstruct_size) ||
-        cli_given(arguments, &cli_flag_reconstruct_voxel) || width > seen * (1 - 1e-6))
+    if (!cli_given(arguments, "--size") || cli_given(arguments, "--voxel") || width > seen * (1 - 1e-6))
         return;
     cli_note(
         "--size %s crops: the volume is %.4g mm wide, of %.4g mm that the detector covers about the axis; --voxel %.4g shows "
         "all of it",
-        cli_value(arguments, &cli_flag_reconstruct_size), width, seen, seen / (double)r->options.voxels[0]);
+        cli_value(arguments, "--size"), width, seen, seen / (double)r->options.voxels[0]);
 }
 
 /* Says what the detector did not see. */
@@ -190,7 +185,7 @@ static int print(const cli_arguments *arguments, const reconstruction *r) {
         range[0] = fmin(range[0], (double)volume[i]);
         range[1] = fmax(range[1], (double)volume[i]);
     }
-    if (cli_given(arguments, &cli_flag_json)) {
+    if (cli_given(arguments, "--json")) {
         json_t *object = json_object();
         json_object_set_new(object, "projections", json_integer(r->projections));
         json_object_set_new(object, "size", json_integer(n[0]));

@@ -14,7 +14,7 @@
 static int print(const cli_arguments *arguments, const cli_acquisition *a) {
     const double rate = a->seconds > 0 ? (double)a->computed / a->seconds : 0;
     const int64_t there = a->found + a->computed;
-    if (cli_given(arguments, &cli_flag_json)) {
+    if (cli_given(arguments, "--json")) {
         json_t *object = json_object();
         json_object_set_new(object, "projections", json_integer(a->projections));
         json_object_set_new(object, "computed", json_integer(a->computed));
@@ -46,7 +46,7 @@ int cli_scan(const cli_arguments *arguments) {
     int exit_status = acquisition_read_flags(arguments, &a);
     if (exit_status == CLI_DONE) exit_status = ranks_open(&a.ranks);
     if (exit_status == CLI_DONE) exit_status = acquisition_open(arguments, &a);
-    const int verifies = cli_given(arguments, &cli_flag_scan_verify);
+    const int verifies = cli_given(arguments, "--verify");
     if (exit_status == CLI_DONE)
         exit_status = verifies ? verify_run(arguments, &a) : acquisition_run(arguments, &a);
     if (exit_status == CLI_DONE && !verifies && a.ranks.rank == 0) exit_status = print(arguments, &a);

@@ -53,8 +53,7 @@ static void note_losses(const cli_acquisition *a, const char *path) {
 
 int scenario_write(const cli_arguments *arguments, const cli_acquisition *a) {
     const char *path;
-    for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, &cli_flag_scan_geometry, i));
-         i++) {
+    for (int i = 0; a->ranks.rank == 0 && (path = cli_nth_value(arguments, "--geometry", i)); i++) {
         if (!scenario_is(path)) continue;
         const skg_status status = skg_setup_save_scenario(a->session.setup, path);
         if (status == SKG_ERR_UNSUPPORTED) return cli_fail(status), CLI_OUTPUT;

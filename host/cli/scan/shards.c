@@ -12,13 +12,13 @@
 enum { SHARDS_MAX = 100000 };
 
 int shards_read_flag(const cli_arguments *arguments, cli_acquisition *a) {
-    const char *value = cli_value(arguments, &cli_flag_scan_shard);
+    const char *value = cli_value(arguments, "--shard");
     char rest = 0;
     if (!value) return CLI_DONE;
     if (sscanf(value, "%" SCNd64 "/%" SCNd64 "%c", &a->shard, &a->shards, &rest) != 2 || a->shard < 1 ||
         a->shard > a->shards || a->shards > SHARDS_MAX)
         return cli_error(CLI_USAGE, "--shard %s is not I/N with I from 1 to N", value);
-    if (a->only || a->options.from > 0 || a->options.to > 0 || cli_given(arguments, &cli_flag_scan_join))
+    if (a->only || a->options.from > 0 || a->options.to > 0 || cli_given(arguments, "--join"))
         return cli_error(CLI_USAGE,
                          "--shard chooses the projections; leave out --from, --to, --only and --join");
     return CLI_DONE;

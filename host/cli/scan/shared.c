@@ -53,7 +53,7 @@ static int compare_devices(const cli_arguments *arguments, cli_acquisition *a, i
     if (SKG_FAILED(status)) return cli_fail(status);
     uint64_t first = bits[0];
     ranks_share(&a->ranks, &first, sizeof first);
-    if (first == bits[0] || cli_given(arguments, &cli_flag_scan_mixed)) return CLI_DONE;
+    if (first == bits[0] || cli_given(arguments, "--mixed")) return CLI_DONE;
     return cli_error(
         CLI_DEVICE,
         "rank %d: %s gives other bits than the device of rank 0; choose like devices, or allow this with "

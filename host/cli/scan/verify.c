@@ -9,7 +9,7 @@
 #include <stdio.h>
 
 int verify_check(const cli_arguments *arguments, const cli_acquisition *a, int64_t samples) {
-    if (samples > 0 || !cli_given(arguments, &cli_flag_scan_verify)) return CLI_DONE;
+    if (samples > 0 || !cli_given(arguments, "--verify")) return CLI_DONE;
     return cli_error(CLI_INPUT, "%s: there is no output of this scan to verify", a->place);
 }
 
@@ -27,7 +27,7 @@ int verify_run(const cli_arguments *arguments, cli_acquisition *a) {
     if (status == SKG_OK) status = skg_scan_file_done_count(a->file, &there);
     if (status != SKG_OK) return cli_fail(status);
     const int64_t missing = a->projections - there - damaged;
-    if (cli_given(arguments, &cli_flag_json)) {
+    if (cli_given(arguments, "--json")) {
         const int exit_status = cli_json_print(json_pack(
             "{s:I,s:I,s:I,s:I,s:s}", "projections", (json_int_t)a->projections, "intact", (json_int_t)there,
             "damaged", (json_int_t)damaged, "missing", (json_int_t)missing, "file", a->place));

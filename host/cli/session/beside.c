@@ -9,15 +9,14 @@
 
 /* share: in ratios to the flat field the values are shares of it, whatever the image shows of them. */
 static const struct {
-    const cli_flag *flag;
+    const char *flag;
     const char *name; /* NULL: the image's own */
     int32_t kind, share;
 } rows[CLI_BESIDE_COUNT] = {
-    [CLI_BESIDE_SCATTER] = {&cli_flag_image_scatter_image, "scatter", SKG_OUTPUT_SCATTER, 1},
-    [CLI_BESIDE_SIGMA] = {&cli_flag_image_scatter_sigma, "standard error of the scatter",
-                          SKG_OUTPUT_SCATTER_SIGMA, 1},
-    [CLI_BESIDE_MEAN] = {&cli_flag_image_mean, NULL, SKG_OUTPUT_MEAN, 0},
-    [CLI_BESIDE_VARIANCE] = {&cli_flag_image_variance, "variance", SKG_OUTPUT_VARIANCE, 0}};
+    [CLI_BESIDE_SCATTER] = {"--scatter-image", "scatter", SKG_OUTPUT_SCATTER, 1},
+    [CLI_BESIDE_SIGMA] = {"--scatter-sigma", "standard error of the scatter", SKG_OUTPUT_SCATTER_SIGMA, 1},
+    [CLI_BESIDE_MEAN] = {"--mean", NULL, SKG_OUTPUT_MEAN, 0},
+    [CLI_BESIDE_VARIANCE] = {"--variance", "variance", SKG_OUTPUT_VARIANCE, 0}};
 
 void cli_beside_read(const cli_arguments *arguments, cli_beside *beside) {
     for (int i = 0; i < CLI_BESIDE_COUNT; i++) beside->paths[i] = cli_value(arguments, rows[i].flag);
@@ -30,7 +29,7 @@ int cli_beside_allocate(const cli_session *session, int32_t type, cli_beside *be
     for (int i = 0; i < CLI_BESIDE_COUNT; i++) {
         if (!beside->paths[i]) continue;
         beside->planes[i] = calloc(pixels, type == SKG_TYPE_FLOAT64 ? 8 : 4);
-        if (!beside->planes[i]) return cli_error(CLI_DEVICE, "out of host memory for %s", rows[i].flag->name);
+        if (!beside->planes[i]) return cli_error(CLI_DEVICE, "out of host memory for %s", rows[i].flag);
     }
     return CLI_DONE;
 }

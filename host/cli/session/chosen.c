@@ -37,7 +37,7 @@ static const char *label_of(const choice *c, int64_t part) {
     return label;
 }
 
-static int fail_unknown(const choice *c, const cli_flag *flag, const char *pattern, size_t length) {
+static int fail_unknown(const choice *c, const char *flag, const char *pattern, size_t length) {
     enum { MOST = 1024, LONGEST = 64 };
     const char *labels[MOST], *near = NULL;
     char word[LONGEST] = "";
@@ -45,12 +45,12 @@ static int fail_unknown(const choice *c, const cli_flag *flag, const char *patte
     for (int64_t p = 0; p < count; p++) labels[p] = label_of(c, p);
     memcpy(word, pattern, length < LONGEST ? length : LONGEST - 1);
     if (!strchr(word, '*')) near = skg_nearest_name(word, labels, count);
-    return cli_error(CLI_USAGE, "%s: the scene has no part \"%.*s\"%s%s%s", flag->name, (int)length, pattern,
+    return cli_error(CLI_USAGE, "%s: the scene has no part \"%.*s\"%s%s%s", flag, (int)length, pattern,
                      near ? "; did you mean \"" : "", near ? near : "", near ? "\"?" : "");
 }
 
 /* Marks the parts that patterns of a flag name, with commas between them. */
-static int mark_text(const choice *c, const cli_flag *flag, const char *text, char value) {
+static int mark_text(const choice *c, const char *flag, const char *text, char value) {
     for (const char *at = text; at; at = *at == ',' ? at + 1 : NULL) {
         const char *pattern = at;
         const size_t length = strcspn(at, ",");
@@ -63,7 +63,7 @@ static int mark_text(const choice *c, const cli_flag *flag, const char *text, ch
     return CLI_DONE;
 }
 
-static int mark(const choice *c, const cli_arguments *arguments, const cli_flag *flag, char value) {
+static int mark(const choice *c, const cli_arguments *arguments, const char *flag, char value) {
     const char *text;
     int exit_status = CLI_DONE;
     for (int i = 0; exit_status == CLI_DONE && (text = cli_nth_value(arguments, flag, i)); i++)
@@ -71,8 +71,7 @@ static int mark(const choice *c, const cli_arguments *arguments, const cli_flag 
     return exit_status;
 }
 
-int cli_mark_parts(const skg_scene *scene, const cli_flag *flag, const char *text, int64_t count,
-                   char *chosen) {
+int cli_mark_parts(const skg_scene *scene, const char *flag, const char *text, int64_t count, char *chosen) {
     const choice c = {.scene = scene, .count = count, .chosen = chosen};
     return mark_text(&c, flag, text, 1);
 }
@@ -116,8 +115,7 @@ static int rebuild(const choice *c, cli_session *session) {
 }
 
 int cli_choose_parts(const cli_arguments *arguments, cli_session *session) {
-    const int only = cli_given(arguments, &cli_flag_image_only),
-              without = cli_given(arguments, &cli_flag_image_without);
+    const int only = cli_given(arguments, "--only"), without = cli_given(arguments, "--without");
     choice c = {.scene = session->scene};
     if (!only && !without) return CLI_DONE;
     const skg_status status = skg_scene_part_count(c.scene, &c.count);
@@ -126,8 +124,8 @@ int cli_choose_parts(const cli_arguments *arguments, cli_session *session) {
     c.numbers = calloc((size_t)c.count + 1, sizeof *c.numbers);
     int exit_status = c.chosen && c.numbers ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
     for (int64_t p = 0; p < c.count && exit_status == CLI_DONE; p++) c.chosen[p] = !only, c.numbers[p] = -1;
-    if (exit_status == CLI_DONE) exit_status = mark(&c, arguments, &cli_flag_image_only, 1);
-    if (exit_status == CLI_DONE) exit_status = mark(&c, arguments, &cli_flag_image_without, 0);
+    if (exit_status == CLI_DONE) exit_status = mark(&c, arguments, "--only", 1);
+    if (exit_status == CLI_DONE) exit_status = mark(&c, arguments, "--without", 0);
     if (exit_status == CLI_DONE && !memchr(c.chosen, 1, (size_t)c.count))
         exit_status = cli_error(CLI_USAGE, "--without: no part is left");
     if (exit_status == CLI_DONE) exit_status = rebuild(&c, session);

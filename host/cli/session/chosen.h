@@ -9,7 +9,6 @@ int cli_choose_parts(const cli_arguments *arguments, cli_session *session);
 
 /* Sets chosen[p] to 1 for each of `count` parts whose label fits one of the patterns of a flag's value, which have commas between them.
  * Returns an exit status: CLI_USAGE where a pattern fits none. */
-int cli_mark_parts(const skg_scene *scene, const cli_flag *flag, const char *text, int64_t count,
-                   char *chosen);
+int cli_mark_parts(const skg_scene *scene, const char *flag, const char *text, int64_t count, char *chosen);
 
 #endif

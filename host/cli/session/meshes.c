@@ -21,12 +21,11 @@ static const char *const extensions[] = {".stl", ".ply", ".obj", ".off", ".gltf"
                                          ".3ds", ".fbx", ".dae", ".3mf", ".amf",  ".x3d"};
 
 /* Flags that describe meshes, and have no meaning for a scene file. */
-static const cli_flag *const flags[] = {&cli_flag_meshes_kvp, &cli_flag_meshes_kev, &cli_flag_meshes_filter,
-                                        &cli_flag_meshes_from, &cli_flag_mesh_unit};
+static const char *const flags[] = {"--kvp", "--kev", "--filter", "--from", "--unit"};
 enum { FLAGS = sizeof flags / sizeof *flags };
 
 int cli_has_meshes(const cli_arguments *arguments) {
-    return cli_given(arguments, &cli_flag_meshes_material);
+    return cli_given(arguments, "--material");
 }
 
 int cli_check_operands(const cli_arguments *arguments) {
@@ -47,11 +46,12 @@ int cli_check_operands(const cli_arguments *arguments) {
                              "%s is a mesh, not a scene; add --material NAME and --kvp KV or --kev E, as in "
                              "--material Al --kvp 120",
                              first);
+    const int takes_meshes = cli_find_flag(arguments->manual, "--material") != NULL;
     for (int f = 0; f < FLAGS; f++)
-        if (cli_given(arguments, flags[f]))
+        if (takes_meshes && cli_given(arguments, flags[f]))
             return cli_error(CLI_USAGE,
                              "%s describes meshes and goes with --material; a scene file has a key for it",
-                             flags[f]->name);
+                             flags[f]);
     if (arguments->operand_count > 1)
         return cli_error(CLI_USAGE, "%s: \"%s\" is one word too many; see `skiagraph help %s`",
                          arguments->manual->name, arguments->operands[1], arguments->manual->name);
@@ -62,7 +62,7 @@ static int read_filters(const cli_arguments *arguments, json_t *list) {
     const char *text;
     char name[256];
     double mm = 0;
-    for (int i = 0; (text = cli_nth_value(arguments, &cli_flag_meshes_filter, i)); i++) {
+    for (int i = 0; (text = cli_nth_value(arguments, "--filter", i)); i++) {
         int exit_status = cli_read_filter(text, name, sizeof name, &mm);
         if (exit_status != CLI_DONE) return exit_status;
         json_array_append_new(list, json_pack("[o,f,s]", cli_json_text(name), mm, "mm"));
@@ -75,8 +75,8 @@ static int read_filters(const cli_arguments *arguments, json_t *list) {
 
 static int read_beam(const cli_arguments *arguments, json_t *source) {
     double kvp = (double)NAN, kev = (double)NAN;
-    int exit_status = cli_number(arguments, &cli_flag_meshes_kvp, 10, 450, &kvp);
-    if (exit_status == CLI_DONE) exit_status = cli_number(arguments, &cli_flag_meshes_kev, 1, 20000, &kev);
+    int exit_status = cli_number(arguments, "--kvp", 10, 450, &kvp);
+    if (exit_status == CLI_DONE) exit_status = cli_number(arguments, "--kev", 1, 20000, &kev);
     if (exit_status != CLI_DONE) return exit_status;
     if (isnan(kvp) == isnan(kev)) {
         const int is_lengths = arguments->manual == &cli_manual_lbuffer;
@@ -87,7 +87,7 @@ static int read_beam(const cli_arguments *arguments, json_t *source) {
         kev = 60; /* path lengths do not depend on it */
     }
     if (!isnan(kev)) {
-        if (cli_given(arguments, &cli_flag_meshes_filter))
+        if (cli_given(arguments, "--filter"))
             return cli_error(CLI_USAGE, "--filter belongs to a tube; give --kvp instead of --kev");
         json_object_set_new(source, "Beam",
                             json_pack("[{s:f,s:s,s:i}]", "Energy", kev, "Unit", "keV", "PhotonCount", 1000));
@@ -100,7 +100,7 @@ static int read_beam(const cli_arguments *arguments, json_t *source) {
 }
 
 static int read_side(const cli_arguments *arguments, json_t *source) {
-    const char *value = cli_value(arguments, &cli_flag_meshes_from), *at = value;
+    const char *value = cli_value(arguments, "--from"), *at = value;
     if (!value) value = "front";
     if (!strchr(value, ',')) {
         json_object_set_new(source, "From", cli_json_text(value));
@@ -145,14 +145,14 @@ static json_t *label_of(const cli_arguments *arguments, int operand) {
 static int read_samples(const cli_arguments *arguments, json_t *samples) {
     int32_t unit = -1;
     int materials = 0;
-    while (cli_nth_value(arguments, &cli_flag_meshes_material, materials)) materials++;
+    while (cli_nth_value(arguments, "--material", materials)) materials++;
     if (materials != 1 && materials != arguments->operand_count)
         return cli_error(CLI_USAGE,
                          "%d meshes have %d materials; give --material once, or once for each mesh in order",
                          arguments->operand_count, materials);
-    int exit_status = cli_choice(arguments, &cli_flag_mesh_unit, &unit);
+    int exit_status = cli_choice(arguments, "--unit", &unit);
     for (int i = 0; i < arguments->operand_count && exit_status == CLI_DONE; i++) {
-        const char *name = cli_nth_value(arguments, &cli_flag_meshes_material, materials == 1 ? 0 : i);
+        const char *name = cli_nth_value(arguments, "--material", materials == 1 ? 0 : i);
         skg_material *material = NULL;
         skg_status status = skg_material_create_named(name, &material);
         skg_material_release(&material);

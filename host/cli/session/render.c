@@ -23,14 +23,14 @@ static const double OUTSIDE = 0.005;
 
 static int read_repeats(const cli_arguments *arguments, int64_t *repeats) {
     *repeats = 0;
-    return cli_integer(arguments, &cli_flag_repeat, 1, REPEATS_MAX, repeats);
+    return cli_integer(arguments, "--repeat", 1, REPEATS_MAX, repeats);
 }
 
 /* Whether an output is a .png whose range --range leaves open. */
 static int has_window(const cli_rendering *rendering) {
     const char *path;
-    if (rendering->lengths || cli_given(rendering->arguments, &cli_flag_range)) return 0;
-    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++)
+    if (rendering->lengths || cli_given(rendering->arguments, "--range")) return 0;
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, "-o", i)); i++)
         if (cli_has_extension(path, ".png")) return 1;
     return 0;
 }
@@ -69,7 +69,7 @@ static int check_twins(const cli_arguments *arguments) {
 /* Only the picture itself may be DICOM: its scatter and its variance are no radiographs. */
 static int is_dicom(const cli_arguments *arguments, const char *path) {
     const char *own;
-    for (int i = 0; (own = cli_nth_value(arguments, &cli_flag_output, i)); i++)
+    for (int i = 0; (own = cli_nth_value(arguments, "-o", i)); i++)
         if (own == path) return cli_dicom_is(path);
     return 0;
 }
@@ -78,17 +78,17 @@ int cli_check_outputs(const cli_arguments *arguments) {
     int64_t repeats;
     double low, high;
     int exit_status = read_repeats(arguments, &repeats);
-    if (exit_status == CLI_DONE) exit_status = cli_range(arguments, &cli_flag_range, &low, &high);
+    if (exit_status == CLI_DONE) exit_status = cli_range(arguments, "--range", &low, &high);
     if (exit_status != CLI_DONE) return exit_status;
     exit_status = check_twins(arguments);
     if (exit_status != CLI_DONE) return exit_status;
     if (!nth_output(arguments, 0) && !repeats)
         return cli_error(CLI_USAGE, "%s: no output is named; add -o FILE (.png, .tif, .mha or .dcm)",
                          arguments->manual->name);
-    if (count_streams(arguments) + cli_given(arguments, &cli_flag_json) > 1)
+    if (count_streams(arguments) + cli_given(arguments, "--json") > 1)
         return cli_error(CLI_USAGE, "standard output takes one thing: -o - once, or --json");
     const char *path;
-    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_output, i)); i++)
+    for (int i = 0; (path = cli_nth_value(arguments, "-o", i)); i++)
         if (cli_dicom_is(path) && (exit_status = cli_dicom_check(path)) != CLI_DONE) return exit_status;
     for (int i = 0; (path = nth_output(arguments, i)); i++) {
         skg_status status = is_dicom(arguments, path) ? SKG_OK : skg_picture_path_check(path);
@@ -113,7 +113,7 @@ static int write_dicom(const cli_rendering *rendering, const char *path) {
 static int write_files(const cli_rendering *rendering) {
     int failure = CLI_DONE, written = 0;
     const char *path;
-    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, "-o", i)); i++) {
         int its = CLI_DONE;
         if (cli_dicom_is(path)) {
             its = write_dicom(rendering, path);
@@ -174,7 +174,7 @@ static void add_outputs(const cli_rendering *rendering, json_t *object) {
 
 static int print_rendering(const cli_rendering *rendering, const skg_plan *plan, const cli_times *times) {
     const char *path;
-    if (cli_given(rendering->arguments, &cli_flag_json)) {
+    if (cli_given(rendering->arguments, "--json")) {
         json_t *object = json_object();
         cli_times_json(times, object);
         add_outputs(rendering, object);
@@ -187,7 +187,7 @@ static int print_rendering(const cli_rendering *rendering, const skg_plan *plan,
     print_values(&rendering->picture);
     if (rendering->scattering) cli_scattering_print(plan, &rendering->picture);
     cli_times_print(times);
-    for (int i = 0; (path = cli_nth_value(rendering->arguments, &cli_flag_output, i)); i++) {
+    for (int i = 0; (path = cli_nth_value(rendering->arguments, "-o", i)); i++) {
         cli_print("wrote %s", path);
         if (has_window(rendering) && cli_has_extension(path, ".png"))
             printf(
@@ -271,8 +271,8 @@ int cli_render(cli_rendering *rendering) {
     skg_output output = {0};
     int exit_status = read_repeats(rendering->arguments, &times.repeats);
     if (exit_status == CLI_DONE)
-        exit_status = cli_range(rendering->arguments, &cli_flag_range, &rendering->picture.low,
-                                &rendering->picture.high);
+        exit_status =
+            cli_range(rendering->arguments, "--range", &rendering->picture.low, &rendering->picture.high);
     session->options.profile = times.repeats > 0;
     if (exit_status == CLI_DONE) note_scan(session);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(session, &plan, &times.plan_ms);

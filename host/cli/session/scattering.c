@@ -38,11 +38,10 @@ static int read_accuracy(const char *value, skg_scatter *scatter) {
 }
 
 int cli_scattering_read(const cli_arguments *arguments, cli_scattering *scattering) {
-    const char *accuracy = cli_value(arguments, &cli_flag_image_scatter);
+    const char *accuracy = cli_value(arguments, "--scatter");
     skg_scatter_init(&scattering->asked);
     scattering->is_asked = scattering->has_accuracy = accuracy != NULL;
-    if (cli_given(arguments, &cli_flag_image_scatter_image) ||
-        cli_given(arguments, &cli_flag_image_scatter_sigma))
+    if (cli_given(arguments, "--scatter-image") || cli_given(arguments, "--scatter-sigma"))
         scattering->is_asked = 1;
     return accuracy ? read_accuracy(accuracy, &scattering->asked) : CLI_DONE;
 }

@@ -12,7 +12,7 @@
 #include <stdlib.h>
 
 static int read_tolerance(const cli_arguments *arguments, char *setting, size_t size) {
-    const char *value = cli_value(arguments, &cli_flag_tolerance);
+    const char *value = cli_value(arguments, "--tolerance");
     char *end = NULL;
     if (!value) return CLI_DONE;
     double tolerance = strtod(value, &end);
@@ -27,8 +27,7 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, int
     int count = 0;
     const char **settings = calloc((size_t)arguments->given_count + 1, sizeof *settings);
     if (!settings) return cli_error(CLI_DEVICE, "out of host memory");
-    for (const char *set; (set = cli_nth_value(arguments, &cli_flag_set, count)); count++)
-        settings[count] = set;
+    for (const char *set; (set = cli_nth_value(arguments, "--set", count)); count++) settings[count] = set;
     if (*tolerance) settings[count++] = tolerance;
     session->path = arguments->operands[0];
     skg_setup_source source;
@@ -40,7 +39,7 @@ static int load_scene(const cli_arguments *arguments, const char *tolerance, int
     int exit_status = cli_has_meshes(arguments) ? cli_scene_of_meshes(arguments, &text) : CLI_DONE;
     source.text = text;
     if (!text) source.path = session->path;
-    source.lenient = cli_given(arguments, &cli_flag_lenient);
+    source.lenient = cli_given(arguments, "--lenient");
     source.lengths_only = lengths_only;
     cli_progress_begin("reading the scene", 0);
     if (exit_status == CLI_DONE) status = skg_setup_create(session->context, &source, &session->setup);
@@ -96,8 +95,8 @@ int cli_open_session(const cli_arguments *arguments, int lengths_only, cli_sessi
     *session = (cli_session){0};
     int exit_status = cli_check_operands(arguments);
     if (exit_status == CLI_DONE) exit_status = read_tolerance(arguments, tolerance, sizeof tolerance);
-    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_precision, &precision);
-    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_strategy, &strategy);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--precision", &precision);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--strategy", &strategy);
     if (exit_status == CLI_DONE)
         exit_status = cli_open_context(arguments, &session->context, &session->device);
     if (exit_status == CLI_DONE)

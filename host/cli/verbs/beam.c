@@ -63,18 +63,14 @@ static int read_output(const char *text, skg_tube *tube) {
 static int read_tube(const cli_arguments *arguments, beam *b) {
     skg_tube *tube = &b->tube;
     tube->mas = 1, tube->distance_mm = 1000, tube->pixel_mm2 = 1;
-    int exit_status = cli_number(arguments, &cli_flag_beam_kvp, 10, 450, &tube->kvp);
+    int exit_status = cli_number(arguments, "--kvp", 10, 450, &tube->kvp);
+    if (exit_status == CLI_DONE) exit_status = cli_number(arguments, "--angle", 3, 60, &tube->angle_deg);
+    if (exit_status == CLI_DONE) exit_status = cli_number(arguments, "--bin", 0.1, 10, &tube->bin_kev);
+    if (exit_status == CLI_DONE) exit_status = cli_number(arguments, "--mas", 1e-9, 1e9, &tube->mas);
     if (exit_status == CLI_DONE)
-        exit_status = cli_number(arguments, &cli_flag_beam_angle, 3, 60, &tube->angle_deg);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_number(arguments, &cli_flag_beam_bin, 0.1, 10, &tube->bin_kev);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_number(arguments, &cli_flag_beam_mas, 1e-9, 1e9, &tube->mas);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_number(arguments, &cli_flag_beam_distance, 1e-3, 1e9, &tube->distance_mm);
-    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_beam_model, &tube->model);
-    const char *anode = cli_value(arguments, &cli_flag_beam_anode),
-               *output = cli_value(arguments, &cli_flag_beam_output);
+        exit_status = cli_number(arguments, "--distance", 1e-3, 1e9, &tube->distance_mm);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--model", &tube->model);
+    const char *anode = cli_value(arguments, "--anode"), *output = cli_value(arguments, "--output");
     if (exit_status == CLI_DONE && anode) {
         skg_status status = skg_element_number_get(anode, &tube->anode);
         if (status != SKG_OK) exit_status = cli_fail(status);
@@ -85,22 +81,20 @@ static int read_tube(const cli_arguments *arguments, beam *b) {
 
 /* Refuses flags of a tube together with a file, and the file's flag without one. */
 static int check_source(const cli_arguments *arguments, beam *b) {
-    static const cli_flag *const of_tube[] = {
-        &cli_flag_beam_kvp, &cli_flag_beam_angle, &cli_flag_beam_anode,    &cli_flag_beam_model,
-        &cli_flag_beam_bin, &cli_flag_beam_mas,   &cli_flag_beam_distance, &cli_flag_beam_output};
-    b->file = cli_value(arguments, &cli_flag_beam_file);
-    if (!b->file && !cli_given(arguments, &cli_flag_beam_kvp))
+    static const char *const of_tube[] = {"--kvp", "--angle", "--anode",    "--model",
+                                          "--bin", "--mas",   "--distance", "--output"};
+    b->file = cli_value(arguments, "--file");
+    if (!b->file && !cli_given(arguments, "--kvp"))
         return cli_error(CLI_USAGE, "beam: no beam is named; add --kvp KV or --file FILE");
-    if (!b->file && cli_given(arguments, &cli_flag_beam_unit))
-        return cli_error(CLI_USAGE, "--unit needs --file");
+    if (!b->file && cli_given(arguments, "--unit")) return cli_error(CLI_USAGE, "--unit needs --file");
     for (size_t i = 0; b->file && i < sizeof of_tube / sizeof *of_tube; i++)
         if (cli_given(arguments, of_tube[i]))
             return cli_error(CLI_USAGE, "%s describes a tube and --file a spectrum; give one of them",
-                             of_tube[i]->name);
+                             of_tube[i]);
     return CLI_DONE;
 }
 
-static skg_status make_spectrum(int32_t unit, beam *b) {
+static skg_status make_spectrum(const char *unit, beam *b) {
     if (!b->file) {
         b->tube.filters = b->filters;
         b->tube.filter_count = b->filter_count;
@@ -110,7 +104,7 @@ static skg_status make_spectrum(int32_t unit, beam *b) {
     }
     skg_spectrum *unfiltered = NULL;
     b->per_mas = (double)NAN;
-    skg_status status = skg_spectrum_load(b->file, cli_flag_beam_unit.values[unit].name, &unfiltered);
+    skg_status status = skg_spectrum_load(b->file, unit, &unfiltered);
     if (status == SKG_OK)
         status = skg_spectrum_create_filtered(unfiltered, b->filter_count, b->filters, &b->spectrum);
     skg_spectrum_release(&unfiltered);
@@ -121,13 +115,12 @@ static int make_beam(const cli_arguments *arguments, beam *b) {
     int32_t unit = 1;
     const char *text;
     int exit_status = check_source(arguments, b);
-    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_beam_unit, &unit);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--unit", &unit);
     if (exit_status == CLI_DONE) exit_status = read_tube(arguments, b);
-    for (int i = 0; exit_status == CLI_DONE && (text = cli_nth_value(arguments, &cli_flag_beam_filter, i));
-         i++)
+    for (int i = 0; exit_status == CLI_DONE && (text = cli_nth_value(arguments, "--filter", i)); i++)
         exit_status = read_filter(text, b);
     if (exit_status != CLI_DONE) return exit_status;
-    skg_status status = make_spectrum(unit, b);
+    skg_status status = make_spectrum(cli_find_flag(arguments->manual, "--unit")->values[unit].name, b);
     if (status == SKG_OK) status = skg_spectrum_quality_get(b->spectrum, &b->quality);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -271,7 +264,7 @@ int cli_beam(const cli_arguments *arguments) {
     int exit_status = cli_check_plots(arguments, &plots);
     if (exit_status == CLI_DONE) exit_status = make_beam(arguments, &b);
     if (exit_status == CLI_DONE) exit_status = write_outputs(arguments, &b);
-    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json))
+    if (exit_status == CLI_DONE && cli_given(arguments, "--json"))
         exit_status = cli_json_print(beam_json(&b));
     else if (exit_status == CLI_DONE && !cli_is_quiet())
         print_beam(&b);

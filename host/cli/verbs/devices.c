@@ -144,10 +144,10 @@ int cli_devices(const cli_arguments *arguments) {
     skg_context *context = NULL;
     skg_device_info best;
     findings all = {0};
-    const char *config = cli_value(arguments, &cli_flag_device);
-    const int json = cli_given(arguments, &cli_flag_json);
-    if (cli_given(arguments, &cli_flag_devices_warm)) return cli_warm(arguments);
-    if (cli_given(arguments, &cli_flag_devices_test)) return cli_device_tests(config, json);
+    const char *config = cli_value(arguments, "--device");
+    const int json = cli_given(arguments, "--json");
+    if (cli_given(arguments, "--warm")) return cli_warm(arguments);
+    if (cli_given(arguments, "--test")) return cli_device_tests(config, json);
     cli_prepare_environment();
     int exit_status = ask_children(config, &all);
     if (exit_status != CLI_DONE) return exit_status;

@@ -25,13 +25,13 @@ typedef struct {
 
 static int read_options(work *w) {
     const cli_arguments *arguments = w->arguments;
-    const char *picture = cli_value(arguments, &cli_flag_distance_output);
-    const char *map = cli_value(arguments, &cli_flag_distance_map);
+    const char *picture = cli_value(arguments, "-o");
+    const char *map = cli_value(arguments, "--map");
     skg_distance_options_init(&w->options);
     w->options.progress = cli_progress();
-    int exit_status = cli_choice(arguments, &cli_flag_distance_sampling, &w->options.sampling);
+    int exit_status = cli_choice(arguments, "--sampling", &w->options.sampling);
     if (exit_status == CLI_DONE)
-        exit_status = cli_number(arguments, &cli_flag_distance_spacing, 1e-6, 1e6, &w->options.spacing_mm);
+        exit_status = cli_number(arguments, "--spacing", 1e-6, 1e6, &w->options.spacing_mm);
     if (exit_status != CLI_DONE) return exit_status;
     if (picture && !cli_has_extension(picture, ".png"))
         return cli_error(CLI_USAGE, "-o %s: the picture is written as .png", picture);
@@ -91,10 +91,10 @@ static int write_picture(const work *w, const char *path, double high) {
 }
 
 static int write_maps(work *w) {
-    const char *picture = cli_value(w->arguments, &cli_flag_distance_output);
-    const char *map = cli_value(w->arguments, &cli_flag_distance_map);
+    const char *picture = cli_value(w->arguments, "-o");
+    const char *map = cli_value(w->arguments, "--map");
     double high = cli_map_end(fmax(w->to[0].max_mm, picture ? w->to[1].max_mm : 0));
-    int exit_status = cli_number(w->arguments, &cli_flag_distance_high, 1e-9, 1e9, &high);
+    int exit_status = cli_number(w->arguments, "--high", 1e-9, 1e9, &high);
     for (int m = 0; m < (picture ? 2 : map ? 1 : 0) && exit_status == CLI_DONE; m++)
         exit_status = find_map(w, m);
     if (map && exit_status == CLI_DONE) {
@@ -119,7 +119,7 @@ static json_t *distance_json(const skg_distance *d) {
 static int print(const work *w) {
     const double hausdorff = fmax(w->to[0].max_mm, w->to[1].max_mm);
     const int at_vertices = w->options.sampling == SKG_DISTANCE_VERTICES;
-    if (cli_given(w->arguments, &cli_flag_json)) {
+    if (cli_given(w->arguments, "--json")) {
         json_t *object = distance_json(&w->to[0]);
         json_object_set_new(object, "back", distance_json(&w->to[1]));
         json_object_set_new(object, "hausdorff_mm", cli_json_number(hausdorff));
@@ -137,8 +137,7 @@ static int print(const work *w) {
     else
         printf("sampled over the surface, at most %.3g mm apart\n",
                fmax(w->to[0].spacing_mm, w->to[1].spacing_mm));
-    const char *outputs[] = {cli_value(w->arguments, &cli_flag_distance_map),
-                             cli_value(w->arguments, &cli_flag_distance_output)};
+    const char *outputs[] = {cli_value(w->arguments, "--map"), cli_value(w->arguments, "-o")};
     for (int i = 0; i < 2; i++)
         if (outputs[i]) cli_print("wrote %s\n", outputs[i]);
     return CLI_DONE;

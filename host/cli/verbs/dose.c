@@ -32,7 +32,7 @@ static int read_places(const cli_arguments *arguments, work *w) {
     const char *value;
     w->places = calloc(3 * PLACES_MAX, sizeof *w->places);
     if (!w->places) return cli_error(CLI_DEVICE, "out of host memory for the places");
-    for (int i = 0; (value = cli_nth_value(arguments, &cli_flag_dose_at, i)); i++) {
+    for (int i = 0; (value = cli_nth_value(arguments, "--at", i)); i++) {
         double *place = w->places + 3 * (int64_t)i;
         char rest = 0;
         if (i == PLACES_MAX) return cli_error(CLI_USAGE, "--at: more than %d places", PLACES_MAX);
@@ -48,10 +48,9 @@ static int read_flags(const cli_arguments *arguments, work *w) {
     skg_dose_options_init(&w->options);
     int exit_status = read_places(arguments, w);
     if (exit_status == CLI_DONE)
-        exit_status =
-            cli_integer(arguments, &cli_flag_dose_histories, 0, (int64_t)1 << 40, &w->options.histories);
+        exit_status = cli_integer(arguments, "--histories", 0, (int64_t)1 << 40, &w->options.histories);
     if (exit_status == CLI_DONE)
-        exit_status = cli_integer(arguments, &cli_flag_dose_seed, 0, INT64_MAX, &w->options.seed);
+        exit_status = cli_integer(arguments, "--seed", 0, INT64_MAX, &w->options.seed);
     return exit_status;
 }
 
@@ -221,7 +220,7 @@ int cli_dose(const cli_arguments *arguments) {
     int exit_status = read_flags(arguments, &w);
     if (exit_status == CLI_DONE) exit_status = cli_open_session(arguments, 0, &w.session);
     if (exit_status == CLI_DONE) exit_status = compute(&w);
-    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json))
+    if (exit_status == CLI_DONE && cli_given(arguments, "--json"))
         exit_status = cli_json_print(dose_json(&w));
     else if (exit_status == CLI_DONE && !cli_is_quiet())
         print_dose(&w);

@@ -11,7 +11,7 @@
 
 /* Reads "20,40,60". */
 static int read_bands(const cli_arguments *arguments, double edges[SKG_CHANNELS_MAX + 1], int64_t *bands) {
-    const char *value = cli_value(arguments, &cli_flag_image_bands), *at = value;
+    const char *value = cli_value(arguments, "--bands"), *at = value;
     int64_t count = 0;
     while (at) {
         char *end = NULL;
@@ -43,9 +43,9 @@ int cli_image(const cli_arguments *arguments) {
     int32_t quantity = -1, display = SKG_DISPLAY_RADIOGRAPH, weight = -1;
     double edges[SKG_CHANNELS_MAX + 1];
     int64_t bands = 0;
-    int exit_status = cli_choice(arguments, &cli_flag_image_quantity, &quantity);
-    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_image_display, &display);
-    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, &cli_flag_image_band_weight, &weight);
+    int exit_status = cli_choice(arguments, "--quantity", &quantity);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--display", &display);
+    if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--band-weight", &weight);
     if (exit_status == CLI_DONE) exit_status = read_bands(arguments, edges, &bands);
     if (exit_status == CLI_DONE && weight >= 0 && bands == 0)
         exit_status = cli_error(CLI_USAGE, "--band-weight weighs the photons of bands; add --bands");

@@ -24,11 +24,10 @@ static skg_status one_buffer(skg_plan *plan, const skg_output *output, const voi
 }
 
 int cli_lbuffer(const cli_arguments *arguments) {
-    wanted_lengths wanted = {0, cli_given(arguments, &cli_flag_lbuffer_surface) ? SKG_LENGTHS_SURFACE
-                                                                                : SKG_LENGTHS_NET};
+    wanted_lengths wanted = {0, cli_given(arguments, "--surface") ? SKG_LENGTHS_SURFACE : SKG_LENGTHS_NET};
     cli_rendering rendering = {
         .arguments = arguments, .frame = one_buffer, .frame_user = &wanted, .lengths = 1};
-    const char *label = cli_value(arguments, &cli_flag_lbuffer_part);
+    const char *label = cli_value(arguments, "--part");
     const int is_one_mesh = cli_has_meshes(arguments) && arguments->operand_count == 1;
     if (!label && !is_one_mesh) return cli_error(CLI_USAGE, "lbuffer: no part is named; add --part LABEL");
     int exit_status = cli_check_outputs(arguments);

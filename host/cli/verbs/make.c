@@ -13,7 +13,7 @@
 enum { LISTED_MAX = 64 };
 
 /* Numbers separated by commas; `numbers` holds the defaults, whose count *count is, and stays if the flag was not given. */
-static int read_list(const cli_arguments *arguments, const cli_flag *flag, int64_t most, double *numbers,
+static int read_list(const cli_arguments *arguments, const char *flag, int64_t most, double *numbers,
                      int64_t *count) {
     const char *given = cli_value(arguments, flag);
     if (!given) return CLI_DONE;
@@ -25,27 +25,26 @@ static int read_list(const cli_arguments *arguments, const cli_flag *flag, int64
         rest = end;
         if (!*rest) return CLI_DONE;
     }
-    return cli_error(CLI_USAGE, "make: %s %s: give 1 to %" PRId64 " numbers, separated by commas", flag->name,
+    return cli_error(CLI_USAGE, "make: %s %s: give 1 to %" PRId64 " numbers, separated by commas", flag,
                      given, most);
 }
 
 /* Edges of a box; one number makes a cube. */
 static int read_box(const cli_arguments *arguments, double box[3]) {
     int64_t count = 3;
-    const int exit_status = read_list(arguments, &cli_flag_make_box, 3, box, &count);
+    const int exit_status = read_list(arguments, "--box", 3, box, &count);
     if (exit_status != CLI_DONE) return exit_status;
     if (count == 2)
-        return cli_error(CLI_USAGE, "make: --box %s: give X,Y,Z or one edge",
-                         cli_value(arguments, &cli_flag_make_box));
+        return cli_error(CLI_USAGE, "make: --box %s: give X,Y,Z or one edge", cli_value(arguments, "--box"));
     if (count == 1) box[1] = box[2] = box[0];
     return CLI_DONE;
 }
 
-static int number(const cli_arguments *arguments, const cli_flag *flag, double *value) {
+static int number(const cli_arguments *arguments, const char *flag, double *value) {
     return cli_number(arguments, flag, 0, 1e9, value);
 }
 
-static int whole(const cli_arguments *arguments, const cli_flag *flag, int64_t *value) {
+static int whole(const cli_arguments *arguments, const char *flag, int64_t *value) {
     return cli_integer(arguments, flag, 0, INT32_MAX, value);
 }
 
@@ -53,13 +52,13 @@ static int make_foam(const cli_arguments *a, skg_mesh **mesh) {
     skg_foam foam;
     skg_foam_init(&foam);
     int exit_status = read_box(a, foam.box);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_radius, &foam.radius_mm);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_fraction, &foam.fraction);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_spread, &foam.spread);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_gap, &foam.gap_mm);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_count, &foam.count);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_seed, &foam.seed);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_segments, &foam.segments);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--radius", &foam.radius_mm);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--fraction", &foam.fraction);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--spread", &foam.spread);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--gap", &foam.gap_mm);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--count", &foam.count);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--seed", &foam.seed);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--segments", &foam.segments);
     if (exit_status != CLI_DONE) return exit_status;
     const skg_status status = skg_mesh_create_foam(&foam, mesh);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -69,12 +68,12 @@ static int make_fibres(const cli_arguments *a, skg_mesh **mesh) {
     skg_fibres fibres;
     skg_fibres_init(&fibres);
     int exit_status = read_box(a, fibres.box);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_radius, &fibres.radius_mm);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_gap, &fibres.gap_mm);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_tilt, &fibres.tilt_deg);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_count, &fibres.count);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_seed, &fibres.seed);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_segments, &fibres.segments);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--radius", &fibres.radius_mm);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--gap", &fibres.gap_mm);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--tilt", &fibres.tilt_deg);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--count", &fibres.count);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--seed", &fibres.seed);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--segments", &fibres.segments);
     if (exit_status != CLI_DONE) return exit_status;
     const skg_status status = skg_mesh_create_fibres(&fibres, mesh);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -84,9 +83,9 @@ static int make_gyroid(const cli_arguments *a, skg_mesh **mesh) {
     double box[3] = {20, 20, 20}, period = 10, level = 0.3;
     int64_t cells = 0;
     int exit_status = read_box(a, box);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_period, &period);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_level, &level);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_cells, &cells);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--period", &period);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--level", &level);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--cells", &cells);
     if (exit_status != CLI_DONE) return exit_status;
     const skg_status status = skg_mesh_create_gyroid(box, period, level, cells, mesh);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -95,10 +94,10 @@ static int make_gyroid(const cli_arguments *a, skg_mesh **mesh) {
 static int make_lines(const cli_arguments *a, skg_mesh **mesh) {
     double per_mm[LISTED_MAX] = {0.5, 1, 2}, length = 20, thickness = 1;
     int64_t groups = 3, bars = 4;
-    int exit_status = read_list(a, &cli_flag_make_per_mm, LISTED_MAX, per_mm, &groups);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_bars, &bars);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_length, &length);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_thickness, &thickness);
+    int exit_status = read_list(a, "--per-mm", LISTED_MAX, per_mm, &groups);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--bars", &bars);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--length", &length);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--thickness", &thickness);
     if (exit_status != CLI_DONE) return exit_status;
     const skg_status status = skg_mesh_create_line_pairs(groups, per_mm, bars, length, thickness, mesh);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -107,10 +106,10 @@ static int make_lines(const cli_arguments *a, skg_mesh **mesh) {
 static int make_star(const cli_arguments *a, skg_mesh **mesh) {
     double radius = 20, inner = 1, thickness = 1;
     int64_t spokes = 36;
-    int exit_status = number(a, &cli_flag_make_radius, &radius);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_inner, &inner);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_thickness, &thickness);
-    if (exit_status == CLI_DONE) exit_status = whole(a, &cli_flag_make_spokes, &spokes);
+    int exit_status = number(a, "--radius", &radius);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--inner", &inner);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--thickness", &thickness);
+    if (exit_status == CLI_DONE) exit_status = whole(a, "--spokes", &spokes);
     if (exit_status != CLI_DONE) return exit_status;
     const skg_status status = skg_mesh_create_star(radius, inner, spokes, thickness, mesh);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -119,9 +118,9 @@ static int make_star(const cli_arguments *a, skg_mesh **mesh) {
 static int make_steps(const cli_arguments *a, skg_mesh **mesh) {
     double heights[LISTED_MAX] = {5, 10, 15, 20, 25}, length = 50, width = 20;
     int64_t steps = 5;
-    int exit_status = read_list(a, &cli_flag_make_heights, LISTED_MAX, heights, &steps);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_length, &length);
-    if (exit_status == CLI_DONE) exit_status = number(a, &cli_flag_make_width, &width);
+    int exit_status = read_list(a, "--heights", LISTED_MAX, heights, &steps);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--length", &length);
+    if (exit_status == CLI_DONE) exit_status = number(a, "--width", &width);
     if (exit_status != CLI_DONE) return exit_status;
     const skg_status status = skg_mesh_create_steps(length, width, steps, heights, mesh);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
@@ -132,7 +131,7 @@ static int print(const cli_arguments *arguments, const skg_mesh *mesh, const cha
     skg_mesh_health_init(&health);
     const skg_status status = skg_mesh_health_get(mesh, &health);
     if (status != SKG_OK) return cli_fail(status);
-    if (cli_given(arguments, &cli_flag_json)) {
+    if (cli_given(arguments, "--json")) {
         json_t *object = json_object();
         json_object_set_new(object, "kind", json_string(arguments->operands[0]));
         json_object_set_new(object, "triangles", json_integer(health.triangles));
@@ -154,7 +153,7 @@ int cli_make(const cli_arguments *arguments) {
     static int (*const makers[])(const cli_arguments *, skg_mesh **) = {make_foam,  make_fibres, make_gyroid,
                                                                         make_lines, make_star,   make_steps};
     enum { KINDS = sizeof names / sizeof *names };
-    const char *kind = arguments->operands[0], *path = cli_value(arguments, &cli_flag_make_output);
+    const char *kind = arguments->operands[0], *path = cli_value(arguments, "-o");
     skg_mesh *mesh = NULL;
     int k = 0;
     while (k < KINDS && strcmp(kind, names[k]) != 0) k++;

@@ -102,7 +102,7 @@ static skg_status find_matter(const char *name, double density, cli_matter *m) {
 static int find_naive(const cli_arguments *arguments, const char *name, cli_matter *m) {
     int32_t interpolation = -1;
     char *end = NULL;
-    int exit_status = cli_choice(arguments, &cli_flag_material_naive, &interpolation);
+    int exit_status = cli_choice(arguments, "--naive", &interpolation);
     if (exit_status != CLI_DONE || interpolation < 0) return exit_status;
     double hu = strncasecmp(name, "HU:", 3) == 0 ? strtod(name + 3, &end) : (double)NAN;
     if (!end || *end) return cli_error(CLI_USAGE, "--naive needs a Hounsfield number, such as HU:52");
@@ -210,9 +210,9 @@ static int look_up(const cli_arguments *arguments, cli_matter *m) {
     const char *name = arguments->operands[0];
     double density = 0;
     int plots = 0;
-    int exit_status = cli_number(arguments, &cli_flag_material_density, 1e-9, 1e3, &density);
+    int exit_status = cli_number(arguments, "--density", 1e-9, 1e3, &density);
     if (exit_status == CLI_DONE) exit_status = cli_check_plots(arguments, &plots);
-    if (exit_status == CLI_DONE) exit_status = make_rows(cli_value(arguments, &cli_flag_material_energy), m);
+    if (exit_status == CLI_DONE) exit_status = make_rows(cli_value(arguments, "--energy"), m);
     if (exit_status == CLI_DONE && plots > 0 && !(m->low < m->high))
         exit_status = cli_error(CLI_USAGE, "a plot needs a range of energies: --energy 10:150");
     if (exit_status == CLI_DONE) exit_status = find_naive(arguments, name, m);
@@ -222,7 +222,7 @@ static int look_up(const cli_arguments *arguments, cli_matter *m) {
     if (status != SKG_OK) return cli_fail(status);
     exit_status = write_outputs(arguments, m, plots);
     if (exit_status != CLI_DONE) return exit_status;
-    if (cli_given(arguments, &cli_flag_json)) return cli_json_print(cli_matter_json(m));
+    if (cli_given(arguments, "--json")) return cli_json_print(cli_matter_json(m));
     if (!cli_is_quiet()) cli_matter_print(m);
     cli_report_plots(arguments);
     return CLI_DONE;
@@ -230,8 +230,7 @@ static int look_up(const cli_arguments *arguments, cli_matter *m) {
 
 int cli_material(const cli_arguments *arguments) {
     cli_matter m = {.material = NULL};
-    if (cli_given(arguments, &cli_flag_material_list))
-        return list_names(cli_given(arguments, &cli_flag_json));
+    if (cli_given(arguments, "--list")) return list_names(cli_given(arguments, "--json"));
     if (arguments->operand_count == 0)
         return cli_error(CLI_USAGE, "material: no material is named; give a NAME, or --list");
     int exit_status = look_up(arguments, &m);

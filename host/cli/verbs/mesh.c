@@ -165,9 +165,9 @@ static skg_status examine(const char *path, const skg_mesh_reading *reading, con
 
 /* The file of -o, which goes with --fix and one mesh. */
 static int read_fix(const cli_arguments *arguments, const char **fixed) {
-    *fixed = cli_value(arguments, &cli_flag_mesh_output);
-    if (!*fixed && !cli_given(arguments, &cli_flag_mesh_fix)) return CLI_DONE;
-    if (!*fixed || !cli_given(arguments, &cli_flag_mesh_fix) || arguments->operand_count != 1)
+    *fixed = cli_value(arguments, "-o");
+    if (!*fixed && !cli_given(arguments, "--fix")) return CLI_DONE;
+    if (!*fixed || !cli_given(arguments, "--fix") || arguments->operand_count != 1)
         return cli_error(CLI_USAGE,
                          "mesh: --fix and -o go together, with one mesh: mesh FILE --fix -o OTHER");
     if (!cli_has_extension(*fixed, ".stl") && !cli_has_extension(*fixed, ".ply"))
@@ -180,15 +180,14 @@ int cli_mesh(const cli_arguments *arguments) {
     skg_mesh_reading reading;
     const char *fixed = NULL;
     skg_mesh_reading_init(&reading);
-    reading.group = cli_value(arguments, &cli_flag_mesh_group);
+    reading.group = cli_value(arguments, "--group");
     int exit_status = cli_mesh_unit(arguments, &reading.unit_mm);
-    if (exit_status == CLI_DONE &&
-        (cli_given(arguments, &cli_flag_mesh_split) || cli_given(arguments, &cli_flag_mesh_scene)))
+    if (exit_status == CLI_DONE && (cli_given(arguments, "--split") || cli_given(arguments, "--scene")))
         return cli_mesh_split(arguments, &reading);
     if (exit_status == CLI_DONE) exit_status = read_fix(arguments, &fixed);
     if (exit_status != CLI_DONE) return exit_status;
-    json_t *list = cli_given(arguments, &cli_flag_json) ? json_array() : NULL;
-    const int strict = cli_given(arguments, &cli_flag_strict);
+    json_t *list = cli_given(arguments, "--json") ? json_array() : NULL;
+    const int strict = cli_given(arguments, "--strict");
     int failure = CLI_DONE, all_healthy = 1;
     for (int i = 0; i < arguments->operand_count; i++) {
         const char *path = arguments->operands[i];
@@ -198,8 +197,7 @@ int cli_mesh(const cli_arguments *arguments) {
             if (read != SKG_OK && failure == CLI_DONE) failure = cli_fail(read);
             continue;
         }
-        skg_status status =
-            examine(path, &reading, fixed, cli_given(arguments, &cli_flag_mesh_groups), &found);
+        skg_status status = examine(path, &reading, fixed, cli_given(arguments, "--groups"), &found);
         const skg_mesh_health *health = &found.health;
         const skg_mesh_nesting *nesting = &found.nesting;
         if (status != SKG_OK) {

@@ -101,8 +101,8 @@ static int list_groups(const char *file, const skg_mesh_reading *reading, json_t
 }
 
 int cli_mesh_split(const cli_arguments *arguments, const skg_mesh_reading *reading) {
-    const char *folder = cli_value(arguments, &cli_flag_mesh_split), *file = arguments->operands[0];
-    const char *scene = cli_value(arguments, &cli_flag_mesh_scene);
+    const char *folder = cli_value(arguments, "--split"), *file = arguments->operands[0];
+    const char *scene = cli_value(arguments, "--scene");
     json_t *groups = NULL, *samples = json_array();
     if (!folder || arguments->operand_count != 1 || reading->group)
         return cli_error(CLI_USAGE, "mesh: --split takes one file: mesh FILE --split DIR --scene FILE");
@@ -114,7 +114,7 @@ int cli_mesh_split(const cli_arguments *arguments, const skg_mesh_reading *readi
                                   json_string_value(json_object_get(json_array_get(groups, i), "name")),
                                   (int64_t)i, samples);
     if (exit_status == CLI_DONE && scene) exit_status = write_scene(scene, samples);
-    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json)) {
+    if (exit_status == CLI_DONE && cli_given(arguments, "--json")) {
         json_t *object = json_pack("{s:o,s:O}", "folder", cli_json_text(folder), "groups", groups);
         if (scene) json_object_set_new(object, "scene", cli_json_text(scene));
         exit_status = cli_json_print(object);

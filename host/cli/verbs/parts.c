@@ -118,7 +118,7 @@ static void print_table(const table *t) {
 int cli_parts(const cli_arguments *arguments) {
     table t = {.count = 0};
     double plan_ms;
-    const char *path = cli_value(arguments, &cli_flag_parts_output);
+    const char *path = cli_value(arguments, "-o");
     if (path && !cli_has_extension(path, ".csv"))
         return cli_error(CLI_USAGE, "-o %s: the table is written as .csv", path);
     int exit_status = path ? cli_file_check(path) : CLI_DONE;
@@ -128,7 +128,7 @@ int cli_parts(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&t.session, &t.plan, &plan_ms);
     if (exit_status == CLI_DONE) exit_status = fill(&t);
     if (exit_status == CLI_DONE && path) exit_status = write_csv(&t, path);
-    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json)) {
+    if (exit_status == CLI_DONE && cli_given(arguments, "--json")) {
         exit_status = cli_json_print(table_json(&t));
     } else if (exit_status == CLI_DONE && !cli_is_quiet()) {
         print_table(&t);

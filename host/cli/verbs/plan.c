@@ -31,7 +31,7 @@ int cli_plan(const cli_arguments *arguments) {
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&session, &plan, &plan_ms);
     if (exit_status == CLI_DONE) exit_status = measure(plan, &session.view);
     if (exit_status == CLI_DONE) cli_predict(plan, session.options.tolerance, &prediction);
-    if (exit_status == CLI_DONE && cli_given(arguments, &cli_flag_json)) {
+    if (exit_status == CLI_DONE && cli_given(arguments, "--json")) {
         json_t *object = cli_explain_json(plan, &session);
         json_object_set_new(object, "scatter", cli_prediction_json(&prediction));
         exit_status = cli_json_print(object);

@@ -240,7 +240,7 @@ static int write_picture(const cli_plot *plot, int is_svg, const char *path) {
 int cli_check_plots(const cli_arguments *arguments, int *plots) {
     const char *path;
     *plots = 0;
-    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_plot, i)); i++) {
+    for (int i = 0; (path = cli_nth_value(arguments, "-o", i)); i++) {
         int is_plot = cli_has_extension(path, ".png") || cli_has_extension(path, ".svg");
         *plots += is_plot;
         if (!is_plot && !cli_has_extension(path, ".csv"))
@@ -252,7 +252,7 @@ int cli_check_plots(const cli_arguments *arguments, int *plots) {
 int cli_write_plots(const cli_arguments *arguments, const cli_plot *plot, const char *csv) {
     int exit_status = CLI_DONE;
     const char *path;
-    for (int i = 0; exit_status == CLI_DONE && (path = cli_nth_value(arguments, &cli_flag_plot, i)); i++) {
+    for (int i = 0; exit_status == CLI_DONE && (path = cli_nth_value(arguments, "-o", i)); i++) {
         if (cli_has_extension(path, ".csv"))
             exit_status = cli_write_file(path, csv, strlen(csv));
         else
@@ -263,6 +263,6 @@ int cli_write_plots(const cli_arguments *arguments, const cli_plot *plot, const 
 
 void cli_report_plots(const cli_arguments *arguments) {
     const char *path;
-    if (cli_is_quiet() || cli_given(arguments, &cli_flag_json)) return;
-    for (int i = 0; (path = cli_nth_value(arguments, &cli_flag_plot, i)); i++) printf("wrote %s\n", path);
+    if (cli_is_quiet() || cli_given(arguments, "--json")) return;
+    for (int i = 0; (path = cli_nth_value(arguments, "-o", i)); i++) printf("wrote %s\n", path);
 }

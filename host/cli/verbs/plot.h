@@ -21,7 +21,7 @@ typedef struct {
     int count;
 } cli_plot;
 
-/* Checks the extension of every -o (cli_flag_plot). *plots: the number of pictures among them. */
+/* Checks the extension of every -o. *plots: the number of pictures among them. */
 int cli_check_plots(const cli_arguments *arguments, int *plots);
 
 /* Writes every -o: pictures of the plot, and the text `csv`. A file appears whole or not at all. */

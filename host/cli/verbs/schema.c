@@ -65,8 +65,8 @@ static int list_paths(void) {
 }
 
 int cli_schema(const cli_arguments *arguments) {
-    if (cli_given(arguments, &cli_flag_schema_paths)) return list_paths();
-    const char *path = cli_value(arguments, &cli_flag_schema_output);
+    if (cli_given(arguments, "--paths")) return list_paths();
+    const char *path = cli_value(arguments, "-o");
     int exit_status = path ? cli_file_check(path) : CLI_DONE;
     char *text = exit_status == CLI_DONE ? get_schema(&exit_status) : NULL;
     if (!text) return exit_status;

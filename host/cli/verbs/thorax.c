@@ -27,7 +27,7 @@ static int count_all(const skg_thorax *thorax, int64_t *parts, int64_t *triangle
 }
 
 static int print(const cli_arguments *arguments, const char *folder, int64_t parts, int64_t triangles) {
-    if (cli_given(arguments, &cli_flag_json)) {
+    if (cli_given(arguments, "--json")) {
         json_t *object = json_object();
         json_object_set_new(object, "parts", json_integer(parts));
         json_object_set_new(object, "triangles", json_integer(triangles));
@@ -44,11 +44,11 @@ int cli_thorax(const cli_arguments *arguments) {
     skg_thorax_options options;
     skg_thorax *thorax = NULL;
     int64_t parts = 0, triangles = 0;
-    const char *folder = cli_value(arguments, &cli_flag_thorax_output);
+    const char *folder = cli_value(arguments, "-o");
     skg_thorax_options_init(&options);
     if (!folder) return cli_error(CLI_USAGE, "thorax: no folder is named; add -o DIR");
-    options.simple = cli_given(arguments, &cli_flag_thorax_simple);
-    int exit_status = cli_integer(arguments, &cli_flag_thorax_triangles, 10000, 20000000, &options.triangles);
+    options.simple = cli_given(arguments, "--simple");
+    int exit_status = cli_integer(arguments, "--triangles", 10000, 20000000, &options.triangles);
     if (exit_status == CLI_DONE) exit_status = cli_make_folder(folder);
     if (exit_status != CLI_DONE) return exit_status;
     cli_progress_begin("generating and writing the thorax", 0);

@@ -123,10 +123,10 @@ int cli_warm(const cli_arguments *arguments) {
     const int exit_status = cli_open_context(arguments, &context, &device);
     if (exit_status != CLI_DONE) return exit_status;
     skg_context_release(&context); /* only the name of its device was wanted */
-    w.config = cli_value(arguments, &cli_flag_device);
-    if (cli_given(arguments, &cli_flag_json)) w.done = json_array();
+    w.config = cli_value(arguments, "--device");
+    if (cli_given(arguments, "--json")) w.done = json_array();
     const char *path;
-    for (int n = 0; (path = cli_nth_value(arguments, &cli_flag_devices_warm, n)); n++) {
+    for (int n = 0; (path = cli_nth_value(arguments, "--warm", n)); n++) {
         if (stat(path, &is) == 0 && S_ISDIR(is.st_mode))
             warm_folder(&w, path);
         else

@@ -27,7 +27,7 @@ static int read_numbers(const char *text, int count, double *numbers) {
 }
 
 static int read_side(view_work *w) {
-    const char *value = cli_value(w->arguments, &cli_flag_view_from);
+    const char *value = cli_value(w->arguments, "--from");
     double *from = w->look.from;
     int32_t from_detector = 0;
     if (!value) return CLI_DONE;
@@ -43,7 +43,7 @@ static int read_side(view_work *w) {
 }
 
 static int read_size(view_work *w) {
-    const char *value = cli_value(w->arguments, &cli_flag_view_size);
+    const char *value = cli_value(w->arguments, "--size");
     double size[2];
     w->look.columns = 1280, w->look.rows = 800;
     if (!value) return CLI_DONE;
@@ -69,7 +69,7 @@ static int is_model(const char *path) {
 }
 
 static const char *nth_output(const view_work *w, int index) {
-    return cli_nth_value(w->arguments, &cli_flag_view_output, index);
+    return cli_nth_value(w->arguments, "-o", index);
 }
 
 static int has_output(const view_work *w, int (*is_kind)(const char *path)) {
@@ -100,9 +100,8 @@ static int check_output(const view_work *w, const char *path) {
 static int read_time(view_work *w) {
     const char *path;
     w->fps = 30, w->seconds = (double)NAN;
-    int exit_status = cli_number(w->arguments, &cli_flag_breathe_fps, 1e-3, 1000, &w->fps);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_number(w->arguments, &cli_flag_view_seconds, 0.01, 1e5, &w->seconds);
+    int exit_status = cli_number(w->arguments, "--fps", 1e-3, 1000, &w->fps);
+    if (exit_status == CLI_DONE) exit_status = cli_number(w->arguments, "--seconds", 0.01, 1e5, &w->seconds);
     if (exit_status == CLI_DONE && !isnan(w->seconds) && (!isnan(w->phase) || !isnan(w->at)))
         return cli_error(CLI_USAGE,
                          "--seconds shows the breath, --phase and --at one moment of it; give one of them");
@@ -113,7 +112,7 @@ static int read_time(view_work *w) {
 
 /* Reads "Z" or "Z@PART"; the part is found when the scene is there. */
 static int read_zoom(view_work *w) {
-    const char *value = cli_value(w->arguments, &cli_flag_view_zoom);
+    const char *value = cli_value(w->arguments, "--zoom");
     char *end = NULL;
     w->zoom = value ? strtod(value, &end) : (double)NAN;
     if (!value || (end != value && w->zoom >= 0.01 && w->zoom <= 1e4 && (*end == '\0' || *end == '@')))
@@ -126,7 +125,7 @@ static int read_zoom(view_work *w) {
 /* The eye stands where the ball around the box of the parts, or of one of them, fills the picture Z times. */
 static int zoom(view_work *w) {
     static const double FIELD = 28 * SKG_PI / 180; /* of the eye, scene_picture.h */
-    const char *part = w->zoom > 0 ? strchr(cli_value(w->arguments, &cli_flag_view_zoom), '@') : NULL;
+    const char *part = w->zoom > 0 ? strchr(cli_value(w->arguments, "--zoom"), '@') : NULL;
     const double *low = w->places.low, *high = w->places.high;
     double radius = 0;
     int64_t id = 0;
@@ -148,18 +147,18 @@ static int zoom(view_work *w) {
 static int read_flags(view_work *w) {
     w->phase = w->at = (double)NAN;
     skg_look_init(&w->look);
-    w->look.orthographic = cli_given(w->arguments, &cli_flag_view_orthographic);
-    if (!cli_given(w->arguments, &cli_flag_view_output))
+    w->look.orthographic = cli_given(w->arguments, "--orthographic");
+    if (!cli_given(w->arguments, "-o"))
         return cli_error(CLI_USAGE, "view: no output is named; add -o FILE.png or -o FILE.html");
-    w->sensitive = cli_given(w->arguments, &cli_flag_view_sensitivity);
+    w->sensitive = cli_given(w->arguments, "--sensitivity");
     if (w->sensitive && !has_output(w, is_page))
         return cli_error(CLI_USAGE, "view: --sensitivity colours the parts of a page; add -o FILE.html");
     int exit_status = read_side(w);
     if (exit_status == CLI_DONE) exit_status = read_size(w);
     if (exit_status == CLI_DONE) exit_status = read_zoom(w);
-    const char *phase = cli_value(w->arguments, &cli_flag_view_phase);
+    const char *phase = cli_value(w->arguments, "--phase");
     if (exit_status == CLI_DONE && phase) exit_status = cli_phase("--phase", phase, &w->phase);
-    if (exit_status == CLI_DONE) exit_status = cli_number(w->arguments, &cli_flag_view_at, -1e9, 1e9, &w->at);
+    if (exit_status == CLI_DONE) exit_status = cli_number(w->arguments, "--at", -1e9, 1e9, &w->at);
     if (exit_status == CLI_DONE && !isnan(w->phase) && !isnan(w->at))
         return cli_error(CLI_USAGE, "--phase and --at both choose one moment; give one of them");
     return exit_status == CLI_DONE ? read_time(w) : exit_status;
@@ -257,7 +256,7 @@ static json_t *parts_json(const view_work *w) {
 
 static int print(const view_work *w) {
     const char *path;
-    if (cli_given(w->arguments, &cli_flag_json)) {
+    if (cli_given(w->arguments, "--json")) {
         json_t *object = json_object(), *files = json_array();
         for (int i = 0; (path = nth_output(w, i)); i++) json_array_append_new(files, cli_json_text(path));
         json_object_set_new(object, "files", files);

@@ -75,7 +75,7 @@ skg_status skg_setup_read_collimation(skg_setup_reader *reader, const skg_json_n
     int64_t choice = 0;
     skg_collimation_init(&setup->collimation);
     if (!node->value) return SKG_OK;
-    setup->has_collimation = 1;
+    setup->said.collimation = &setup->collimation;
     if (json_is_string(node->value)) return skg_json_choice(node, "collimation", names, 1, &choice);
     SKG_TRY(skg_json_read_object(node, &skg_keys_collimation, &object));
     const skg_json_node field = skg_json_member(&object, "Field");

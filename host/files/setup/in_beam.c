@@ -63,7 +63,7 @@ skg_status skg_setup_read_bowtie(skg_setup_reader *reader, const skg_json_node *
     if (direction.value) SKG_TRY(skg_json_direction(&direction, bowtie->direction));
     SKG_TRY(read_profile(reader, &profile, mm, bowtie));
     SKG_TRY(skg_json_at(&profile, skg_bowtie_check(bowtie)));
-    reader->setup->has_bowtie = 1;
+    reader->setup->said.bowtie = bowtie;
     return SKG_OK;
 }
 
@@ -100,7 +100,7 @@ skg_status skg_setup_read_grid(skg_setup_reader *reader, const skg_json_object *
         SKG_TRY(skg_setup_read_material(reader, &interspace, &no_density, "interspace", &grid->interspace));
     if (strip.value) SKG_TRY(skg_setup_read_material(reader, &strip, &no_density, "strips", &grid->strip));
     SKG_TRY(skg_json_at(&node, skg_grid_check(grid)));
-    reader->setup->has_grid = 1;
+    reader->setup->said.grid = grid;
     return SKG_OK;
 }
 

@@ -75,8 +75,11 @@ skg_status skg_setup_read_scatter(skg_setup_reader *reader, const skg_json_node 
     skg_setup *setup = reader->setup;
     skg_scatter_init(&setup->scatter);
     if (!node->value) return SKG_OK;
-    if (json_is_boolean(node->value)) return skg_json_flag(node, &setup->has_scatter);
-    setup->has_scatter = 1;
+    if (json_is_boolean(node->value)) {
+        if (json_is_true(node->value)) setup->said.scatter = &setup->scatter;
+        return SKG_OK;
+    }
+    setup->said.scatter = &setup->scatter;
     if (json_is_number(node->value)) return read_tolerance(node, &setup->scatter);
     if (!json_is_object(node->value))
         return skg_json_fail(

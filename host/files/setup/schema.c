@@ -208,6 +208,7 @@ static json_t *of_table(const skg_json_table *table) {
         spell(key->name, pattern, sizeof pattern);
         json_object_set(patterns, pattern, schema);
         if (key->says) json_object_set_new(schema, "description", json_string(key->says));
+        if (key->as) json_object_set_new(schema, "$comment", json_sprintf("another spelling of %s", key->as));
         json_object_set_new(properties, key->name, schema);
     }
     for (int64_t i = 0; i < skg_json_asides.count; i++) {

@@ -25,11 +25,11 @@ static skg_status read_precision(skg_setup *setup, const skg_json_object *top) {
     static const char *const names[] = {"single", "double", "half"};
     static const int32_t values[] = {SKG_PRECISION_SINGLE, SKG_PRECISION_DOUBLE, SKG_PRECISION_HALF};
     skg_json_node node = skg_json_member(top, "Precision");
+    setup->said.precision = -1;
     if (!node.value) return SKG_OK;
     int64_t choice = 0;
     SKG_TRY(skg_json_choice(&node, "precision", names, 3, &choice));
-    setup->has_precision = 1;
-    setup->precision = values[choice];
+    setup->said.precision = values[choice];
     return SKG_OK;
 }
 
@@ -47,10 +47,9 @@ static skg_status read_repair_word(skg_setup *setup, const skg_json_node *node) 
         *(choice == UNION ? &setup->unite : &setup->orient) = 1;
         return SKG_OK;
     }
-    if (setup->has_repair)
+    if (setup->said.repair >= 0)
         return skg_json_fail(node, SKG_ERR_FORMAT, "a repair of leaky meshes was chosen before");
-    setup->has_repair = 1;
-    setup->repair = (int32_t)choice;
+    setup->said.repair = (int32_t)choice;
     setup->as_wound = choice == SKG_REPAIR_NONE;
     return SKG_OK;
 }
@@ -59,6 +58,7 @@ static skg_status read_repair_word(skg_setup *setup, const skg_json_node *node) 
 static skg_status read_repair(skg_setup *setup, const skg_json_object *top) {
     const skg_json_node repair = skg_json_member(top, "Repair"), clip = skg_json_member(top, "Clip");
     int64_t count = 0;
+    setup->said.repair = -1;
     if (clip.value) SKG_TRY(skg_json_flag(&clip, &setup->clip));
     if (!repair.value) return SKG_OK;
     if (!json_is_array(repair.value)) return read_repair_word(setup, &repair);
@@ -74,24 +74,24 @@ static skg_status read_band_weight(skg_setup *setup, const skg_json_object *top)
     static const char *const names[] = {
         [SKG_BAND_WEIGHT_PHOTONS] = "photons", [SKG_BAND_WEIGHT_ENERGY] = "energy"};
     const skg_json_node node = skg_json_member(top, "BandWeight");
+    setup->said.band_weight = -1;
     if (!node.value) return SKG_OK;
     int64_t choice = 0;
     SKG_TRY(skg_json_choice(&node, "weight of bands", names, 2, &choice));
-    setup->has_band_weight = 1;
-    setup->band_weight = (int32_t)choice;
+    setup->said.band_weight = (int32_t)choice;
     return SKG_OK;
 }
 
 static skg_status read_tolerance(skg_setup *setup, const skg_json_object *top) {
     skg_json_node node = skg_json_member(top, "Tolerance");
-    setup->tolerance = -1;
+    setup->said.tolerance = -1;
     if (!node.value) return SKG_OK;
     double tolerance = 0;
     SKG_TRY(skg_json_number(&node, &tolerance));
     if (tolerance < 0 || tolerance >= 1)
         return skg_json_fail(&node, SKG_ERR_FORMAT, "is %g; give a relative error from 0 to below 1",
                              tolerance);
-    setup->tolerance = tolerance;
+    setup->said.tolerance = tolerance;
     return SKG_OK;
 }
 
@@ -335,20 +335,21 @@ skg_status skg_setup_options_get(const skg_setup *setup, skg_plan_options *optio
     SKG_NEEDS(setup);
     skg_plan_options ours = {.size = sizeof ours};
     SKG_TRY(skg_struct_read(options, "skg_plan_options", &ours, sizeof ours));
-    if (setup->has_precision) ours.precision = setup->precision;
-    if (setup->tolerance >= 0) ours.tolerance = setup->tolerance;
+    const skg_plan_options *said = &setup->said;
+    if (said->precision >= 0) ours.precision = said->precision;
+    if (said->tolerance >= 0) ours.tolerance = said->tolerance;
     if (setup->falloff != SKG_FALLOFF_AUTO) ours.falloff = setup->falloff;
-    if (setup->has_repair) ours.repair = setup->repair;
+    if (said->repair >= 0) ours.repair = said->repair;
     if (setup->clip) ours.clip = 1;
     if (setup->unite) ours.unite = 1;
     if (setup->world_scatter_off) ours.world_scatter_off = 1;
-    if (setup->has_band_weight) ours.band_weight = setup->band_weight;
+    if (said->band_weight >= 0) ours.band_weight = said->band_weight;
     if (setup->spot.shape != SKG_SPOT_POINT) ours.spot = &setup->spot;
-    if (setup->has_heel) ours.heel = &setup->heel;
-    if (setup->has_bowtie) ours.bowtie = &setup->bowtie;
-    if (setup->has_grid) ours.grid = &setup->grid;
-    if (setup->has_collimation) ours.collimation = &setup->collimation;
-    if (setup->has_scatter) ours.scatter = &setup->scatter;
+    if (said->heel) ours.heel = said->heel;
+    if (said->bowtie) ours.bowtie = said->bowtie;
+    if (said->grid) ours.grid = said->grid;
+    if (said->collimation) ours.collimation = said->collimation;
+    if (said->scatter) ours.scatter = said->scatter;
     if (setup->oblique) ours.oblique = 1;
     if (setup->supersampling > 1) ours.supersampling = setup->supersampling;
     if (setup->response) ours.response = setup->response;

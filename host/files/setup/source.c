@@ -50,7 +50,7 @@ static skg_status read_heel(skg_setup *setup, const skg_json_node *node) {
                              setup->heel.angle_deg);
     SKG_TRY(skg_json_need(&heel, "Direction", "[1, 0, 0]", &direction));
     SKG_TRY(skg_json_direction(&direction, setup->heel.direction));
-    setup->has_heel = 1;
+    setup->said.heel = &setup->heel;
     return SKG_OK;
 }
 
@@ -104,7 +104,7 @@ skg_status skg_setup_read_source(skg_setup_reader *reader, const skg_json_node *
     SKG_TRY(read_heel(setup, &heel));
     SKG_TRY(skg_setup_read_bowtie(reader, &bowtie));
     SKG_TRY(skg_setup_read_beam(reader, &beam));
-    if (setup->has_heel && !setup->has_tube)
+    if (setup->said.heel && !setup->has_tube)
         return skg_json_fail(&heel, SKG_ERR_BEAM,
                              "needs a tube, whose anode makes it; give a Beam with kVp, or leave Heel out");
     return SKG_OK;

@@ -115,17 +115,16 @@ struct skg_setup {
     skg_setup_noise noise;
     skg_grey_section grey;
     skg_spot spot;
+    /* What the file says of these options, which stands for what the caller says: precision, tolerance, repair, band_weight (negative: the
+     * file does not say), heel, bowtie, grid, collimation, scatter (those below; NULL: it does not have the key). */
+    skg_plan_options said;
     skg_heel heel;     /* kvp, anode, angle and bins are those of the tube, if the beam is one */
     int32_t has_tube;  /* 1: the beam is a tube */
-    int32_t has_heel;  /* 1: the file has the key Heel */
     skg_bowtie bowtie; /* its material is the set-up's, its rows are those below */
     double *bowtie_rows;
     skg_grid grid; /* its materials are the set-up's */
-    int32_t has_bowtie, has_grid;
     skg_collimation collimation;
-    int32_t has_collimation;
     skg_scatter scatter;
-    int32_t has_scatter;
     int32_t oblique;       /* 1: rays cross the scintillator obliquely */
     int32_t supersampling; /* rays along a side of a pixel */
     int32_t bins_once;     /* 1: electronic noise is that of a bin */
@@ -135,12 +134,9 @@ struct skg_setup {
     skg_view view;   /* of the first projection */
     skg_scan_section scan;
     skg_breathing_section breathing;
-    int32_t precision, has_precision;
-    int32_t repair, has_repair, clip, unite, world_scatter_off;
+    int32_t clip, unite, world_scatter_off;
     int32_t orient;   /* 1: inverted components of meshes are turned */
     int32_t as_wound; /* 1: triangles that are wound otherwise than their neighbours are not */
-    int32_t band_weight, has_band_weight;
-    double tolerance; /* negative: not given */
     char *text;       /* the scene file after its settings, with its keys in order */
 };
 

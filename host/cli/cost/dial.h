@@ -1,0 +1,59 @@
+/* A dial is a row: its name, how a setting takes a value, its reference and its sentences; its values and what is better are those of
+ * settings.c. And the one query: what is cheapest with an error of at most so much. */
+#ifndef CLI_COST_DIAL_H
+#define CLI_COST_DIAL_H
+
+#include "cost/study.h"
+
+#include <jansson.h>
+#include <stdio.h>
+
+enum { COST_IS_INT32, COST_IS_INT64, COST_IS_REAL };
+
+typedef struct {
+    const char *name, *key; /* of points; of a setting in JSON */
+    int reference;          /* COST_OF_...: that its points are compared with */
+    size_t at;              /* of its value in a setting */
+    int kind;               /* COST_IS_... of that value */
+    double none;            /* the value that stands for the scene's own */
+    /* The value in words where it is one, or another number than the setting's. NULL: the setting's number. */
+    const char *(*word)(const cost_study *study, const cost_setting *setting);
+    double (*number)(const cost_study *study, const cost_setting *setting);
+    /* Formats of printf: by itself, among others, and in a command; flag NULL: command.c. */
+    const char *sentence, *listed, *flag;
+} cost_dial;
+
+extern const cost_dial cost_dials[COST_DIALS];
+
+/* Copies a dial's value from one setting to another. */
+void cost_take(int dial, const cost_setting *from, cost_setting *to);
+
+/* Whether the setting has a value of its own. */
+int cost_has_value(int dial, const cost_setting *setting);
+
+/* The setting's value for JSON, and as a cell of CSV with its comma. */
+json_t *cost_value_json(const cost_study *study, const cost_setting *setting, int dial);
+void cost_put_value(FILE *stream, const cost_study *study, const cost_setting *setting, int dial);
+
+/* Appends the value in one of the row's sentences. */
+void cost_append_value(const cost_study *study, const cost_setting *setting, int dial, const char *format,
+                       char *text, size_t size);
+
+/* Something that was measured. error: NaN: it does not count */
+typedef struct {
+    double error, price;
+} cost_offer;
+typedef cost_offer (*cost_look)(const cost_study *study, int index, const void *user);
+
+/* The cheapest of `count` with an error of at most `most`; -1: none. best: the one with the least error; may be NULL. The first of
+ * several. */
+int cost_cheapest(const cost_study *study, int count, cost_look look, const void *user, double most,
+                  int *best);
+
+/* Whether no other one is both cheaper and nearer. */
+int cost_is_on_frontier(const cost_study *study, int count, cost_look look, const void *user, int index);
+
+/* What an image takes on an idle machine, of a point. */
+double cost_price_of(const cost_study *study, const cost_point *point);
+
+#endif
