@@ -49,6 +49,16 @@ skg_status skg_frame_output_read(const char *call, const skg_recipe *recipe, con
                                  int64_t frames, const skg_output *outputs, int64_t index,
                                  skg_frame_output *output);
 
+/* The part of it that holds for whatever stands in an output: type, memory, strides and buffer of an output whose `to` and `channels`
+ * are filled in. */
+skg_status skg_frame_output_check(const char *call, const skg_view *view, const skg_context *context,
+                                  int64_t frames, skg_frame_output *output);
+
+/* Bytes of a value. */
+static inline int64_t skg_frame_output_element(const skg_frame_output *output) {
+    return output->to.type == SKG_TYPE_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
+}
+
 /* Lets a CPU write the images of all frames into the caller's host memory, if they are large: a copy less. They are read back where
  * this is not possible. */
 void skg_frame_output_share(skg_frame_output *output, const skg_view *view, const skg_machine *machine,

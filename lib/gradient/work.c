@@ -19,5 +19,6 @@ void skg_gradient_work_release(skg_gradient_work **work) {
         skg_free(&w->directions[d].node_changes);
     }
     skg_free(&w->directions);
+    skg_free(&w->images);
     skg_free(work);
 }

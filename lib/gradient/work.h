@@ -13,7 +13,7 @@ static const double SKG_PER_MM = 0.1; /* of 1 / cm */
 /* The derivative of an image along a direction. */
 typedef struct {
     skg_direction direction; /* its arrays are the job's */
-    double *image;           /* [channels][rows][columns] of the intensities, in the caller's memory */
+    double *image;           /* [channels][rows][columns], in the caller's memory or in `images` */
     int64_t saturated;       /* faces whose slopes were cut off */
     /* Of the rays of a pass: how fast the mm of each plane of the model change by densities, and the exponent of each
      * node by attenuation coefficients; [planes or nodes][rows][columns]. NULL: not at all. */
@@ -46,8 +46,9 @@ typedef struct {
     double *nodes;
     int64_t direction_count;         /* above 0: the derivatives of the image along directions instead */
     skg_derivative_work *directions; /* [direction_count] */
-    double *results;                 /* the caller's: [directions][channels][rows][columns] */
-    int64_t *saturated;              /* the caller's: [directions], or NULL */
+    skg_frame_output results;        /* the caller's; its frames are the directions */
+    double *images;     /* [directions][channels][rows][columns]; NULL: they are made where they go */
+    int64_t *saturated; /* the caller's: [directions], or NULL */
 } skg_gradient_work;
 
 /* That of a job of gradients or derivatives. */

@@ -182,12 +182,14 @@ def _derivatives(state: State, directions: list[Mapping[str, Any]], options: dic
     bands = options.get("bands")
     shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
     found = np.empty((len(directions), *shape))
+    output = struct("skg_output")
+    output.type, output.data = lib.SKG_TYPE_FLOAT64, _pointer(found)
 
     def start(plan: Any, frame: Any, job: Any) -> int:
         nodes = integer("skg_plan_node_count", plan)
         for one in filled:
             one.set_nodes(nodes)
-        return int(lib.skg_plan_derivatives_submit(plan, frame, len(directions), given, _pointer(found), ffi.NULL, job))
+        return int(lib.skg_plan_derivatives_submit(plan, frame, len(directions), given, output, ffi.NULL, job))
 
     _run(state, options, start, False, lambda: found)
     return found

@@ -1,6 +1,8 @@
 /* Derivatives for failing_test: of everything, and along a direction. */
 #include "hard/failing_gradient.h"
 
+#include "support/doubles.h"
+
 #include <stddef.h>
 
 enum { PARTS = 3, VERTICES = 512, PIXELS = 24 * 18, CHANNELS = 2, NODES = 256 };
@@ -63,7 +65,7 @@ static skg_status along_a_direction(skg_plan *plan, float *image) {
     direction.attenuations = coefficients;
     directions[0] = direction;
     directions[1].poses = *twists;
-    TRY(skg_plan_derivatives(plan, NULL, 2, directions, derivatives, saturated));
+    TRY(skg_plan_derivatives(plan, NULL, 2, directions, DOUBLES(derivatives), saturated));
     for (int i = 0; i < PIXELS; i++) image[i] = (float)derivatives[i];
     return SKG_OK;
 }
