@@ -24,6 +24,25 @@ double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped) {
     return whole & sign ? -(double)((~whole + 1) & ((sign << 1) - 1)) : (double)whole;
 }
 
+skg_status skg_image_open(const skg_image_source *source, FILE **stream) {
+    if (!source->bytes) return skg_input_open(source->name, SKG_INPUT_LARGE, stream, NULL);
+    /* fmemopen has one function for reading and writing; "rb" does not write. */
+    *stream = fmemopen((void *)(uintptr_t)source->bytes, (size_t)source->size, "rb");
+    return *stream ? SKG_OK : skg_fail(SKG_ERR_MEMORY, "%s: out of host memory", source->name);
+}
+
+skg_status skg_image_put(const skg_image_target *target, const void *bytes, int64_t size) {
+    *target->size = size;
+    if (!target->bytes) return SKG_OK;
+    if (size > target->capacity)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: has %" PRId64 " bytes, and there is memory for %" PRId64
+                        "; the call says how many in size",
+                        target->name, size, target->capacity);
+    memcpy(target->bytes, bytes, (size_t)size);
+    return SKG_OK;
+}
+
 int32_t skg_quantity_of_title(const char *title) {
     /* As skg_quantity_get, of a room above, has names and units; a test compares them. */
     static const char *const titles[] = {"energy (keV per pixel)", "fluence (keV/mm2)",

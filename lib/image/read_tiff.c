@@ -1,9 +1,9 @@
 /* Reads grey TIFFs. */
 #include "image/image.h"
 #include "image/reasons.h"
+#include "image/tiff_bytes.h"
 
 #include <string.h>
-#include <tiffio.h>
 
 /* What a page says of its values. */
 typedef struct {
@@ -93,17 +93,22 @@ static skg_status read_page(const char *path, TIFF *tiff, int64_t page, skg_pict
     return values ? read_rows(path, tiff, &one, values) : SKG_OK;
 }
 
-skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values) {
+/* Opens a file by its path. m: it is not mapped into memory, so that a file that shrinks is an error. */
+static TIFF *open_path(const char *path, skg_tiff_reason *kept) {
+    TIFFOpenOptions *options = skg_tiff_options(kept);
+    if (!options) return NULL;
+    TIFF *tiff = TIFFOpenExt(path, "rm", options);
+    TIFFOpenOptionsFree(options);
+    return tiff;
+}
+
+skg_status skg_tiff_read(const skg_image_source *source, int64_t page, skg_picture_contents *contents,
+                         double *values) {
     skg_tiff_reason kept = {""};
-    TIFFOpenOptions *options = skg_tiff_options(&kept);
-    TIFF *tiff = NULL;
-    if (options) {
-        tiff = TIFFOpenExt(path, "rm",
-                           options); /* m: not mapped into memory, so that a file that shrinks is an error */
-        TIFFOpenOptionsFree(options);
-    }
-    if (!tiff) return skg_fail(SKG_ERR_FORMAT, "%s: is no TIFF: %s", path, skg_tiff_said(&kept));
-    const skg_status status = read_page(path, tiff, page, contents, values);
+    skg_tiff_bytes bytes = {.name = source->name, .given = source->bytes, .size = source->size};
+    TIFF *tiff = source->bytes ? skg_tiff_open_bytes(&bytes, "rm", &kept) : open_path(source->name, &kept);
+    if (!tiff) return skg_fail(SKG_ERR_FORMAT, "%s: is no TIFF: %s", source->name, skg_tiff_said(&kept));
+    const skg_status status = read_page(source->name, tiff, page, contents, values);
     TIFFClose(tiff);
     return status;
 }
