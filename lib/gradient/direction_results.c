@@ -65,6 +65,7 @@ skg_status skg_direction_results_put(const skg_job *job, int64_t direction) {
     const int is_float = results->to.type == SKG_TYPE_FLOAT32;
     float *rounded = NULL;
     skg_status status = SKG_OK;
+    SKG_ASSERT(0 <= direction && direction < work->direction_count);
     if (!work->images) return SKG_OK;
     if (is_float) SKG_TRY(skg_alloc(size, sizeof *rounded, "derivative", &rounded));
     for (int64_t c = 0; c < results->channels && status == SKG_OK; c++) {

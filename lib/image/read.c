@@ -7,6 +7,7 @@
 double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped) {
     unsigned char own[8];
     uint64_t whole = 0;
+    SKG_ASSERT(1 <= bytes && bytes <= (int)sizeof own);
     for (int k = 0; k < bytes; k++) own[k] = ((const unsigned char *)at)[swapped ? bytes - 1 - k : k];
     if (kind == 'f' && bytes == 4) {
         float value;
@@ -32,6 +33,7 @@ skg_status skg_image_open(const skg_image_source *source, FILE **stream) {
 }
 
 skg_status skg_image_put(const skg_image_target *target, const void *bytes, int64_t size) {
+    SKG_ASSERT(size >= 0);
     *target->size = size;
     if (!target->bytes) return SKG_OK;
     if (size > target->capacity)

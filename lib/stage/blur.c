@@ -324,6 +324,7 @@ static void add_lines(int64_t taps, const double *weights, int64_t lines, int64_
 skg_status skg_blur_transpose(const skg_blur *blur, int64_t columns, int64_t rows, const double *from,
                               double *to) {
     double *half = NULL;
+    SKG_ASSERT(from != to); /* what is read later would be changed */
     if (!blur->separable) {
         for (int64_t r = 0; r < rows; r++)
             for (int64_t c = 0; c < columns; c++)
