@@ -43,10 +43,10 @@ typedef struct {
     double *given;        /* [rows][columns] 1: the caller lets it count */
     double *mask;         /* [rows][columns] 1: it counts, and is near the shadow */
     double *rest; /* [rows][columns] attenuation of what does not move, and is not in the scene of the body */
-    double *
-        shares[REG_SHARES]; /* [rows][columns] each; REG_BODY_OWN: what an image of the body has without it */
-    double *shadow;         /* [rows][columns] attenuation of the parts alone at the start */
-    double *before;         /* [rows][columns] model less radiograph at the start */
+    /* [rows][columns] each; REG_BODY_OWN: what an image of the body has without it */
+    double *shares[REG_SHARES];
+    double *shadow; /* [rows][columns] attenuation of the parts alone at the start */
+    double *before; /* [rows][columns] model less radiograph at the start */
 } reg_image;
 
 /* A radiograph at a level of the pyramid. */
@@ -80,8 +80,8 @@ typedef struct {
     double cost, reduction; /* reduction: what the nuisances alone take of the cost */
     double *matrix;         /* [count][count] */
     double *gradient;       /* [count] */
-    double *
-        coupling; /* [image_count][REG_LOCAL + 1][REG_NUISANCES] inverse of their matrix times coupling and gradient */
+    /* [image_count][REG_LOCAL + 1][REG_NUISANCES] inverse of their matrix times coupling and gradient */
+    double *coupling;
 } reg_equations;
 
 /* Scenes that are rendered: all parts; the body with what it lies inside; only the latter; the parts alone; all but them. */

@@ -37,8 +37,8 @@ typedef struct {
 } skg_job_kind;
 
 struct skg_job {
-    atomic_int
-        cancelled;      /* the only member that is written when the job is gone, by who cancels it too late */
+    /* the only member that is written when the job is gone, by who cancels it too late */
+    atomic_int cancelled;
     skg_pool *pool;     /* retained: it has the memory of this */
     skg_plan *plan;     /* retained; NULL: the caller keeps machine and outcome */
     skg_recipe *recipe; /* retained: that of the submission, or of then.scene */

@@ -24,15 +24,15 @@ typedef struct {
     int32_t plane; /* of SKG_LENGTHS_CELLS */
     skg_image_place place;
     /* How it is made. */
-    int32_t
-        reuses; /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
+    /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
+    int32_t reuses;
     int64_t step, each; /* of an image: which step is made, of so many passes; each: 0: all its passes */
-    const struct skg_pass *
-        drawn; /* its sums, which were drawn together with those of other frames; NULL: they are to be drawn */
+    /* its sums, which were drawn together with those of other frames; NULL: they are to be drawn */
+    const struct skg_pass *drawn;
     int32_t drawn_place; /* of that pass, among those of its raster */
     cl_event *end;       /* gets the event of the frame's last command, or NULL; NULL: is not asked for */
-    int32_t
-        followed; /* 1: another frame of the job follows at once, so that nobody reads this one's count of negative exponents */
+    /* 1: another frame of the job follows at once, so that nobody reads this one's count of negative exponents */
+    int32_t followed;
 } skg_frame_work;
 
 /* --- The outputs of a submission: what is computed, and where it goes */

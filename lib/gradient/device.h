@@ -19,8 +19,8 @@ typedef struct {
     skg_host_view sums; /* of `moments` */
     void *reals;        /* [triangles][3] slopes on their way to the device */
     int32_t *corners;   /* [triangles of all meshes][3] as the device has them */
-    double *
-        planes; /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
+    /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
+    double *planes;
     int64_t *versions;
 } skg_gradient_memory;
 
@@ -41,8 +41,8 @@ typedef struct {
 typedef struct {
     const int64_t *moments; /* [triangles][4] in the device's order of triangles, until skg_gradient_close */
     const double *units;    /* [parts] staged: what a moment of 1 is worth; 0: the part has none */
-    const double
-        *around_units; /* [parts] of the fourth moments: sums of length times weight by what stands around */
+    /* [parts] of the fourth moments: sums of length times weight by what stands around */
+    const double *around_units;
     skg_weight_layout layout;
     int32_t has_edges; /* 1: some faces are seen as lines */
     int32_t reserved;
@@ -63,14 +63,14 @@ enum {
 /* The derivatives by the sums of a pass that are wanted. */
 typedef struct {
     double factor; /* of the intensities of the pass */
-    int32_t
-        channel;  /* of the intensities whose derivatives they are; -1: those of a loss, by memory->adjoint */
-    int32_t of;   /* SKG_WEIGHTS_OF_... */
-    int32_t rays; /* SKG_RAYS_... */
+    /* of the intensities whose derivatives they are; -1: those of a loss, by memory->adjoint */
+    int32_t channel;
+    int32_t of;       /* SKG_WEIGHTS_OF_... */
+    int32_t rays;     /* SKG_RAYS_... */
     int32_t relative; /* 1: see skg_transposition */
     int32_t reserved;
-    const uint8_t
-        *parts; /* [parts] 0: what hits of this part are worth is not wanted; NULL: that of all is */
+    /* [parts] 0: what hits of this part are worth is not wanted; NULL: that of all is */
+    const uint8_t *parts;
 } skg_weights_wanted;
 
 /* Enqueues them. attenuation: of the image, with the window of the pass */

@@ -86,13 +86,13 @@ skg_status skg_metaimage_read(const skg_image_source *source, int64_t page, skg_
 /* A grid of three dimensions in a file. */
 typedef struct {
     int64_t size[3];
-    double
-        affine[16]; /* from the indices of a cell to its centre, in the file's unit; see skg_volume_source */
+    /* from the indices of a cell to its centre, in the file's unit; see skg_volume_source */
+    double affine[16];
     double unit_mm[3];  /* mm per unit of x, y, z that the file names; 0: none */
     int32_t type;       /* enum skg_volume_type */
     int32_t no_spacing; /* 1: the file does not say how large cells are; 1 of its unit is taken */
-    int32_t
-        no_order; /* 1: it does not say the order of bytes, as it has to; the least significant first is taken */
+    /* 1: it does not say the order of bytes, as it has to; the least significant first is taken */
+    int32_t no_order;
     int32_t reserved;
     void *cells; /* the caller frees them */
     char no_hounsfield

@@ -20,8 +20,8 @@ typedef struct {
     char kind;
     char data[LINE]; /* ElementDataFile */
     char unit[32];   /* DistanceUnits; "": not given */
-    char
-        bad[32]; /* a key of the place that does not say as many finite numbers as a volume needs; "": none */
+    /* a key of the place that does not say as many finite numbers as a volume needs; "": none */
+    char bad[32];
     long header; /* HeaderSize; 0: the data follow the header, or begin the file */
     int32_t quantity;
 } metaimage;

@@ -30,8 +30,8 @@ typedef struct {
     skg_staging *staging;
     int64_t parts;
     const int64_t *indices; /* [parts] into leaky */
-    const skg_raster
-        *raster; /* of their planes: each part's sums in the order of its contributions, then its count */
+    /* of their planes: each part's sums in the order of its contributions, then its count */
+    const skg_raster *raster;
     const skg_raster *shared; /* that their sums join */
 } skg_leaky_batch;
 

@@ -42,8 +42,8 @@ typedef struct {
     skg_volumes volumes;
     skg_buffer image; /* on its way to the host */
     skg_buffer mean;  /* of the transmission, for the variance of its logarithm */
-    skg_buffer
-        negative; /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
+    /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
+    skg_buffer negative;
     skg_pass_memory pass;
     skg_together_slot together[SKG_TABLE_SLOTS];
     int64_t together_next; /* how often one was taken */

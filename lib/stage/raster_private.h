@@ -42,8 +42,8 @@ struct skg_raster {
     skg_buffer sums;
     skg_buffer used; /* sets of the planes of copies, counters of claims, extents of the planes */
     cl_int *whole;   /* [planes][4] extents of the whole detector */
-    cl_int
-        *sent; /* [planes][4] extents as the device has them; of passes that are drawn together: not used */
+    /* [planes][4] extents as the device has them; of passes that are drawn together: not used */
+    cl_int *sent;
     skg_buffer scratch; /* bands: an image for each worker; passes: projected vertices for each worker */
     skg_buffer counts, starts, list,
         for_all;         /* tiles; for bands: counters, pieces, pool, list for all bands */
