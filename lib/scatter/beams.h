@@ -6,7 +6,7 @@
 #include "skg_shared.h"
 
 /* --- How the photons of a beam differ over its directions: heel effect and bow-tie filter. *
- * The primary has few directions of the spectrum for them (spectral/shades.h), fitted over its rays. A photon that is to scatter has
+ * The primary has few directions of the spectrum for them (spectral/shading.h), fitted over its rays. A photon that is to scatter has
  * an energy and a direction, so its share is taken from the effects themselves, over the whole field. */
 
 /* Rows of the table of the heel effect. */
