@@ -182,11 +182,11 @@ skg_status reg_render_once(skg_registration *r, const reg_scene *scene, skg_spec
 /* Attenuation of the body in every radiograph at a level: images[i]: [rows][columns]. */
 skg_status reg_render(skg_registration *r, const reg_level *level, const reg_state *state, float **images);
 
-/* The same of many poses in one radiograph: [count][rows][columns]. */
+/* Renders the images of many poses in one radiograph: [count][rows][columns]. */
 skg_status reg_render_poses(skg_registration *r, const reg_shrunk *shrunk, const skg_view *view,
                             int64_t count, const double *motions, float *images);
 
-/* Its derivatives by the free directions of a radiograph: [local][rows][columns]. */
+/* The derivatives of a radiograph's image by its free directions: [local][rows][columns]. */
 skg_status reg_differentiate(skg_registration *r, const reg_level *level, const reg_state *state,
                              int64_t image, double *derivatives);
 

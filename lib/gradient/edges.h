@@ -17,7 +17,7 @@ typedef struct {
     skg_edge_volumes volumes;   /* that compete, with competitors */
 } skg_edge_weights;
 
-/* The same for one part: the `user` of skg_edge_weigh. */
+/* The weights of one part: the `user` of skg_edge_weigh. */
 typedef struct {
     const skg_edge_weights *all;
     int64_t part;

@@ -10,7 +10,7 @@ skg_status skg_gather_begin(skg_gather_run *run);
 /* Waits for the weights. most: [planes] result: the largest of each plane. */
 skg_status skg_gather_find_max(const skg_gather_run *run, double *most);
 
-/* The same number of reals in the precision of the pass. reals: filled from number `first` on */
+/* Rounds numbers to the precision of the pass. reals: as many, filled from number `first` on */
 void skg_gather_round(const skg_gather_run *run, int64_t first, int64_t count, const double *numbers,
                       void *reals);
 skg_status skg_gather_upload_scales(const skg_gather_run *run, int64_t count, const double *scales);

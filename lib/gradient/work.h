@@ -51,7 +51,7 @@ typedef struct {
     int64_t *saturated; /* the caller's: [directions], or NULL */
 } skg_gradient_work;
 
-/* That of a job of gradients or derivatives. */
+/* The work of a job of gradients or derivatives. */
 static inline skg_gradient_work *skg_gradient_of(const skg_job *job) {
     return job->state;
 }

@@ -49,7 +49,7 @@ enum { SKG_CPU_RUNS = 4, SKG_CPU_STRIP = 8 };
 /* Whether these are the options of the program that a first image needs on a CPU. */
 int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *options);
 
-/* That program: strategy `copies`, and the attenuation of one plane. Both together take less time to compile than two programs,
+/* Gets the program of a first image: strategy `copies`, and the attenuation of one plane. Both together take less time to compile than two programs,
  * because a driver reads its own header for each. */
 skg_status skg_kernels_get_first(skg_context *context, cl_program *program);
 

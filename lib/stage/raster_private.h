@@ -22,7 +22,7 @@ typedef struct {
     /* Sets what the layout has beside the sizes of detector and planes: copies, shape of tiles, entries of a queue. */
     skg_status (*lay_out)(skg_raster *raster);
     skg_status (*allocate)(skg_raster *raster); /* buffers beside sums and used */
-    /* Its program, instead of skg_raster_get_program. program: NULL: it is only prefetched. */
+    /* Gets the program of the strategy, instead of skg_raster_get_program. program: NULL: it is only prefetched. */
     skg_status (*get_program)(const skg_raster *raster, cl_program *program);
     /* Enqueues one frame. */
     skg_status (*run)(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);

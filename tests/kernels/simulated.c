@@ -338,7 +338,7 @@ static int draw_picture(skg_context *context, const skg_scene *scene, const skg_
     return 1;
 }
 
-/* That of the sum of an image. */
+/* The adjoint of the sum of an image. */
 static skg_adjoint sum_of_pixels(void) {
     static double adjoint[PIXELS];
     skg_adjoint given;
