@@ -83,6 +83,7 @@ static skg_status read_page(const char *path, TIFF *tiff, int64_t page, skg_pict
     const char *description = NULL;
     page_of one = {0};
     contents->pages = TIFFNumberOfDirectories(tiff);
+    if (contents->pages < 1) return skg_fail(SKG_ERR_FORMAT, "%s: is damaged: it has no page", path);
     SKG_TRY(skg_picture_page_check(path, page, contents->pages));
     if (!TIFFSetDirectory(tiff, (tdir_t)page))
         return skg_fail(SKG_ERR_FORMAT, "%s: page %d cannot be read", path, (int)page);
