@@ -157,6 +157,32 @@ START_TEST(every_output_has_the_same_values) {
 }
 END_TEST
 
+/* Dense images of doubles are made where they go, also if there is room between directions. */
+START_TEST(directions_may_stand_apart) {
+    enum { APART = PIXELS + 13 };
+    static double dense[DIRECTIONS * PIXELS], apart[DIRECTIONS * APART];
+    const setting set = {.name = "one energy"};
+    skg_direction directions[DIRECTIONS];
+    result r;
+    make_scene(&set);
+    allocate(&r);
+    const skg_view view = make_view(&set);
+    skg_plan *plan = make_plan(&set, &view, SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
+    make_directions(plan, directions);
+    ck_skg(skg_plan_derivatives(plan, NULL, DIRECTIONS, directions, DOUBLES(dense), NULL));
+    for (int i = 0; i < DIRECTIONS * APART; i++) apart[i] = (double)BETWEEN;
+    skg_output output = *DOUBLES(apart);
+    output.frame_stride = APART;
+    ck_skg(skg_plan_derivatives(plan, NULL, DIRECTIONS, directions, &output, NULL));
+    for (int i = 0; i < DIRECTIONS * APART; i++)
+        ck_assert_msg(apart[i] ==
+                          (i % APART < PIXELS ? dense[i / APART * PIXELS + i % APART] : (double)BETWEEN),
+                      "element %d: %.17g", i, apart[i]);
+    skg_plan_release(&plan);
+    release(&r);
+}
+END_TEST
+
 /* An output that the directions do not fit. */
 static void check_refused(skg_plan *plan, const skg_direction *directions, const skg_output *output,
                           const char *reason) {
@@ -233,6 +259,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, run_open, run_close);
     tcase_add_loop_test(tests, together_they_have_the_bits_of_each, 0, 2 * SETTINGS);
     tcase_add_loop_test(tests, every_output_has_the_same_values, 0, 4);
+    tcase_add_test(tests, directions_may_stand_apart);
     tcase_add_test(tests, outputs_that_cannot_be_filled_are_refused);
     tcase_add_test(tests, what_is_wrong_is_said);
 }
