@@ -23,7 +23,7 @@ typedef struct {
     int64_t first;     /* number of frames[0] */
 } skg_job_scene;
 
-/* What the steps of a job are. frame/render_output.c has the kind whose frames are images; rooms above have others. */
+/* The functions that make the steps of a job. frame/render_output.c has the kind whose frames are images; rooms above have others. */
 typedef struct {
     /* Enqueues what comes before the steps. These then follow one by one, when the job is asked or waited for, on vertices that are
      * copied. NULL: there is nothing before. frames: the caller's; poses: [parts] memory */

@@ -1,4 +1,4 @@
-/* What a frame is to show, and where that goes. Private. */
+/* The work of a frame: what it is to show, and where that goes. Private. */
 #ifndef SKG_WORK_H
 #define SKG_WORK_H
 

@@ -27,7 +27,7 @@ typedef struct {
 /* The memory of a plan, which its machine owns; allocated with the first call. */
 skg_status skg_gradient_memory_get(skg_machine *machine, skg_gradient_memory **memory);
 
-/* What stands around each part: the contributions of all parts that it is inside; or what the part is made of, with its own. */
+/* The surroundings of each part: the contributions of all parts that it is inside; or what the part is made of, with its own. */
 typedef struct {
     const int32_t *first; /* [parts + 1] those of part p are list[first[p]] to list[first[p + 1] - 1] */
     const skg_contribution *list;
@@ -37,7 +37,7 @@ typedef struct {
     const uint8_t *of_own; /* [parts] 1: what the part itself is made of is listed */
 } skg_surroundings;
 
-/* What the gather of a pass leaves. */
+/* The results of the gather of a pass. */
 typedef struct {
     const int64_t *moments; /* [triangles][4] in the device's order of triangles, until skg_gradient_close */
     const double *units;    /* [parts] staged: what a moment of 1 is worth; 0: the part has none */
@@ -53,7 +53,7 @@ static inline int64_t skg_gradient_real_size(int32_t precision) {
     return (int64_t)(precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float));
 }
 
-/* What weights are of. */
+/* The subjects of weights. */
 enum {
     SKG_WEIGHTS_OF_PARTS,  /* what hits of parts are worth */
     SKG_WEIGHTS_OF_PLANES, /* the mm of the planes that exponents are made of */

@@ -74,7 +74,7 @@ static skg_status copy_directions(skg_job *job) {
     return SKG_OK;
 }
 
-/* What the checks of a gradient would find wanted. */
+/* The gradient whose checks hold for a direction, too. */
 static skg_gradient wanted_of(const skg_direction *direction, double *any) {
     skg_gradient wanted;
     skg_gradient_init(&wanted);

@@ -1,4 +1,4 @@
-/* What a job of gradients or derivatives holds, and its end. */
+/* The end of the work of a job of gradients or derivatives. */
 #include "gradient/work.h"
 
 void skg_gradient_work_release(skg_gradient_work **work) {

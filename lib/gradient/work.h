@@ -20,7 +20,7 @@ typedef struct {
     double *plane_changes, *node_changes;
 } skg_derivative_work;
 
-/* What a job computes instead of an image; the job owns it. Its frames are the passes of one frame. */
+/* The work of a job that computes derivatives instead of an image; the job owns it. Its frames are the passes of one frame. */
 typedef struct {
     const char *call;            /* the name of the public function */
     skg_gradient_memory *memory; /* the plan's */

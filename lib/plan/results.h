@@ -1,4 +1,4 @@
-/* What a plan tells: its report and its outcome. Private. */
+/* The results of a plan beside images: its report and its outcome. Private. */
 #ifndef SKG_RESULTS_H
 #define SKG_RESULTS_H
 
@@ -40,7 +40,7 @@ void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome);
 
 /* --- What is reported of finished work: times, bad pixels, negative exponents, lengths outside the verified range. */
 
-/* What the device leaves of work, in staged memory. */
+/* The counts that the device leaves of work, in staged memory. */
 typedef struct {
     /* [4] pixels with a negative exponent in the last frame; in any frame, pixels outside the range, infinite values, and rays
      * with a sum beyond its bound */

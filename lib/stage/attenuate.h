@@ -63,7 +63,7 @@ typedef struct {
 } skg_weight_layout;
 skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t fine);
 
-/* What is asked of skg_attenuate_transpose, and where it goes. */
+/* The request to skg_attenuate_transpose, and where it goes. */
 typedef struct {
     double factor; /* of intensities */
     /* The loss is this channel of each pixel by itself; -1: its derivative by the image is `adjoint`, [channels][rows][columns] in the

@@ -1,4 +1,4 @@
-/* What pixels show of their planes, and the tables of it on the device. Private. */
+/* The attenuation: what pixels show of their planes, and its tables on the device. Private. */
 #ifndef SKG_ATTENUATION_H
 #define SKG_ATTENUATION_H
 

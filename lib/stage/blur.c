@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* What a work-item does, as blur.cl has it: rows of the first pass, vectors of a row, vectors of a run of the second. */
+/* The share of a work-item, as blur.cl has it: rows of the first pass, vectors of a row, vectors of a run of the second. */
 enum { BLUR_ROWS = 4, BLUR_VECTORS = 2, BLUR_RUN = 4 };
 
 /* The most samples that a function may have along either direction. */

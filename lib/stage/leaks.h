@@ -70,7 +70,7 @@ typedef struct {
     int32_t reserved;
 } skg_leaky_parts;
 
-/* What is read of the leaky parts that contribute to the last frame. */
+/* The counts that are read of the leaky parts that contribute to the last frame. */
 typedef struct {
     int64_t count;
     int64_t *indices; /* [count] into the leaky parts; staged */

@@ -1,4 +1,4 @@
-/* What the strategies of rasters share. Private. */
+/* The interface of a strategy of rasters, and what all share. Private. */
 #ifndef SKG_RASTER_PRIVATE_H
 #define SKG_RASTER_PRIVATE_H
 

@@ -179,7 +179,7 @@ typedef struct {
     skg_buffer image; /* [channels][rows][columns] */
 } skg_flat_field;
 
-/* What a flat field is made with. */
+/* The inputs of a flat field. */
 typedef struct {
     /* of source and pixel; NULL: the source is a point, and rays go to the pixels' centres */
     const skg_samples *samples;
