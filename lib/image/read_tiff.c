@@ -78,6 +78,19 @@ static skg_status read_rows(const char *path, TIFF *tiff, const page_of *page, d
     return status;
 }
 
+/* Callers have memory for pages as large as the first. */
+static skg_status check_size(const char *path, TIFF *tiff, int64_t page, const page_of *one) {
+    page_of first = {0};
+    if (page == 0) return SKG_OK;
+    if (!TIFFSetDirectory(tiff, 0) || !TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &first.columns) ||
+        !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &first.rows) || !TIFFSetDirectory(tiff, (tdir_t)page))
+        return skg_fail(SKG_ERR_FORMAT, "%s: page 0 cannot be read", path);
+    if (first.columns == one->columns && first.rows == one->rows) return SKG_OK;
+    return skg_fail(SKG_ERR_UNSUPPORTED,
+                    "%s: page %d has %u x %u pixels, page 0 has %u x %u; write pages of one size", path,
+                    (int)page, one->columns, one->rows, first.columns, first.rows);
+}
+
 static skg_status read_page(const char *path, TIFF *tiff, int64_t page, skg_picture_contents *contents,
                             double *values) {
     const char *description = NULL;
@@ -88,6 +101,7 @@ static skg_status read_page(const char *path, TIFF *tiff, int64_t page, skg_pict
     if (!TIFFSetDirectory(tiff, (tdir_t)page))
         return skg_fail(SKG_ERR_FORMAT, "%s: page %d cannot be read", path, (int)page);
     SKG_TRY(look(path, tiff, &one));
+    SKG_TRY(check_size(path, tiff, page, &one));
     contents->columns = one.columns, contents->rows = one.rows;
     if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &description) && description)
         contents->quantity = skg_quantity_of_title(description);

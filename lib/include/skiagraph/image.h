@@ -128,8 +128,8 @@ SKG_API skg_status skg_picture_contents_get(const char *path, skg_picture_conten
 /** Reads a page of an image file as numbers: those of the file, without display curve or scale.
  *
  *     page     0 <= page < number of pages
- *     values   result: [rows][columns]
- *     errors   as above; SKG_ERR_ARGUMENT (page) */
+ *     values   result: [rows][columns] of skg_picture_contents
+ *     errors   as above; SKG_ERR_ARGUMENT (page); SKG_ERR_UNSUPPORTED also for a page of a TIFF that has another size than the first */
 SKG_API skg_status skg_picture_load(const char *path, int64_t page, double *values);
 
 /** Looks at an image file in memory; otherwise as skg_picture_contents_get.
