@@ -70,6 +70,18 @@ static skg_status along_a_direction(skg_plan *plan, float *image) {
     return SKG_OK;
 }
 
+/* Floats in the caller's buffer, which has been read by now. */
+static skg_status into_a_buffer(skg_plan *plan, void *buffer) {
+    static const double twists[PARTS][6] = {{0}, {0, 0, 0.1, 0, 0, 0}};
+    skg_direction direction;
+    skg_output output;
+    skg_direction_init(&direction);
+    skg_output_init(&output);
+    direction.poses = *twists;
+    output.buffer = buffer;
+    return skg_plan_derivatives(plan, NULL, 1, &direction, &output, NULL);
+}
+
 skg_status failing_gradient(skg_plan *plan, const skg_scene *scene, const skg_view *view, void *weights,
                             float *image) {
     int64_t count = 0, triangles = 0, channels = 0;
@@ -81,6 +93,7 @@ skg_status failing_gradient(skg_plan *plan, const skg_scene *scene, const skg_vi
     if (count > VERTICES || channels > CHANNELS) return SKG_ERR_ARGUMENT;
     TRY(by_everything(plan, view, weights, channels));
     TRY(along_a_direction(plan, image));
+    TRY(into_a_buffer(plan, weights));
     for (int k = 0; k < 6; k++) image[k] = (float)poses[1][k], image[6 + k] = (float)detector[k];
     for (int k = 0; k < 3; k++)
         image[12 + k] = (float)source[k], image[15 + k] = (float)densities[k],
