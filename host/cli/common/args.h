@@ -32,7 +32,7 @@ const char *cli_value(const cli_arguments *arguments, const cli_flag *flag);
 /* The value of the flag's occurrence `index`, counted from 0, or NULL. */
 const char *cli_nth_value(const cli_arguments *arguments, const cli_flag *flag, int index);
 
-/* The following four leave their results as they are if the flag was not given. cli_choice: the index in
+/* These four leave their results as they are if the flag was not given. cli_choice: the index in
  * flag->values. */
 int cli_choice(const cli_arguments *arguments, const cli_flag *flag, int32_t *choice);
 int cli_integer(const cli_arguments *arguments, const cli_flag *flag, int64_t least, int64_t most,
