@@ -67,7 +67,7 @@ typedef struct {
     int wants; /* 0: the image alone; 1, 2: its gradient; 3, 4: its derivatives along directions */
     int64_t direction_count;
     skg_direction *directions;
-    double *derivatives;
+    skg_output derivatives;
 } contender;
 
 static void frame(void *who) {
@@ -75,7 +75,7 @@ static void frame(void *who) {
     bench_try(skg_plan_image(self->plan, &self->output), "image");
     if (self->wants >= 3)
         bench_try(skg_plan_derivatives(self->plan, NULL, self->direction_count, self->directions,
-                                       self->derivatives, NULL),
+                                       &self->derivatives, NULL),
                   "derivatives");
     else if (self->wants)
         bench_try(skg_plan_gradient(self->plan, NULL, &self->adjoint, &self->gradient), "gradient");
@@ -158,7 +158,9 @@ static void compare(const settings *set, const bench_thorax *thorax, skg_plan *p
         if (k == 2) c->gradient.vertices = vertices;
         c->direction_count = k == 4 ? WAYS : 1;
         c->directions = directions;
-        c->derivatives = derivatives;
+        skg_output_init(&c->derivatives);
+        c->derivatives.type = SKG_TYPE_FLOAT64;
+        c->derivatives.data = derivatives;
     }
     bench_interleave(CONTENDERS, frames, who, (int)(set->repeats + 4) / 5, 5, times);
     printf("| what | minimum, ms | median, ms | images |\n|---|---:|---:|---:|\n");

@@ -11,8 +11,8 @@ typedef struct {
     int64_t thin;   /* of these, beyond the bar, but between two steep faces that are nearer than the shift */
     int64_t folded; /* of these, beyond that, but among more than two such faces, within their depths */
     int64_t out;    /* of these, out of bar */
-    int64_t
-        rough; /* of those met: single and double precision differ by more than 3e-5 L and 5e-7 D together */
+    /* of those met: single and double precision differ by more than 3e-5 L and 5e-7 D together */
+    int64_t rough;
     double worst, lowest; /* distance from the interval of the judged ones; least length of all */
 } hard_verdict;
 

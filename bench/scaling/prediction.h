@@ -20,10 +20,10 @@ typedef struct {
 /* What a frame consists of. */
 typedef struct {
     double vertices, triangles;
-    double hits,
-        adds;       /* pixels that triangles cover, by their area; times the planes that each is added to */
-    double vectors; /* vector additions, in all planes */
-    double warps;   /* pixels of all boxes, each counted as the largest of its SCALING_WARP */
+    /* pixels that triangles cover, by their area; times the planes that each is added to */
+    double hits, adds;
+    double vectors;      /* vector additions, in all planes */
+    double warps;        /* pixels of all boxes, each counted as the largest of its SCALING_WARP */
     double rectangles;   /* pixels of the rectangles of all parts */
     double pixels, sums; /* sums: accumulators in the extents of all planes */
     double planes, accumulators, nodes;

@@ -159,6 +159,7 @@ skg_status reg_differentiate(skg_registration *r, const reg_level *level, const 
     double *poses = NULL, *placed = NULL, source[REG_LOCAL][3], detector[REG_LOCAL][6];
     int64_t parts = 0;
     skg_frame frame;
+    skg_output output;
     skg_status status = SKG_OK;
     SKG_TRY(skg_scene_part_count(r->body.scene, &parts));
     SKG_TRY_CLEANUP(skg_alloc(count * 6 * parts, sizeof *poses, "directions", &poses));
@@ -173,8 +174,11 @@ skg_status reg_differentiate(skg_registration *r, const reg_level *level, const 
         frame.pose_parts = r->body.parts;
         frame.poses = placed;
     }
+    skg_output_init(&output);
+    output.type = SKG_TYPE_FLOAT64;
+    output.data = derivatives;
     SKG_TRY_CLEANUP(
-        skg_plan_derivatives(level->images[image].plan, &frame, count, directions, derivatives, NULL));
+        skg_plan_derivatives(level->images[image].plan, &frame, count, directions, &output, NULL));
     r->result.jacobians++;
 cleanup:
     skg_free(&poses);

@@ -43,10 +43,10 @@ typedef struct {
     double *given;        /* [rows][columns] 1: the caller lets it count */
     double *mask;         /* [rows][columns] 1: it counts, and is near the shadow */
     double *rest; /* [rows][columns] attenuation of what does not move, and is not in the scene of the body */
-    double *
-        shares[REG_SHARES]; /* [rows][columns] each; REG_BODY_OWN: what an image of the body has without it */
-    double *shadow;         /* [rows][columns] attenuation of the parts alone at the start */
-    double *before;         /* [rows][columns] model less radiograph at the start */
+    /* [rows][columns] each; REG_BODY_OWN: what an image of the body has without it */
+    double *shares[REG_SHARES];
+    double *shadow; /* [rows][columns] attenuation of the parts alone at the start */
+    double *before; /* [rows][columns] model less radiograph at the start */
 } reg_image;
 
 /* A radiograph at a level of the pyramid. */
@@ -80,8 +80,8 @@ typedef struct {
     double cost, reduction; /* reduction: what the nuisances alone take of the cost */
     double *matrix;         /* [count][count] */
     double *gradient;       /* [count] */
-    double *
-        coupling; /* [image_count][REG_LOCAL + 1][REG_NUISANCES] inverse of their matrix times coupling and gradient */
+    /* [image_count][REG_LOCAL + 1][REG_NUISANCES] inverse of their matrix times coupling and gradient */
+    double *coupling;
 } reg_equations;
 
 /* Scenes that are rendered: all parts; the body with what it lies inside; only the latter; the parts alone; all but them. */
@@ -182,11 +182,11 @@ skg_status reg_render_once(skg_registration *r, const reg_scene *scene, skg_spec
 /* Attenuation of the body in every radiograph at a level: images[i]: [rows][columns]. */
 skg_status reg_render(skg_registration *r, const reg_level *level, const reg_state *state, float **images);
 
-/* The same of many poses in one radiograph: [count][rows][columns]. */
+/* Renders the images of many poses in one radiograph: [count][rows][columns]. */
 skg_status reg_render_poses(skg_registration *r, const reg_shrunk *shrunk, const skg_view *view,
                             int64_t count, const double *motions, float *images);
 
-/* Its derivatives by the free directions of a radiograph: [local][rows][columns]. */
+/* The derivatives of a radiograph's image by its free directions: [local][rows][columns]. */
 skg_status reg_differentiate(skg_registration *r, const reg_level *level, const reg_state *state,
                              int64_t image, double *derivatives);
 

@@ -89,7 +89,7 @@ static skg_real skg_weight_of(const skg_gathering *g, const skg_range *range, in
 }
 
 #if SKG_AROUND
-/* The same by what stands around the part, for a unit of depth. */
+/* The weight of a hit by what stands around the part, for a unit of depth. */
 static skg_real skg_around_of(const skg_gathering *g, const skg_range *range, int column, int row, int negative) {
     __global const skg_real *at = g->weights + (long)row * g->args->stride + column;
     skg_real weight = 0;

@@ -367,14 +367,14 @@ typedef struct {
     float side_u, side_v;                   /* mm */
     float to_u[3], to_v[3];                 /* from a place relative to `corner` to shares of the sides */
     float field[3], field_u[3], field_v[3]; /* the field of the beam: its first corner, its sides */
-    float
-        far; /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
+    /* mm from the source to the middle of the field; of a parallel beam: back to before the object */
+    float far;
     float log_low, per_log; /* of the table by energy */
     float per_momentum, per_log_momentum;
     float angle_rows;     /* rows of the table of angles for one of that by energy */
     float min_kev, scale; /* photons below are given up; of sums */
-    float strips[3],
-        focus; /* with a grid: across the strips; 1 / mm to the line where their planes meet, or 0 */
+    /* with a grid: across the strips; 1 / mm to the line where their planes meet, or 0 */
+    float strips[3], focus;
     float strips_u, strips_v;    /* mm across the strips along the sides of the detector */
     float period, strip, height; /* of the strips, mm */
     float anode[3], heel_low,

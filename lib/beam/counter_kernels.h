@@ -12,11 +12,11 @@ typedef struct {
     int32_t reach; /* tables are squares of 2 reach + 1 pixels */
     double *means; /* [windows][square], each with the sum 1 */
     double *noise; /* [to][from][square]: of deviations that are independent, with the means as variances */
-    int32_t
-        first; /* 0: pulses are not moved; otherwise the lowest step of their heights, and behind the noise there are */
+    /* 0: pulses are not moved; otherwise the lowest step of their heights, and behind the noise there are */
+    int32_t first;
     int32_t reserved;
-    double *
-        below; /* [windows][SKG_PULSE_STEPS] of pile_up.clh, and [windows][SKG_PULSE_STEPS] heights of the open beam */
+    /* [windows][SKG_PULSE_STEPS] of pile_up.clh, and [windows][SKG_PULSE_STEPS] heights of the open beam */
+    double *below;
 } skg_counter_kernels;
 
 /* Doubles of all tables, which follow each other from `means` on. */

@@ -1,4 +1,4 @@
-/* What every room of the library stands on: errors, checked allocation, reference counts. Private. */
+/* The base of every room of the library: errors, checked allocation, reference counts. Private. */
 #ifndef SKG_CORE_H
 #define SKG_CORE_H
 

@@ -1,4 +1,4 @@
-/* What the library says: log, messages of other threads, progress. Private. */
+/* The log of the library, messages of other threads, progress. Private. */
 #ifndef SKG_LOG_H
 #define SKG_LOG_H
 

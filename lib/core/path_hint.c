@@ -1,4 +1,4 @@
-/* What is wrong with a path that cannot be opened. */
+/* Says what is wrong with a path that cannot be opened. */
 #include "core/text.h"
 
 #include <dirent.h>

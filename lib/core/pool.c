@@ -15,6 +15,7 @@ struct skg_pool {
     skg_refs refs;
     pthread_mutex_t lock; /* of what follows */
     block *spare;
+    size_t size; /* of every piece */
 };
 
 skg_status skg_pool_create(skg_pool **pool) {
@@ -45,6 +46,8 @@ void skg_pool_release(skg_pool **pool) {
 skg_status skg_pool_take(skg_pool *pool, size_t size, const char *what, void *pointer_address) {
     pthread_mutex_lock(&pool->lock);
     block *taken = pool->spare;
+    SKG_ASSERT(pool->size == 0 || pool->size == size); /* any spare piece has to do */
+    pool->size = size;
     if (taken) pool->spare = taken->next;
     pthread_mutex_unlock(&pool->lock);
     if (!taken) SKG_TRY(skg_alloc(1, offsetof(block, bytes) + size, what, &taken));

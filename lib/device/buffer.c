@@ -63,6 +63,7 @@ void skg_buffer_release(skg_buffer *buffer) {
 
 skg_status skg_buffer_write(skg_context *context, skg_buffer *buffer, int64_t bytes, const void *data,
                             const char *what) {
+    SKG_ASSERT(bytes >= 0 && (bytes == 0 || data));
     SKG_TRY(skg_buffer_reserve(context, buffer, bytes, CL_MEM_READ_ONLY, what));
     if (bytes > 0)
         SKG_CL_TRY(clEnqueueWriteBuffer(context->device->queue, buffer->memory, CL_TRUE, 0, (size_t)bytes,

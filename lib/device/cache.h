@@ -8,7 +8,7 @@
 
 #include "core/digest.h"
 
-/* What a file of the folder holds; part of its name and of its header. */
+/* The kind of contents of a file of the folder; part of its name and of its header. */
 typedef enum { SKG_KEPT_PROGRAM, SKG_KEPT_USES, SKG_KEPT_VERDICT } skg_kept;
 
 enum { SKG_STORE_PATH = 1024 };

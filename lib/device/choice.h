@@ -42,7 +42,7 @@ skg_status skg_device_identify(skg_device *device);
 
 /* --- choosing (choose.c) --- */
 
-/* What the words of a config say of the device; NULL where they say nothing. */
+/* The choices of a config for the device; NULL where they say nothing. */
 typedef struct {
     const char *device, *driver; /* the values of device= and driver= */
 } skg_device_words;

@@ -178,7 +178,7 @@ static int fits(const char *wanted, const skg_device_info *info) {
     return 0;
 }
 
-/* What the choice knows of a device. */
+/* The knowledge of a device by which it is chosen. */
 typedef struct {
     skg_device_info info;
     skg_verdict verdict; /* of the test "core" */

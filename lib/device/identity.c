@@ -1,4 +1,4 @@
-/* What a device is: its driver, its name, its versions, as a digest. */
+/* The identity of a device: its driver, its name, its versions, as a digest. */
 #include "device/cache.h"
 #include "device/choice.h"
 #include "device/device.h"

@@ -1,4 +1,4 @@
-/* What a program is compiled from: files that are built in, or of a folder for development, and options. */
+/* The text of a program: files that are built in, or of a folder for development, and options. */
 #include "core/files.h"
 #include "device/programs.h"
 

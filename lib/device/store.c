@@ -101,7 +101,7 @@ static int write_whole(int file, const void *data, size_t bytes) {
     return 1;
 }
 
-/* It detects damage, not manipulation: no one else may write to the folder. */
+/* The check sum detects damage, not manipulation: no one else may write to the folder. */
 static uint32_t checksum_of(const header *head, const void *data) {
     header bare = *head;
     bare.checksum = 0;

@@ -9,8 +9,8 @@ typedef struct {
     skg_material *material; /* borrowed; NULL: nothing, which is met by no photon */
     skg_emitters emitters;
     skg_scatter_physics physics;
-    double *
-        transfer; /* [energies] keV/mm that stay where photons interact: of electrons, less the photons that are emitted */
+    /* [energies] keV/mm that stay where photons interact: of electrons, less the photons that are emitted */
+    double *transfer;
     double *coherent; /* [momenta] integral of F^2 over the square of the momentum transfer */
 } skg_dose_matter;
 

@@ -52,7 +52,7 @@ typedef struct {
     int32_t cells;                  /* 1: there are volumes of cells */
 } skg_rules;
 
-/* Those of a plan. */
+/* The rules that a plan has. */
 skg_rules skg_rules_of(const skg_recipe *recipe);
 
 /* A line and what was found along it. All zero: no memory yet. One for each thread. */

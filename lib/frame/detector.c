@@ -1,4 +1,4 @@
-/* What the detector makes of a frame's intensities. */
+/* The detector: from a frame's intensities to the values of its image. */
 #include "frame/frames.h"
 
 #include "spectral/model.h"
@@ -42,7 +42,7 @@ int32_t skg_frame_layers(const skg_job *job, const skg_frame_work *work) {
     return skg_frame_is_expected(job->recipe, work) && least < count ? least : count;
 }
 
-/* What values are multiplied by behind the blur, besides the factors of their channels; finds the flat field, if they are divided
+/* The factors of values behind the blur, besides the factors of their channels; finds the flat field, if they are divided
  * by one of their own view. */
 static skg_status find_factor(skg_job *job, const skg_frame_work *work, double *factor) {
     const skg_recipe *recipe = job->recipe;

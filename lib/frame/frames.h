@@ -1,4 +1,4 @@
-/* What a frame goes through: passes and their parts, scatter, the detector. Private. */
+/* The levels of a frame: passes and their parts, scatter, the detector. Private. */
 #ifndef SKG_FRAMES_H
 #define SKG_FRAMES_H
 
@@ -31,7 +31,7 @@ skg_status skg_draw_sums(skg_job *job, const skg_frame_work *work, const skg_pas
  * its raster */
 skg_status skg_frame_sums(skg_job *job, const skg_pass *pass, int32_t place, skg_sums *sums);
 
-/* What the intensities of a pass are multiplied by. */
+/* The factor of the intensities of a pass. */
 double skg_frame_factor(const skg_recipe *recipe, const skg_frame_work *work, const skg_pass *pass);
 
 /* Draws the path lengths through a part along every ray of a pass into a buffer, [rows][columns] of the pass's precision; of a volume,
@@ -102,7 +102,7 @@ void skg_pass_extents(const skg_pass *pass, cl_int *extents);
 /* --- Frames in which parts have another density or fill fraction than planned: air that thins a lung, contrast medium that fills
  * a duct */
 
-/* What every part of such a frame contributes; both arrays are freed by the caller.
+/* The contributions of every part of such a frame; both arrays are freed by the caller.
  *
  * contributions   part p has first[p] to first[p + 1] - 1
  * first           [parts + 1] */
@@ -138,7 +138,7 @@ static inline int skg_frame_is_expected(const skg_recipe *recipe, const skg_fram
     return recipe->linear || work->kind == SKG_OUTPUT_MEAN || work->kind == SKG_OUTPUT_VARIANCE;
 }
 
-/* What the weights of the model are multiplied by for a view: those of a ratio hold for any. */
+/* The factor of the weights of the model for a view: those of a ratio hold for any. */
 double skg_frame_exposure(const skg_recipe *recipe, const skg_view *view);
 
 /* How many layers the stage `attenuate` writes; expected intensities have none of noise. */

@@ -23,7 +23,7 @@ typedef struct {
     int64_t first;     /* number of frames[0] */
 } skg_job_scene;
 
-/* What the steps of a job are. frame/render_output.c has the kind whose frames are images; rooms above have others. */
+/* The functions that make the steps of a job. frame/render_output.c has the kind whose frames are images; rooms above have others. */
 typedef struct {
     /* Enqueues what comes before the steps. These then follow one by one, when the job is asked or waited for, on vertices that are
      * copied. NULL: there is nothing before. frames: the caller's; poses: [parts] memory */
@@ -37,8 +37,8 @@ typedef struct {
 } skg_job_kind;
 
 struct skg_job {
-    atomic_int
-        cancelled;      /* the only member that is written when the job is gone, by who cancels it too late */
+    /* the only member that is written when the job is gone, by who cancels it too late */
+    atomic_int cancelled;
     skg_pool *pool;     /* retained: it has the memory of this */
     skg_plan *plan;     /* retained; NULL: the caller keeps machine and outcome */
     skg_recipe *recipe; /* retained: that of the submission, or of then.scene */

@@ -11,10 +11,6 @@ void skg_output_init_sized(void *output, int32_t size) {
     skg_struct_init(output, size, &defaults, sizeof defaults);
 }
 
-static int64_t element_bytes(const skg_frame_output *output) {
-    return output->to.type == SKG_TYPE_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
-}
-
 /* --- checks */
 
 /* Below this products of strides and counts do not overflow. */
@@ -93,14 +89,17 @@ static skg_status check_kind(const char *call, const skg_recipe *recipe, const s
     return SKG_OK;
 }
 
-static skg_status check_type(const skg_machine *machine, const skg_output *to) {
-    const skg_device_info *device = &machine->context->device->info;
+static skg_status check_double(const skg_context *context, const skg_output *to) {
+    const skg_device_info *device = &context->device->info;
+    if (to->type != SKG_TYPE_FLOAT64 || device->double_precision) return SKG_OK;
+    return skg_fail(SKG_ERR_UNSUPPORTED, "%s has no fp64, so it cannot write doubles; take SKG_TYPE_FLOAT32",
+                    device->name);
+}
+
+static skg_status check_type(const skg_output *to) {
     if (to->type != SKG_TYPE_FLOAT32 && to->type != SKG_TYPE_FLOAT64)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "output type %" PRId32 " is unknown; SKG_TYPE_FLOAT32 or SKG_TYPE_FLOAT64", to->type);
-    if (to->type == SKG_TYPE_FLOAT64 && !device->double_precision)
-        return skg_fail(SKG_ERR_UNSUPPORTED,
-                        "%s has no fp64, so it cannot write doubles; take SKG_TYPE_FLOAT32", device->name);
     if (!to->buffer && !to->data)
         return skg_fail(SKG_ERR_ARGUMENT, "the output has no memory: its data is NULL");
     return SKG_OK;
@@ -112,12 +111,12 @@ static int64_t frame_elements(const skg_frame_output *o, const skg_view *view) {
 }
 
 /* Checks that all frames fit the caller's buffer, and finds where they begin. */
-static skg_status check_buffer(const char *call, const skg_view *view, const skg_machine *machine,
+static skg_status check_buffer(const char *call, const skg_view *view, const skg_context *context,
                                int64_t frames, skg_frame_output *o) {
     const skg_output *to = &o->to;
-    const int64_t element = element_bytes(o);
+    const int64_t element = skg_frame_output_element(o);
     int64_t bytes = 0;
-    SKG_TRY(skg_caller_buffer_check(call, machine->context, to->buffer, &bytes));
+    SKG_TRY(skg_caller_buffer_check(call, context, to->buffer, &bytes));
     if (to->offset < 0 || to->offset % element)
         return skg_fail(SKG_ERR_ARGUMENT,
                         "an offset of %" PRId64 " bytes is no multiple of an element's %" PRId64, to->offset,
@@ -130,16 +129,22 @@ static skg_status check_buffer(const char *call, const skg_view *view, const skg
     return SKG_OK;
 }
 
+skg_status skg_frame_output_check(const char *call, const skg_view *view, const skg_context *context,
+                                  int64_t frames, skg_frame_output *output) {
+    SKG_TRY(check_type(&output->to));
+    SKG_TRY(check_strides(view, frames, output));
+    return output->to.buffer ? check_buffer(call, view, context, frames, output) : SKG_OK;
+}
+
 skg_status skg_frame_output_read(const char *call, const skg_recipe *recipe, const skg_machine *machine,
                                  int64_t frames, const skg_output *outputs, int64_t index,
                                  skg_frame_output *output) {
     *output = (skg_frame_output){.to = {.size = sizeof output->to}};
     SKG_TRY(skg_struct_read_at(outputs, index, "skg_output", &output->to, sizeof output->to));
     SKG_TRY(check_kind(call, recipe, &output->to));
-    SKG_TRY(check_type(machine, &output->to));
+    SKG_TRY(check_double(machine->context, &output->to));
     output->channels = output->to.kind == SKG_OUTPUT_LENGTHS ? 1 : recipe->model.channels;
-    SKG_TRY(check_strides(&recipe->view, frames, output));
-    return output->to.buffer ? check_buffer(call, &recipe->view, machine, frames, output) : SKG_OK;
+    return skg_frame_output_check(call, &recipe->view, machine->context, frames, output);
 }
 
 /* --- memory that a CPU shares with the caller */
@@ -150,7 +155,7 @@ static const int64_t SHARED_BYTES = 512 << 10;
 void skg_frame_output_share(skg_frame_output *output, const skg_view *view, const skg_machine *machine,
                             int64_t frames) {
     const skg_device *device = machine->context->device;
-    const int64_t element = element_bytes(output), one = frame_elements(output, view);
+    const int64_t element = skg_frame_output_element(output), one = frame_elements(output, view);
     cl_int code = CL_SUCCESS;
     if (output->to.buffer || !device->info.cpu || one * element < SHARED_BYTES) return;
     if ((uintptr_t)output->to.data % (uintptr_t)element) return;
@@ -180,7 +185,8 @@ skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view
     if (place->memory) return SKG_OK;
     const int64_t size = view->rows * view->columns;
     SKG_TRY(skg_buffer_reserve(machine->context, &machine->image,
-                               output->channels * size * element_bytes(output), CL_MEM_READ_WRITE, "image"));
+                               output->channels * size * skg_frame_output_element(output), CL_MEM_READ_WRITE,
+                               "image"));
     place->memory = machine->image.memory;
     place->offset = 0;
     place->row_stride = view->columns;
@@ -192,7 +198,7 @@ skg_status skg_frame_output_place(const skg_frame_output *output, const skg_view
 static skg_status settle(const skg_frame_output *output, const skg_view *view, const skg_machine *machine,
                          int64_t frame) {
     cl_command_queue queue = machine->context->device->queue;
-    const int64_t element = element_bytes(output), from = frame * output->to.frame_stride;
+    const int64_t element = skg_frame_output_element(output), from = frame * output->to.frame_stride;
     cl_int code = CL_SUCCESS;
     void *mapped = clEnqueueMapBuffer(queue, output->direct, CL_FALSE, CL_MAP_READ, (size_t)(from * element),
                                       (size_t)(frame_elements(output, view) * element), 0, NULL, NULL, &code);
@@ -205,7 +211,7 @@ static skg_status settle(const skg_frame_output *output, const skg_view *view, c
  * of rows, so each channel is read by itself. */
 static skg_status read_channel(const skg_frame_output *output, const skg_view *view,
                                const skg_machine *machine, int64_t channel, char *to, skg_stage_log *log) {
-    const size_t element = (size_t)element_bytes(output), rows = (size_t)view->rows;
+    const size_t element = (size_t)skg_frame_output_element(output), rows = (size_t)view->rows;
     const size_t columns = (size_t)view->columns * element, stride = (size_t)output->to.row_stride * element;
     const size_t from[3] = {0, (size_t)channel * rows, 0}, at[3] = {0, 0, 0}, region[3] = {columns, rows, 1};
     cl_event event = NULL, *wanted = skg_stage_event(log, &event);
@@ -221,7 +227,7 @@ skg_status skg_frame_output_read_back(const skg_frame_output *output, const skg_
     const skg_output *to = &output->to;
     if (to->buffer) return SKG_OK;
     if (output->direct) return settle(output, view, machine, frame);
-    const int64_t size = view->rows * view->columns, element = element_bytes(output);
+    const int64_t size = view->rows * view->columns, element = skg_frame_output_element(output);
     char *first = (char *)to->data + frame * to->frame_stride * element;
     if (to->row_stride != view->columns || (output->channels > 1 && to->channel_stride != size)) {
         for (int64_t c = 0; c < output->channels; c++)

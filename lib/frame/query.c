@@ -1,4 +1,4 @@
-/* What a plan answers about itself. */
+/* Questions that a plan answers about itself. */
 #include "core/text.h"
 #include "frame/plans.h"
 #include "frame/quiet.h"

@@ -12,7 +12,7 @@ skg_call skg_plan_call_begin(const skg_plan *plan);
 /* Sets whether the plan has already warned that nothing falls on the detector, and returns whether it had. */
 int32_t skg_plan_warned_unseen_set(skg_plan *plan, int32_t warned);
 
-/* What a plan's images have without radiation, in their unit. Noise and steps of an attenuation are 0: its logarithm has no value
+/* The value of a plan's images without radiation, in their unit. Noise and steps of an attenuation are 0: its logarithm has no value
  * there. */
 typedef struct {
     double sigma, step; /* standard deviation of the electronic noise; the steps */

@@ -120,7 +120,7 @@ static skg_status render_frame(skg_job *job, int64_t index, int64_t step, skg_fr
     return SKG_OK;
 }
 
-/* What became of a job that was cancelled. */
+/* Says how many frames of a job that was cancelled are in place. */
 static skg_status fail_cancelled(const skg_job *job) {
     return skg_fail(SKG_ERR_CANCELLED,
                     "the job was cancelled: %" PRId64 " of %" PRId64 " frames are in place",

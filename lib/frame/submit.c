@@ -22,7 +22,7 @@ skg_status skg_caller_events_wait(skg_context *context, const skg_caller_events 
     return SKG_OK;
 }
 
-/* What every submission begins with. */
+/* The begin of every submission. */
 static skg_status begin(const char *call, skg_plan *plan, skg_job **job) {
     SKG_NEEDS_OF(call, plan);
     SKG_NEEDS_OF(call, job);

@@ -99,7 +99,7 @@ static skg_frame_work work_of(const skg_job *job, const group *g, int32_t place,
                             .noise = g->noise[place]};
 }
 
-/* What all parts of a pass add; passes that are drawn together have as many. */
+/* The contributions of all parts of a pass; passes that are drawn together have as many. */
 static int64_t contributions_of(const skg_pass *pass) {
     int64_t count = 0;
     for (int64_t p = 0; p < pass->scene->count; p++) count += pass->parts[p].contributions;

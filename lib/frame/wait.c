@@ -17,7 +17,7 @@ static cl_int wait_for_frames(skg_job *job) {
     return code;
 }
 
-/* What became of a job whose commands are done. */
+/* Reports the outcome of a job whose commands are done. */
 static skg_status outcome_of(skg_job *job) {
     if (job->enqueued < skg_job_steps(job) && job->followed) job->results.negative[0] = 0;
     const skg_status reported = skg_report_work(job->recipe, job->machine->context, &job->machine->geometry,

@@ -1,4 +1,4 @@
-/* What a frame is to show, and where that goes. Private. */
+/* The work of a frame: what it is to show, and where that goes. Private. */
 #ifndef SKG_WORK_H
 #define SKG_WORK_H
 
@@ -24,15 +24,15 @@ typedef struct {
     int32_t plane; /* of SKG_LENGTHS_CELLS */
     skg_image_place place;
     /* How it is made. */
-    int32_t
-        reuses; /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
+    /* 1: sums that stand from the frame before, if it was the same one, are not drawn again */
+    int32_t reuses;
     int64_t step, each; /* of an image: which step is made, of so many passes; each: 0: all its passes */
-    const struct skg_pass *
-        drawn; /* its sums, which were drawn together with those of other frames; NULL: they are to be drawn */
+    /* its sums, which were drawn together with those of other frames; NULL: they are to be drawn */
+    const struct skg_pass *drawn;
     int32_t drawn_place; /* of that pass, among those of its raster */
     cl_event *end;       /* gets the event of the frame's last command, or NULL; NULL: is not asked for */
-    int32_t
-        followed; /* 1: another frame of the job follows at once, so that nobody reads this one's count of negative exponents */
+    /* 1: another frame of the job follows at once, so that nobody reads this one's count of negative exponents */
+    int32_t followed;
 } skg_frame_work;
 
 /* --- The outputs of a submission: what is computed, and where it goes */
@@ -48,6 +48,16 @@ typedef struct {
 skg_status skg_frame_output_read(const char *call, const skg_recipe *recipe, const skg_machine *machine,
                                  int64_t frames, const skg_output *outputs, int64_t index,
                                  skg_frame_output *output);
+
+/* The part of it that holds for whatever stands in an output: type, memory, strides and buffer of an output whose `to` and `channels`
+ * are filled in. */
+skg_status skg_frame_output_check(const char *call, const skg_view *view, const skg_context *context,
+                                  int64_t frames, skg_frame_output *output);
+
+/* Bytes of a value. */
+static inline int64_t skg_frame_output_element(const skg_frame_output *output) {
+    return output->to.type == SKG_TYPE_FLOAT64 ? (int64_t)sizeof(double) : (int64_t)sizeof(float);
+}
 
 /* Lets a CPU write the images of all frames into the caller's host memory, if they are large: a copy less. They are read back where
  * this is not possible. */

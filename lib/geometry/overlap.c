@@ -73,8 +73,8 @@ typedef struct {
     const skg_solid *solids;
     int32_t *memory; /* of all that follow */
     int32_t *depth;  /* [parts] how deep the column is inside each part */
-    int32_t
-        *first; /* [parts + 1] a part inside this parent that the column is inside of, and 1 more; 0: none */
+    /* [parts + 1] a part inside this parent that the column is inside of, and 1 more; 0: none */
+    int32_t *first;
     int32_t *next, *before; /* [parts] others of the same parent, and 1 more */
     number_set crowded;     /* parents of which the column is inside of two parts or more */
     number_set strays;      /* parts that the column is inside of, but not of their parents */

@@ -177,6 +177,7 @@ static void find_axes(const skg_spot *spot, const skg_view *view, double axes[3]
 
 void skg_samples_at(const skg_samples *samples, const skg_view *view, int64_t index, double source[3],
                     double shift[2]) {
+    SKG_ASSERT(index >= 0);
     const int64_t side = samples->shifts, in_pixel = index % (side * side), of_source = index / (side * side);
     shift[0] = ((double)(in_pixel % side) + 0.5) / (double)side - 0.5;
     shift[1] = ((double)(in_pixel / side) + 0.5) / (double)side - 0.5;

@@ -19,15 +19,15 @@ typedef struct {
     skg_host_view sums; /* of `moments` */
     void *reals;        /* [triangles][3] slopes on their way to the device */
     int32_t *corners;   /* [triangles of all meshes][3] as the device has them */
-    double *
-        planes; /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
+    /* [triangles of all meshes][4] of skg_face_planes_find; their meshes' versions; 0: not found yet */
+    double *planes;
     int64_t *versions;
 } skg_gradient_memory;
 
 /* The memory of a plan, which its machine owns; allocated with the first call. */
 skg_status skg_gradient_memory_get(skg_machine *machine, skg_gradient_memory **memory);
 
-/* What stands around each part: the contributions of all parts that it is inside; or what the part is made of, with its own. */
+/* The surroundings of each part: the contributions of all parts that it is inside; or what the part is made of, with its own. */
 typedef struct {
     const int32_t *first; /* [parts + 1] those of part p are list[first[p]] to list[first[p + 1] - 1] */
     const skg_contribution *list;
@@ -37,12 +37,12 @@ typedef struct {
     const uint8_t *of_own; /* [parts] 1: what the part itself is made of is listed */
 } skg_surroundings;
 
-/* What the gather of a pass leaves. */
+/* The results of the gather of a pass. */
 typedef struct {
     const int64_t *moments; /* [triangles][4] in the device's order of triangles, until skg_gradient_close */
     const double *units;    /* [parts] staged: what a moment of 1 is worth; 0: the part has none */
-    const double
-        *around_units; /* [parts] of the fourth moments: sums of length times weight by what stands around */
+    /* [parts] of the fourth moments: sums of length times weight by what stands around */
+    const double *around_units;
     skg_weight_layout layout;
     int32_t has_edges; /* 1: some faces are seen as lines */
     int32_t reserved;
@@ -53,7 +53,7 @@ static inline int64_t skg_gradient_real_size(int32_t precision) {
     return (int64_t)(precision == SKG_PRECISION_DOUBLE ? sizeof(double) : sizeof(float));
 }
 
-/* What weights are of. */
+/* The subjects of weights. */
 enum {
     SKG_WEIGHTS_OF_PARTS,  /* what hits of parts are worth */
     SKG_WEIGHTS_OF_PLANES, /* the mm of the planes that exponents are made of */
@@ -63,14 +63,14 @@ enum {
 /* The derivatives by the sums of a pass that are wanted. */
 typedef struct {
     double factor; /* of the intensities of the pass */
-    int32_t
-        channel;  /* of the intensities whose derivatives they are; -1: those of a loss, by memory->adjoint */
-    int32_t of;   /* SKG_WEIGHTS_OF_... */
-    int32_t rays; /* SKG_RAYS_... */
+    /* of the intensities whose derivatives they are; -1: those of a loss, by memory->adjoint */
+    int32_t channel;
+    int32_t of;       /* SKG_WEIGHTS_OF_... */
+    int32_t rays;     /* SKG_RAYS_... */
     int32_t relative; /* 1: see skg_transposition */
     int32_t reserved;
-    const uint8_t
-        *parts; /* [parts] 0: what hits of this part are worth is not wanted; NULL: that of all is */
+    /* [parts] 0: what hits of this part are worth is not wanted; NULL: that of all is */
+    const uint8_t *parts;
 } skg_weights_wanted;
 
 /* Enqueues them. attenuation: of the image, with the window of the pass */

@@ -99,7 +99,7 @@ static int changes_rays(const pass_run *r, int64_t direction) {
     return (d->source || d->detector) && !r->pass->camera.parallel;
 }
 
-/* What changes besides the lengths: those of whole rays, the falloff, and the photons of an absolute beam. */
+/* Adds the changes besides those of lengths: those of whole rays, the falloff, and the photons of an absolute beam. */
 static skg_status add_rays(pass_run *r, int64_t direction) {
     const skg_job *job = r->job;
     const skg_recipe *recipe = job->recipe;

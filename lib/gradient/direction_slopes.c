@@ -14,6 +14,7 @@ enum { RANGE = 2048, BLOCK = 64 }; /* vertices or faces of a range; faces whose 
 /* --- which parts move */
 
 skg_velocities skg_moving_velocities(const skg_moving_parts *moving, int64_t direction, int64_t part) {
+    SKG_ASSERT(0 <= direction && direction < moving->count && 0 <= part && part < moving->pass->scene->count);
     const skg_pass_direction *d = &moving->directions[direction];
     skg_velocities v = d->of_view;
     if (d->direction->poses) memcpy(v.pose, d->direction->poses + 6 * part, sizeof v.pose);

@@ -2,6 +2,7 @@
 #include "core/text.h"
 #include "device/self_tests.h"
 #include "frame/jobs.h"
+#include "gradient/direction_results.h"
 #include "gradient/refusals.h"
 #include "gradient/submit.h"
 #include "plan/rules.h"
@@ -73,7 +74,7 @@ static skg_status copy_directions(skg_job *job) {
     return SKG_OK;
 }
 
-/* What the checks of a gradient would find wanted. */
+/* The gradient whose checks hold for a direction, too. */
 static skg_gradient wanted_of(const skg_direction *direction, double *any) {
     skg_gradient wanted;
     skg_gradient_init(&wanted);
@@ -109,23 +110,19 @@ static skg_status read_directions(skg_gradient_work *work, int64_t count, const 
     return SKG_OK;
 }
 
-/* Where results go, and memory for what they are made from. */
-static skg_status place_results(const skg_recipe *recipe, skg_gradient_work *work, double *derivatives,
-                                int64_t *saturated) {
-    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
+/* Memory for what attenuation coefficients take. */
+static skg_status allocate_adjoint(const skg_recipe *recipe, skg_gradient_work *work) {
     int nodes = 0;
-    work->results = derivatives;
-    work->saturated = saturated;
-    for (int64_t d = 0; d < work->direction_count; d++) {
-        work->directions[d].image = derivatives + d * count;
+    for (int64_t d = 0; d < work->direction_count; d++)
         nodes |= work->directions[d].direction.attenuations != NULL;
-    }
-    return nodes ? skg_alloc(count, sizeof *work->adjoint, "derivative", &work->adjoint) : SKG_OK;
+    if (!nodes) return SKG_OK;
+    return skg_alloc(recipe->model.channels * recipe->view.rows * recipe->view.columns, sizeof *work->adjoint,
+                     "derivative", &work->adjoint);
 }
 
 static skg_status submit_derivatives(const char *call, skg_plan *plan, const skg_frame *frame, int64_t count,
-                                     const skg_direction *directions, double *derivatives, int64_t *saturated,
-                                     skg_job **job) {
+                                     const skg_direction *directions, const skg_output *derivatives,
+                                     int64_t *saturated, skg_job **job) {
     SKG_PLAIN;
     skg_gradient_work *work = NULL;
     skg_job *made = NULL;
@@ -138,7 +135,9 @@ static skg_status submit_derivatives(const char *call, skg_plan *plan, const skg
     SKG_TRY_CLEANUP(read_directions(work, count, directions));
     SKG_TRY_CLEANUP(check_directions(plan, frame, work));
     SKG_TRY_CLEANUP(skg_gradient_self_test(plan));
-    SKG_TRY_CLEANUP(place_results(plan->recipe, work, derivatives, saturated));
+    work->saturated = saturated;
+    SKG_TRY_CLEANUP(skg_direction_results_place(plan->context, plan->recipe, derivatives, work));
+    SKG_TRY_CLEANUP(allocate_adjoint(plan->recipe, work));
     SKG_TRY_CLEANUP(skg_gradient_make_job(plan, &skg_job_directions, &work, &made));
     SKG_TRY_CLEANUP(copy_directions(made));
     status = skg_gradient_start(plan, frame, &made, job);
@@ -149,7 +148,7 @@ cleanup:
 }
 
 skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, int64_t count,
-                                       const skg_direction *directions, double *derivatives,
+                                       const skg_direction *directions, const skg_output *derivatives,
                                        int64_t *saturated, skg_job **job) {
     const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     return skg_call_end(begun,
@@ -159,7 +158,8 @@ skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, i
 }
 
 skg_status skg_plan_derivatives(skg_plan *plan, const skg_frame *frame, int64_t count,
-                                const skg_direction *directions, double *derivatives, int64_t *saturated) {
+                                const skg_direction *directions, const skg_output *derivatives,
+                                int64_t *saturated) {
     const skg_call begun = skg_call_begin(plan ? plan->context : NULL);
     skg_job *job = NULL;
     const skg_status status = submit_derivatives("skg_plan_derivatives", plan, frame, count, directions,

@@ -13,6 +13,7 @@ skg_status skg_edge_plane_read(skg_job *job, int64_t plane, skg_edge_planes *p) 
 double skg_edge_plane_at(const skg_edge_planes *p, int64_t plane, int64_t column, int64_t row) {
     const int64_t at = row * p->layout.stride + column;
     const void *bytes = p->planes[plane].bytes;
+    SKG_ASSERT(bytes != NULL && 0 <= at && at < p->layout.plane);
     return p->pass->kernels.precision == SKG_PRECISION_DOUBLE ? ((const double *)bytes)[at]
                                                               : (double)((const float *)bytes)[at];
 }

@@ -1,4 +1,4 @@
-/* What faces that rays contain are worth: d loss / d t at a pixel, from the weights of a pass. */
+/* The worth of faces that rays contain: d loss / d t at a pixel, from the weights of a pass. */
 #include "gradient/edges.h"
 
 #include "core/threads.h"
@@ -110,7 +110,7 @@ static int loses(const place_state *s, int64_t slot) {
     return lost;
 }
 
-/* What the cells of volumes that are displaced would add. */
+/* The worth of the cells of volumes that are displaced. */
 static double cells_off(const place_state *s) {
     double sum = 0;
     for (int64_t v = 0; v < s->all->volumes.count; v++) {
@@ -125,7 +125,7 @@ static double cells_off(const place_state *s) {
     return sum;
 }
 
-/* What is taken off for a unit of length. */
+/* The worth that is taken off for a unit of length. */
 static double taken_off(const place_state *s) {
     const skg_priority *priority = &s->all->read.pass->priority;
     double sum = 0;
@@ -141,7 +141,7 @@ static double taken_off(const place_state *s) {
     return sum + cells_off(s);
 }
 
-/* What a face of a part is worth where the state is. */
+/* The worth of a face of a part where the state is. */
 static double worth_of(const place_state *s, int64_t part, int64_t slot) {
     double off[2];
     for (int inside = 0; inside < 2; inside++) {

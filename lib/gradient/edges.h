@@ -1,4 +1,4 @@
-/* What faces that rays contain are worth: d loss / d t at a pixel, from the weights of a pass. Private.
+/* The worth of faces that rays contain: d loss / d t at a pixel, from the weights of a pass. Private.
  *
  * Where parts compete by priority, it depends on depth. A face of part a separates places inside a from places outside. With T(in) and
  * T(out) for what the parts that lose there take off, for a unit of length, the worth is that of a's own length - T(in) + T(out).
@@ -17,7 +17,7 @@ typedef struct {
     skg_edge_volumes volumes;   /* that compete, with competitors */
 } skg_edge_weights;
 
-/* The same for one part: the `user` of skg_edge_weigh. */
+/* The weights of one part: the `user` of skg_edge_weigh. */
 typedef struct {
     const skg_edge_weights *all;
     int64_t part;

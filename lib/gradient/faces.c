@@ -7,6 +7,7 @@ skg_status skg_gradient_place_faces(skg_job *job, const skg_pass *pass, int64_t 
                                     skg_face_moments *faces) {
     skg_machine *machine = job->machine;
     const skg_geometry *geometry = &machine->geometry;
+    SKG_ASSERT(0 <= part && part < geometry->parts);
     const int64_t mesh = geometry->mesh_of_part[part];
     *faces = (skg_face_moments){.camera = &pass->camera,
                                 .mesh = &job->then.meshes[mesh],

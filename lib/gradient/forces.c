@@ -265,7 +265,7 @@ static void add_vertices(const skg_face_moments *faces, const local_camera *came
     }
 }
 
-/* Those of a part, whose faces share vertices. */
+/* Adds the forces on the faces of a part to its vertices, which faces share. */
 static skg_status add_part(const skg_face_moments *faces, const local_camera *camera, double *vertices) {
     skg_force_sums again = {.force = {0}}; /* of faces that rays contain, which add_faces has */
     for (int64_t f = 0; f < faces->mesh->triangles; f++) {

@@ -36,7 +36,7 @@ static skg_status get_batches(const skg_gather_run *run, cl_program *program) {
                            SKG_DEFINES(defines), program);
 }
 
-/* What the kernels of gradient.cl are for: all faces, or what priorities add. */
+/* Whether the kernels of gradient.cl are needed: for all faces, or for what priorities add. */
 static int needs_faces(const skg_gather_run *run) {
     return run->workers == 0 || run->pass->priority.count > 0;
 }

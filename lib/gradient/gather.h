@@ -1,4 +1,4 @@
-/* What gathers on the device share, of faces (gather.c) and of pixels (spread.c). Private. */
+/* Functions that gathers on the device share, of faces (gather.c) and of pixels (spread.c). Private. */
 #ifndef SKG_GRADIENT_GATHER_H
 #define SKG_GRADIENT_GATHER_H
 
@@ -10,7 +10,7 @@ skg_status skg_gather_begin(skg_gather_run *run);
 /* Waits for the weights. most: [planes] result: the largest of each plane. */
 skg_status skg_gather_find_max(const skg_gather_run *run, double *most);
 
-/* The same number of reals in the precision of the pass. reals: filled from number `first` on */
+/* Rounds numbers to the precision of the pass. reals: as many, filled from number `first` on */
 void skg_gather_round(const skg_gather_run *run, int64_t first, int64_t count, const double *numbers,
                       void *reals);
 skg_status skg_gather_upload_scales(const skg_gather_run *run, int64_t count, const double *scales);
@@ -19,7 +19,7 @@ skg_status skg_gather_reserve(const skg_gather_run *run, skg_buffer *buffer, int
 /* Makes sure of `end` sums, of which those from number `first` on are 0. */
 skg_status skg_gather_clear(const skg_gather_run *run, int64_t first, int64_t end);
 
-/* What priorities add to the weights of hits; the hits of competing parts are listed still, by skg_hits_settle of this pass. */
+/* Adds to the weights of hits what priorities make of them; the hits of competing parts are listed still, by skg_hits_settle of this pass. */
 skg_status skg_gather_slopes(const skg_gather_run *run);
 
 /* On a processor: all but what priorities add. Memory that another gather uses, and this one does not, is passed as it is. */

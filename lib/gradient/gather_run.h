@@ -1,4 +1,4 @@
-/* What a gather reads and writes. Private. */
+/* One run of a gather: what it reads and writes. Private. */
 #ifndef SKG_GATHER_RUN_H
 #define SKG_GATHER_RUN_H
 

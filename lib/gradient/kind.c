@@ -8,6 +8,7 @@
 #include "gradient/density.h"
 #include "gradient/direction_pass.h"
 #include "gradient/direction_rates.h"
+#include "gradient/direction_results.h"
 #include "gradient/pass.h"
 #include "stage/volumes.h"
 
@@ -51,14 +52,6 @@ static void clear_vertices(const skg_scene *scene, const skg_gradient *wanted) {
         if (wanted->vertices[p])
             memset(wanted->vertices[p], 0,
                    3 * (size_t)scene->parts[p].mesh->vertices * sizeof **wanted->vertices);
-}
-
-/* Clears the images along directions, which passes are added to. */
-static void clear_images(const skg_job *job) {
-    const skg_recipe *recipe = job->recipe;
-    const int64_t count = recipe->model.channels * recipe->view.rows * recipe->view.columns;
-    memset(skg_gradient_of(job)->results, 0,
-           (size_t)(skg_gradient_of(job)->direction_count * count) * sizeof *skg_gradient_of(job)->results);
 }
 
 /* The image was read in the type of the output. */
@@ -147,7 +140,7 @@ static skg_status step_directions(skg_job *job, int64_t frame, int64_t step, skg
     (void)frame; /* there is one */
     if (step == 0) {
         SKG_TRY(take_first(job));
-        clear_images(job);
+        skg_direction_results_clear(job);
     }
     /* What path lengths need is a pass by itself, and so before this one, whose memory it shares. */
     skg_derivative_clear_rates(job);
@@ -181,6 +174,7 @@ static skg_status finish_directions(skg_job *job) {
     for (int64_t d = 0; d < gradient->direction_count; d++) {
         SKG_TRY(skg_derivative_of_image(job, &gradient->of_frame, gradient->image,
                                         gradient->directions[d].image));
+        SKG_TRY(skg_direction_results_put(job, d));
         if (gradient->saturated) gradient->saturated[d] = gradient->directions[d].saturated;
     }
     return SKG_OK;

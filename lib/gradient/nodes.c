@@ -140,6 +140,7 @@ static skg_status add_node(void *user, int64_t number) {
 skg_status skg_gradient_add_nodes(const skg_job *job, const skg_pass *pass, int64_t part,
                                   const double *lengths) {
     const int64_t nodes = job->recipe->model.nodes;
+    SKG_ASSERT(0 <= part && part < job->recipe->scene->count && skg_gradient_of(job)->attenuations);
     part_work w = {.job = job,
                    .pass = pass,
                    .lengths = lengths,

@@ -60,7 +60,8 @@ static void add_ray_lengths(const skg_camera *camera, const double sums[SKG_RAY_
     }
 }
 
-/* What depends on the distance of the detector's plane from a point as distance^power. way: from there to a point of the plane. */
+/* Adds the derivative of a factor distance^power, with the distance of the detector's plane from a point. way: from there to a point
+ * of the plane. */
 static void add_distance(const skg_camera *camera, const double *from, const double way[3], double power,
                          ends *e) {
     double normal[3], turn[3];

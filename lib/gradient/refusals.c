@@ -1,4 +1,4 @@
-/* What has no derivatives is refused by name, before anything is computed. */
+/* Scenes and frames that have no derivatives are refused by name, before anything is computed. */
 #include "gradient/refusals.h"
 
 #include "core/text.h"

@@ -1,4 +1,4 @@
-/* What has no derivatives. Private. */
+/* The refusals of scenes and frames that have no derivatives. Private. */
 #ifndef SKG_GRADIENT_REFUSALS_H
 #define SKG_GRADIENT_REFUSALS_H
 

@@ -44,7 +44,7 @@ static double hit_bound(const skg_gather_run *run, int64_t part, const double *m
     return (bound_of(run, part, most) + competing * reference) * deep * deep;
 }
 
-/* What priorities add to the bound of every part that competes. */
+/* The addition of priorities to the bound of every part that competes. */
 static double competing_of(const skg_gather_run *run, const double *most) {
     double competing = run->pass->priority.count ? skg_gather_volumes_bound(run, most) : 0;
     for (int64_t s = 0; s < run->pass->priority.count; s++) {

@@ -14,7 +14,7 @@ void skg_gradient_find_scales(const skg_gather_run *run, const double *most, con
 double skg_gradient_find_scale(const skg_gather_run *run, const double *most, const uint8_t *moves,
                                double slope, double *scales);
 
-/* What a unit of the contributions of a part is on the device: they weigh q = r / reference, with a parallel beam r. */
+/* The unit of the contributions of a part on the device: they weigh q = r / reference, with a parallel beam r. */
 double skg_gradient_depth_unit(const skg_gather_run *run, int64_t part);
 
 #endif

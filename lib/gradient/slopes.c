@@ -143,6 +143,7 @@ skg_status skg_slopes_spread(const skg_face_moments *faces, const skg_velocities
     placed_face f;
     double normal[3], relative[3], slopes[3];
     relative_velocity r;
+    SKG_ASSERT(0 <= face && face < faces->mesh->triangles);
     find_relative(faces->camera, velocities, &r);
     place_face(faces, face, &f);
     skg_face_outward(faces, f.at, normal);

@@ -16,7 +16,7 @@ typedef struct {
 /* Whether a part moves against the rays: most directions move one part of many. */
 int skg_slopes_move(const skg_velocities *velocities);
 
-/* What the slopes of a part have in common along all directions, with vertices in the device's numbering. */
+/* The properties of a part that its slopes have in common along all directions, with vertices in the device's numbering. */
 typedef struct {
     double (*at)[3];    /* [vertices] in the world */
     double (*pixel)[2]; /* [vertices] column and row */

@@ -5,7 +5,7 @@
 #include "frame/plans.h"
 #include "gradient/kind.h"
 
-/* What every submission begins with: the plan as the scene is now, and work that release ends. *job becomes NULL. */
+/* The begin of every submission: the plan as the scene is now, and work that release ends. *job becomes NULL. */
 skg_status skg_gradient_begin(const char *call, skg_plan *plan, skg_job **job, skg_gradient_work **work);
 
 /* Makes sure that the device computes derivatives of the plan rightly, by self-tests. */

@@ -1,4 +1,4 @@
-/* What the cells of volumes add to the weights of hits that displace them. */
+/* The cells of volumes in the weights of hits that displace them. */
 #include "gradient/volumes.h"
 
 #include "stage/volumes.h"

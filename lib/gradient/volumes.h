@@ -1,4 +1,4 @@
-/* What the cells of volumes add to derivatives by the places of parts that displace them. Private. */
+/* The share of the cells of volumes in derivatives by the places of parts that displace them. Private. */
 #ifndef SKG_GRADIENT_VOLUMES_H
 #define SKG_GRADIENT_VOLUMES_H
 

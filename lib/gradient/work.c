@@ -1,4 +1,4 @@
-/* What a job of gradients or derivatives holds, and its end. */
+/* The end of the work of a job of gradients or derivatives. */
 #include "gradient/work.h"
 
 void skg_gradient_work_release(skg_gradient_work **work) {
@@ -19,5 +19,6 @@ void skg_gradient_work_release(skg_gradient_work **work) {
         skg_free(&w->directions[d].node_changes);
     }
     skg_free(&w->directions);
+    skg_free(&w->images);
     skg_free(work);
 }

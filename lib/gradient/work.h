@@ -13,14 +13,14 @@ static const double SKG_PER_MM = 0.1; /* of 1 / cm */
 /* The derivative of an image along a direction. */
 typedef struct {
     skg_direction direction; /* its arrays are the job's */
-    double *image;           /* [channels][rows][columns] of the intensities, in the caller's memory */
+    double *image;           /* [channels][rows][columns], in the caller's memory or in `images` */
     int64_t saturated;       /* faces whose slopes were cut off */
     /* Of the rays of a pass: how fast the mm of each plane of the model change by densities, and the exponent of each
      * node by attenuation coefficients; [planes or nodes][rows][columns]. NULL: not at all. */
     double *plane_changes, *node_changes;
 } skg_derivative_work;
 
-/* What a job computes instead of an image; the job owns it. Its frames are the passes of one frame. */
+/* The work of a job that computes derivatives instead of an image; the job owns it. Its frames are the passes of one frame. */
 typedef struct {
     const char *call;            /* the name of the public function */
     skg_gradient_memory *memory; /* the plan's */
@@ -46,11 +46,12 @@ typedef struct {
     double *nodes;
     int64_t direction_count;         /* above 0: the derivatives of the image along directions instead */
     skg_derivative_work *directions; /* [direction_count] */
-    double *results;                 /* the caller's: [directions][channels][rows][columns] */
-    int64_t *saturated;              /* the caller's: [directions], or NULL */
+    skg_frame_output results;        /* the caller's; its frames are the directions */
+    double *images;     /* [directions][channels][rows][columns]; NULL: they are made where they go */
+    int64_t *saturated; /* the caller's: [directions], or NULL */
 } skg_gradient_work;
 
-/* That of a job of gradients or derivatives. */
+/* The work of a job of gradients or derivatives. */
 static inline skg_gradient_work *skg_gradient_of(const skg_job *job) {
     return job->state;
 }

@@ -35,8 +35,8 @@ typedef struct {
     int has_table;                    /* 1: its values stand in a table (ModalityLUTSequence) */
     int32_t count[SKG_DICOM_NUMBERS]; /* numbers that it has; 0: the file does not have the attribute */
     double numbers[SKG_DICOM_NUMBERS][6];
-    int64_t pixels,
-        pixel_bytes; /* where they stand in the file, and their bytes, -1: in parts; pixels 0: there are none */
+    /* where they stand in the file, and their bytes, -1: in parts; pixels 0: there are none */
+    int64_t pixels, pixel_bytes;
 } skg_dicom_slice;
 
 /* The first number of an attribute, or what stands for it. */

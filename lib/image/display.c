@@ -6,6 +6,7 @@
 #include <stdlib.h>
 
 double skg_picture_value(const skg_picture *picture, int64_t index) {
+    SKG_ASSERT(0 <= index && index < picture->channels * picture->rows * picture->columns);
     switch (picture->type) {
     case SKG_TYPE_FLOAT64:
         return ((const double *)picture->data)[index];

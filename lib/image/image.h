@@ -52,21 +52,47 @@ skg_status skg_png_write(const skg_picture *picture, skg_output_file *file);
 skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file);
 skg_status skg_metaimage_write(const skg_picture *picture, skg_output_file *file);
 
+/* Memory of the caller that gets a file; `size` is what the file needs. name: for messages */
+typedef struct {
+    const char *name;
+    void *bytes; /* NULL: the size alone is wanted */
+    int64_t capacity, *size;
+} skg_image_target;
+
+/* Hands out the bytes of a file, or SKG_ERR_ARGUMENT if they do not fit. */
+skg_status skg_image_put(const skg_image_target *target, const void *bytes, int64_t size);
+
+/* Writes a checked TIFF into memory: libtiff goes back to earlier pages, which a stream into memory cannot. */
+skg_status skg_tiff_encode(const skg_picture *picture, const skg_image_target *target);
+
+/* A file that is read: by its path, or bytes in memory, whose name messages have. */
+typedef struct {
+    const char *name;
+    const void *bytes; /* NULL: of the path `name` */
+    int64_t size;
+} skg_image_source;
+
+/* Opens it at its begin; the caller closes the stream. */
+skg_status skg_image_open(const skg_image_source *source, FILE **stream);
+
 /* Each looks at a file, and reads a page of it if values is not NULL. The number of rows and columns is at most 32768. */
-skg_status skg_png_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
-skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
-skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents, double *values);
+skg_status skg_png_read(const skg_image_source *source, int64_t page, skg_picture_contents *contents,
+                        double *values);
+skg_status skg_tiff_read(const skg_image_source *source, int64_t page, skg_picture_contents *contents,
+                         double *values);
+skg_status skg_metaimage_read(const skg_image_source *source, int64_t page, skg_picture_contents *contents,
+                              double *values);
 
 /* A grid of three dimensions in a file. */
 typedef struct {
     int64_t size[3];
-    double
-        affine[16]; /* from the indices of a cell to its centre, in the file's unit; see skg_volume_source */
+    /* from the indices of a cell to its centre, in the file's unit; see skg_volume_source */
+    double affine[16];
     double unit_mm[3];  /* mm per unit of x, y, z that the file names; 0: none */
     int32_t type;       /* enum skg_volume_type */
     int32_t no_spacing; /* 1: the file does not say how large cells are; 1 of its unit is taken */
-    int32_t
-        no_order; /* 1: it does not say the order of bytes, as it has to; the least significant first is taken */
+    /* 1: it does not say the order of bytes, as it has to; the least significant first is taken */
+    int32_t no_order;
     int32_t reserved;
     void *cells; /* the caller frees them */
     char no_hounsfield

@@ -6,19 +6,21 @@
 #include <errno.h>
 #include <inttypes.h>
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 typedef struct {
     const char *extension;
     skg_status (*write)(const skg_picture *picture, skg_output_file *file);
     skg_status (*check)(const skg_picture *picture, const char *path);
+    skg_status (*encode)(const skg_picture *picture, const skg_image_target *target); /* NULL: by `write` */
 } format;
 
 static const format formats[] = {
-    {".png", skg_png_write, NULL},
-    {".tif", skg_tiff_write, NULL},
-    {".tiff", skg_tiff_write, NULL},
-    {".mha", skg_metaimage_write, skg_metaimage_check},
+    {.extension = ".png", .write = skg_png_write},
+    {.extension = ".tif", .write = skg_tiff_write, .encode = skg_tiff_encode},
+    {.extension = ".tiff", .write = skg_tiff_write, .encode = skg_tiff_encode},
+    {.extension = ".mha", .write = skg_metaimage_write, .check = skg_metaimage_check},
 };
 
 void skg_picture_init_sized(void *picture, int32_t size) {
@@ -121,6 +123,39 @@ skg_status skg_picture_save(const skg_picture *theirs, const char *path) {
     if (status == SKG_OK) return skg_output_commit(&file);
     skg_output_discard(&file);
     return status;
+}
+
+/* Writes into a stream that is memory. */
+static skg_status encode_by_stream(const format *writer, const skg_picture *picture,
+                                   const skg_image_target *target) {
+    char *bytes = NULL;
+    size_t size = 0;
+    skg_output_file file = {.stream = open_memstream(&bytes, &size)};
+    skg_status status = SKG_OK;
+    SKG_TRY_CLEANUP(skg_copy_text(target->name, &file.path));
+    if (file.stream) SKG_TRY_CLEANUP(writer->write(picture, &file));
+    if (!file.stream || fflush(file.stream) != 0 || ferror(file.stream))
+        SKG_TRY_CLEANUP(skg_fail(SKG_ERR_MEMORY, "%s: out of host memory", target->name));
+    status = skg_image_put(target, bytes, (int64_t)size);
+cleanup:
+    if (file.stream) fclose(file.stream);
+    free(bytes);
+    skg_free(&file.path);
+    return status;
+}
+
+skg_status skg_picture_encode(const skg_picture *theirs, const char *name, void *bytes, int64_t capacity,
+                              int64_t *size) {
+    SKG_PLAIN;
+    skg_picture picture;
+    const format *writer = NULL;
+    SKG_NEEDS(name);
+    SKG_NEEDS(size);
+    const skg_image_target target = {.name = name, .bytes = bytes, .capacity = capacity, .size = size};
+    SKG_TRY(prepare(theirs, &picture));
+    SKG_TRY(find_format(name, &writer));
+    if (writer->check) SKG_TRY(writer->check(&picture, name));
+    return writer->encode ? writer->encode(&picture, &target) : encode_by_stream(writer, &picture, &target);
 }
 
 skg_status skg_picture_range_get(const skg_picture *theirs, double *low, double *high) {

@@ -7,6 +7,7 @@
 double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped) {
     unsigned char own[8];
     uint64_t whole = 0;
+    SKG_ASSERT(1 <= bytes && bytes <= (int)sizeof own);
     for (int k = 0; k < bytes; k++) own[k] = ((const unsigned char *)at)[swapped ? bytes - 1 - k : k];
     if (kind == 'f' && bytes == 4) {
         float value;
@@ -22,6 +23,26 @@ double skg_number_of_bytes(const void *at, int bytes, char kind, int swapped) {
     if (kind == 'u') return (double)whole;
     const uint64_t sign = UINT64_C(1) << (8 * bytes - 1);
     return whole & sign ? -(double)((~whole + 1) & ((sign << 1) - 1)) : (double)whole;
+}
+
+skg_status skg_image_open(const skg_image_source *source, FILE **stream) {
+    if (!source->bytes) return skg_input_open(source->name, SKG_INPUT_LARGE, stream, NULL);
+    /* fmemopen has one function for reading and writing; "rb" does not write. */
+    *stream = fmemopen((void *)(uintptr_t)source->bytes, (size_t)source->size, "rb");
+    return *stream ? SKG_OK : skg_fail(SKG_ERR_MEMORY, "%s: out of host memory", source->name);
+}
+
+skg_status skg_image_put(const skg_image_target *target, const void *bytes, int64_t size) {
+    SKG_ASSERT(size >= 0);
+    *target->size = size;
+    if (!target->bytes) return SKG_OK;
+    if (size > target->capacity)
+        return skg_fail(SKG_ERR_ARGUMENT,
+                        "%s: has %" PRId64 " bytes, and there is memory for %" PRId64
+                        "; the call says how many in size",
+                        target->name, size, target->capacity);
+    memcpy(target->bytes, bytes, (size_t)size);
+    return SKG_OK;
 }
 
 int32_t skg_quantity_of_title(const char *title) {

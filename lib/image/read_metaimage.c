@@ -20,8 +20,8 @@ typedef struct {
     char kind;
     char data[LINE]; /* ElementDataFile */
     char unit[32];   /* DistanceUnits; "": not given */
-    char
-        bad[32]; /* a key of the place that does not say as many finite numbers as a volume needs; "": none */
+    /* a key of the place that does not say as many finite numbers as a volume needs; "": none */
+    char bad[32];
     long header; /* HeaderSize; 0: the data follow the header, or begin the file */
     int32_t quantity;
 } metaimage;
@@ -185,13 +185,14 @@ static int find_unit(const metaimage *image, double *mm) {
     return !image->unit[0] || !strcmp(image->unit, "?") || skg_unit_of_length(image->unit, mm) == SKG_OK;
 }
 
-skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_contents *contents,
+skg_status skg_metaimage_read(const skg_image_source *source, int64_t page, skg_picture_contents *contents,
                               double *values) {
+    const char *path = source->name;
     metaimage image = {.quantity = -1, .channels = 1, .slope = 1};
     double mm = 0;
     FILE *stream = NULL;
     skg_status status = SKG_OK;
-    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
+    SKG_TRY(skg_image_open(source, &stream));
     SKG_TRY_CLEANUP(read_header(path, stream, &image));
     if (image.compressed) {
         status = skg_fail(SKG_ERR_UNSUPPORTED, "%s: is compressed; write it without compression", path);
@@ -204,6 +205,14 @@ skg_status skg_metaimage_read(const char *path, int64_t page, skg_picture_conten
         contents->spacing_mm[k] = fabs(image.spacing[k]) * (mm > 0 ? mm : 1);
     SKG_TRY_CLEANUP(skg_picture_page_check(path, page, contents->pages));
     if (!values) goto cleanup;
+    if (source->bytes && strcmp(image.data, "LOCAL") != 0) {
+        status =
+            skg_fail(SKG_ERR_UNSUPPORTED,
+                     "%s: its values are in another file (ElementDataFile = %s), which memory does not have; "
+                     "write LOCAL, with the values behind the header",
+                     path, image.data);
+        goto cleanup;
+    }
     SKG_TRY_CLEANUP(open_data(path, &image, &stream));
     SKG_TRY_CLEANUP(read_values(path, stream, &image, page, values));
 cleanup:

@@ -57,10 +57,12 @@ static skg_status read_page(const char *path, png_structp png, png_infop info, F
     return values ? read_values(path, png, info, contents, reason, values) : SKG_OK;
 }
 
-skg_status skg_png_read(const char *path, int64_t page, skg_picture_contents *contents, double *values) {
+skg_status skg_png_read(const skg_image_source *source, int64_t page, skg_picture_contents *contents,
+                        double *values) {
+    const char *path = source->name;
     const char *reason = "libpng gives no reason";
     FILE *stream = NULL;
-    SKG_TRY(skg_input_open(path, SKG_INPUT_LARGE, &stream, NULL));
+    SKG_TRY(skg_image_open(source, &stream));
     png_structp png = png_create_read_struct(PNG_LIBPNG_VER_STRING, &reason, skg_png_error, skg_png_warning);
     png_infop info = png ? png_create_info_struct(png) : NULL;
     const skg_status status = info ? read_page(path, png, info, stream, page, contents, &reason, values)

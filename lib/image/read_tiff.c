@@ -1,9 +1,9 @@
 /* Reads grey TIFFs. */
 #include "image/image.h"
 #include "image/reasons.h"
+#include "image/tiff_bytes.h"
 
 #include <string.h>
-#include <tiffio.h>
 
 /* What a page says of its values. */
 typedef struct {
@@ -78,32 +78,52 @@ static skg_status read_rows(const char *path, TIFF *tiff, const page_of *page, d
     return status;
 }
 
+/* Callers have memory for pages as large as the first. */
+static skg_status check_size(const char *path, TIFF *tiff, int64_t page, const page_of *one) {
+    page_of first = {0};
+    if (page == 0) return SKG_OK;
+    if (!TIFFSetDirectory(tiff, 0) || !TIFFGetField(tiff, TIFFTAG_IMAGEWIDTH, &first.columns) ||
+        !TIFFGetField(tiff, TIFFTAG_IMAGELENGTH, &first.rows) || !TIFFSetDirectory(tiff, (tdir_t)page))
+        return skg_fail(SKG_ERR_FORMAT, "%s: page 0 cannot be read", path);
+    if (first.columns == one->columns && first.rows == one->rows) return SKG_OK;
+    return skg_fail(SKG_ERR_UNSUPPORTED,
+                    "%s: page %d has %u x %u pixels, page 0 has %u x %u; write pages of one size", path,
+                    (int)page, one->columns, one->rows, first.columns, first.rows);
+}
+
 static skg_status read_page(const char *path, TIFF *tiff, int64_t page, skg_picture_contents *contents,
                             double *values) {
     const char *description = NULL;
     page_of one = {0};
     contents->pages = TIFFNumberOfDirectories(tiff);
+    if (contents->pages < 1) return skg_fail(SKG_ERR_FORMAT, "%s: is damaged: it has no page", path);
     SKG_TRY(skg_picture_page_check(path, page, contents->pages));
     if (!TIFFSetDirectory(tiff, (tdir_t)page))
         return skg_fail(SKG_ERR_FORMAT, "%s: page %d cannot be read", path, (int)page);
     SKG_TRY(look(path, tiff, &one));
+    SKG_TRY(check_size(path, tiff, page, &one));
     contents->columns = one.columns, contents->rows = one.rows;
     if (TIFFGetField(tiff, TIFFTAG_IMAGEDESCRIPTION, &description) && description)
         contents->quantity = skg_quantity_of_title(description);
     return values ? read_rows(path, tiff, &one, values) : SKG_OK;
 }
 
-skg_status skg_tiff_read(const char *path, int64_t page, skg_picture_contents *contents, double *values) {
+/* Opens a file by its path. m: it is not mapped into memory, so that a file that shrinks is an error. */
+static TIFF *open_path(const char *path, skg_tiff_reason *kept) {
+    TIFFOpenOptions *options = skg_tiff_options(kept);
+    if (!options) return NULL;
+    TIFF *tiff = TIFFOpenExt(path, "rm", options);
+    TIFFOpenOptionsFree(options);
+    return tiff;
+}
+
+skg_status skg_tiff_read(const skg_image_source *source, int64_t page, skg_picture_contents *contents,
+                         double *values) {
     skg_tiff_reason kept = {""};
-    TIFFOpenOptions *options = skg_tiff_options(&kept);
-    TIFF *tiff = NULL;
-    if (options) {
-        tiff = TIFFOpenExt(path, "rm",
-                           options); /* m: not mapped into memory, so that a file that shrinks is an error */
-        TIFFOpenOptionsFree(options);
-    }
-    if (!tiff) return skg_fail(SKG_ERR_FORMAT, "%s: is no TIFF: %s", path, skg_tiff_said(&kept));
-    const skg_status status = read_page(path, tiff, page, contents, values);
+    skg_tiff_bytes bytes = {.name = source->name, .given = source->bytes, .size = source->size};
+    TIFF *tiff = source->bytes ? skg_tiff_open_bytes(&bytes, "rm", &kept) : open_path(source->name, &kept);
+    if (!tiff) return skg_fail(SKG_ERR_FORMAT, "%s: is no TIFF: %s", source->name, skg_tiff_said(&kept));
+    const skg_status status = read_page(source->name, tiff, page, contents, values);
     TIFFClose(tiff);
     return status;
 }

@@ -3,12 +3,12 @@
 #include "core/text.h"
 #include "image/image.h"
 #include "image/reasons.h"
+#include "image/tiff_bytes.h"
 
 #include <skiagraph/version.h>
 
 #include <errno.h>
 #include <string.h>
-#include <tiffio.h>
 #include <unistd.h>
 
 /* Bytes of pixels beyond which a BigTIFF is written: the offsets of a classic TIFF have 32 bits, and its tags
@@ -58,30 +58,47 @@ static int write_pages(TIFF *tiff, const skg_picture *picture, void *row) {
     return 1;
 }
 
+/* How libtiff opens it. */
+static const char *mode_of(const skg_picture *picture) {
+    const double bytes = (double)picture->columns * (double)picture->rows * (double)picture->channels *
+                         (double)skg_element_bytes(picture->type);
+    return bytes > classic_limit ? "w8" : "w";
+}
+
+/* Writes all pages and closes the TIFF. tiff: NULL: it could not be opened */
+static skg_status write_and_close(TIFF *tiff, const skg_picture *picture, const char *path,
+                                  const skg_tiff_reason *kept) {
+    char *row = NULL;
+    int written = 0;
+    const skg_status status =
+        skg_alloc(picture->columns, (size_t)skg_element_bytes(picture->type), "row of a TIFF file", &row);
+    errno = 0;
+    if (tiff && status == SKG_OK) written = write_pages(tiff, picture, row);
+    if (tiff) TIFFClose(tiff);
+    skg_free(&row);
+    if (status != SKG_OK || (written && !kept->text[0])) return status;
+    return skg_output_fail(path, errno, skg_tiff_said(kept));
+}
+
 skg_status skg_tiff_write(const skg_picture *picture, skg_output_file *file) {
     skg_tiff_reason kept = {""};
     TIFF *tiff = NULL;
-    char *row = NULL;
-    int written = 0;
-    const int64_t element = skg_element_bytes(picture->type);
-    double bytes =
-        (double)picture->columns * (double)picture->rows * (double)picture->channels * (double)element;
-    SKG_TRY(skg_alloc(picture->columns, (size_t)element, "row of a TIFF file", &row));
     /* TIFFClose closes the descriptor that it was given. The stream keeps its own, which is synced later. */
     int descriptor = dup(fileno(file->stream));
     TIFFOpenOptions *options = skg_tiff_options(&kept);
-    if (descriptor >= 0 && options) {
-        tiff = TIFFFdOpenExt(descriptor, file->path, bytes > classic_limit ? "w8" : "w", options);
-    }
+    if (descriptor >= 0 && options) tiff = TIFFFdOpenExt(descriptor, file->path, mode_of(picture), options);
     if (options) TIFFOpenOptionsFree(options);
-    errno = 0;
-    if (tiff) {
-        written = write_pages(tiff, picture, row);
-        TIFFClose(tiff);
-    } else if (descriptor >= 0) {
-        close(descriptor);
-    }
-    skg_free(&row);
-    if (written && !kept.text[0]) return SKG_OK;
-    return skg_output_fail(file->path, errno, skg_tiff_said(&kept));
+    if (!tiff && descriptor >= 0) close(descriptor);
+    return write_and_close(tiff, picture, file->path, &kept);
+}
+
+skg_status skg_tiff_encode(const skg_picture *picture, const skg_image_target *target) {
+    skg_tiff_reason kept = {""};
+    skg_tiff_bytes file = {.name = target->name};
+    TIFF *tiff = skg_tiff_open_bytes(&file, mode_of(picture), &kept);
+    skg_status status = write_and_close(tiff, picture, target->name, &kept);
+    if (file.status != SKG_OK) status = skg_fail(SKG_ERR_MEMORY, "%s: out of host memory", target->name);
+    if (status == SKG_OK) status = skg_image_put(target, file.written, file.size);
+    skg_free(&file.written);
+    return status;
 }

@@ -17,12 +17,12 @@ enum { SKG_SHELL_EDGES = 3 };
 typedef struct {
     const skg_shell_row *row;
     int32_t kind, count; /* SKG_SHELL_...; of edges */
-    double
-        edge_kev[SKG_SHELL_EDGES]; /* of the cross sections, rising; the tables of lines round differently */
-    double left
-        [SKG_SHELL_EDGES]; /* ln of the share of absorption above an edge that is neither its subshell's nor a lower edge's */
-    double k_edge_kev,
-        beside_k; /* of L: the K edge, and the share of absorption above it that is not the K shell's */
+    /* of the cross sections, rising; the tables of lines round differently */
+    double edge_kev[SKG_SHELL_EDGES];
+    /* ln of the share of absorption above an edge that is neither its subshell's nor a lower edge's */
+    double left[SKG_SHELL_EDGES];
+    /* of L: the K edge, and the share of absorption above it that is not the K shell's */
+    double k_edge_kev, beside_k;
 } skg_shell;
 
 /* The lines of a shell of an element; NULL: they are not in the tables. */

@@ -50,7 +50,7 @@ static int bound(const float *at, int64_t vertices, float *box) {
     return all == 0;
 }
 
-/* The same of the finite vertices. Returns the first that is not, or -1. */
+/* Finds the box of the finite vertices alone. Returns the first that is not, or -1. */
 static int64_t bound_finite(const float *at, int64_t vertices, float *box) {
     int64_t bad = -1;
     memcpy(box, nowhere, sizeof nowhere);

@@ -53,8 +53,8 @@ typedef struct {
     const char *kind; /* what its parts are called: "object" */
     int64_t size;     /* bytes of the file */
     int32_t deepest;  /* levels that may lie in each other */
-    int32_t
-        all; /* 1: the file places each part that no other part places; 0: what part 0 places, and only that is looked at */
+    /* 1: the file places each part that no other part places; 0: what part 0 places, and only that is looked at */
+    int32_t all;
 } skg_instances;
 
 void skg_instances_free(skg_instances *all);

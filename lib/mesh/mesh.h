@@ -30,13 +30,13 @@ struct skg_mesh {
     float highest[3];
     int64_t first_bad; /* first vertex that is not finite; -1: none */
     int64_t layers;    /* how many times over a ray may be inside at once */
-    int32_t
-        multiplicity; /* how often an edge runs in one direction: coincident copies weld into one component */
-    int32_t pieces;   /* components that are joined by shared edges */
+    /* how often an edge runs in one direction: coincident copies weld into one component */
+    int32_t multiplicity;
+    int32_t pieces;       /* components that are joined by shared edges */
     int32_t pieces_share; /* 1: some of them share vertices */
     int32_t *piece;       /* [triangles] the number of each one's if they share vertices; otherwise NULL */
-    skg_vertex_run *
-        runs; /* vertices that follow each other and belong to one; NULL: there is one, or they share vertices */
+    /* vertices that follow each other and belong to one; NULL: there is one, or they share vertices */
+    skg_vertex_run *runs;
     int64_t run_count;
     float *boxes;                 /* [pieces][6] with runs, their bounds as lowest and highest */
     int64_t winding;              /* the largest winding number along columns, when these were last swept */
@@ -138,8 +138,8 @@ typedef struct {
     int64_t vertices;  /* of the device */
     int64_t copies;    /* further ones, which are merged into them and may part */
     int64_t triangles; /* of the mesh */
-    int32_t *
-        source; /* [vertices + copies] the mesh's number of each; NULL: as the mesh numbers them, none merged */
+    /* [vertices + copies] the mesh's number of each; NULL: as the mesh numbers them, none merged */
+    int32_t *source;
     int32_t *corners; /* [triangles][3] */
     int32_t thin;     /* 1: the mesh is much thinner than wide */
     int32_t flat;     /* 1: the mesh has a flat face, and the scene other such meshes; set by the caller */

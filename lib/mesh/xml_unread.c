@@ -10,12 +10,12 @@
 enum contents { UNREADABLE, INDICES, ZERO };
 
 typedef struct {
-    const char *tag,
-        *inside; /* the element, and the one that it lies in at any depth; NULL: wherever it lies */
+    /* the element, and the one that it lies in at any depth; NULL: wherever it lies */
+    const char *tag, *inside;
     enum contents contents;
     const char *sentence;
-    const char
-        *replaces; /* an element of the same parent whose value Assimp forgets for this one; NULL: none */
+    /* an element of the same parent whose value Assimp forgets for this one; NULL: none */
+    const char *replaces;
 } element;
 
 /* Of a row of the table. */

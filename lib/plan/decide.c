@@ -1,4 +1,4 @@
-/* What follows from a recipe: how intensities become what is shown, and which views it is for. */
+/* Decisions that follow from a recipe: how intensities become what is shown, and which views it is for. */
 #include "beam/counter.h"
 #include "geometry/optics.h"
 #include "plan/decisions.h"

@@ -1,4 +1,4 @@
-/* What is decided once for a plan. Private. */
+/* Decisions that are taken once for a plan. Private. */
 #ifndef SKG_DECISIONS_H
 #define SKG_DECISIONS_H
 
@@ -59,7 +59,7 @@ skg_status skg_plan_options_check(const skg_plan_options *options, const skg_dev
 
 /* --- Which strategy rasters a scene, and how the rays of a pixel are made. */
 
-/* What a strategy is chosen by. */
+/* The facts by which a strategy is chosen. */
 typedef struct {
     int32_t gpu;
     int32_t workers;        /* compute units */
@@ -89,7 +89,7 @@ typedef struct {
 /* The strategy that is asked for, that the precision needs, or that the facts call for. */
 skg_status skg_strategy_decide(const skg_strategy_request *request, int32_t *strategy, const char **why);
 
-/* What decides how the rays of a pixel are made: not the device and not the strategy, because images have the same bits on
+/* The facts that decide how the rays of a pixel are made: not the device and not the strategy, because images have the same bits on
  * every one of them. */
 typedef struct {
     int64_t shifts;        /* rays along each side of a pixel */
@@ -108,7 +108,7 @@ int64_t skg_fine_choose(const skg_fine_request *request, const char **why);
 /* The most accumulators that so many planes are mixed from (spectral/model.h). The request's own number does not count. */
 int32_t skg_max_mixed(const skg_fine_request *request, int32_t planes);
 
-/* What decides how many passes of a frame are drawn together. */
+/* The facts that decide how many passes of a frame are drawn together. */
 typedef struct {
     int32_t strategy;    /* SKG_STRATEGY_... */
     int32_t workers;     /* compute units */
@@ -158,7 +158,7 @@ void skg_plan_warn_doubts(const skg_recipe *recipe, const skg_context *context);
 
 /* --- The check for parts that overlap or leave their parent. */
 
-/* What the check has found. */
+/* The findings of the check. */
 typedef struct {
     int64_t side; /* columns along each side of the grid */
     int64_t pair_count;

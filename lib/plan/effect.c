@@ -1,4 +1,4 @@
-/* What rows of effects call: how one is reported, and refused. */
+/* Helpers of rows of effects: how one is reported, and refused. */
 #include "plan/rules.h"
 
 #include <stdarg.h>

@@ -149,7 +149,7 @@ static double find_share(const skg_recipe *recipe) {
     return columns * rows / ((double)view->columns * (double)view->rows);
 }
 
-/* What the jaws leave, in words. */
+/* The field that the jaws leave, in words. */
 static void describe_jaws(const skg_recipe *recipe, char *text, size_t size) {
     const skg_collimation *collimation = recipe->options.collimation;
     char distance[48] = "";

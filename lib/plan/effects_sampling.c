@@ -170,7 +170,7 @@ static void find_off_focal(const skg_effect_facts *f, skg_effect_state *state) {
         skg_effect_set(state, 0, "all photons come from the focal spot");
 }
 
-/* Its samples are those of the source. */
+/* Off-focal radiation has no samples of its own: those of the source are enough. */
 const skg_effect_row skg_effect_off_focal = {
     .name = "off-focal radiation",
     .key = "OffFocal",

@@ -1,4 +1,4 @@
-/* What a recipe has of the caller's: copies of what options point to, names of channels, the distinct meshes. Private. */
+/* The inputs of a recipe: copies of what options point to, names of channels, the distinct meshes. Private. */
 #ifndef SKG_INPUTS_H
 #define SKG_INPUTS_H
 
@@ -45,7 +45,7 @@ skg_status skg_channel_names_create(const skg_plan_options *options, int32_t cha
 /* The unit of a quantity; static storage. */
 const char *skg_channel_unit(int32_t quantity);
 
-/* What a channel shows without parts and world, not weakened by falloff. exposure: the photons per pixel of the view over
+/* The value of a channel without parts and world, not weakened by falloff. exposure: the photons per pixel of the view over
  * those of the model. */
 skg_status skg_channel_flat_field(const skg_plan_options *options, const skg_model *model,
                                   const skg_view *view, double exposure, int64_t channel, double *flat_field);

@@ -1,4 +1,4 @@
-/* What is known of a plan's frames, from its making to its end. */
+/* The knowledge of a plan's frames, from its making to its end. */
 #include "plan/results.h"
 
 void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome) {

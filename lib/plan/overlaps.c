@@ -59,7 +59,7 @@ static void warn(const skg_recipe *recipe, const skg_context *context, const skg
         in_cells ? " but the cells of a volume, which are cut out once, where there are any" : "");
 }
 
-/* What threads share. */
+/* The state that threads share. */
 typedef struct {
     const skg_recipe *recipe;
     skg_plan_overlaps *found;

@@ -16,7 +16,7 @@ static double share_of(const skg_touching_group *group, int near_source, int is_
     return near_source ? 1 : fmin(fmax(least, 4 * group->noise / skg_touching_shift(group, is_double)), 1);
 }
 
-/* What find_seams needs of the parts. */
+/* The properties of the parts that find_seams needs. */
 typedef struct {
     skg_mesh_layout *layouts; /* [parts] of flat ones, their planes alone */
     skg_touching *boxes;

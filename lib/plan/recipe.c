@@ -1,4 +1,4 @@
-/* What a recipe says of itself, and its references. */
+/* Questions that a recipe answers about itself, and its references. */
 #include "plan/recipe.h"
 #include "geometry/optics.h"
 

@@ -20,8 +20,8 @@ struct skg_recipe {
     skg_scene *scene;       /* retained */
     skg_spectrum *spectrum; /* retained; photons per pixel of the view that the plan was made for */
     double exposure; /* of that view (geometry/optics.h), if the caller's spectrum is absolute; else 0 */
-    skg_plan_options
-        options;       /* its handles retained, its arrays copied; of a blur it says only that there is one */
+    /* its handles retained, its arrays copied; of a blur it says only that there is one */
+    skg_plan_options options;
     skg_view view;     /* of frames without a view of their own */
     int64_t structure; /* of the scene; if it has another one the plan is stale */
     int64_t materials; /* of the scene when the model was made */

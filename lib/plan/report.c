@@ -1,4 +1,4 @@
-/* What a finished job reports: times, counts, warnings. */
+/* The report of a finished job: times, counts, warnings. */
 #include "core/text.h"
 #include "plan/results.h"
 

@@ -1,4 +1,4 @@
-/* What a plan tells: its report and its outcome. Private. */
+/* The results of a plan beside images: its report and its outcome. Private. */
 #ifndef SKG_RESULTS_H
 #define SKG_RESULTS_H
 
@@ -27,8 +27,8 @@ typedef struct {
     int32_t warned_infinite; /* 1: that pixels were not finite */
     int32_t warned_wrapped;  /* 1: that sums left their bounds */
     int32_t side; /* passes of a frame that a worker draws side by side; 0: all workers are at each pass */
-    int32_t *
-        warned_bad; /* [leaky parts] digits of the greatest number of bad pixels that was warned of; 0: none */
+    /* [leaky parts] digits of the greatest number of bad pixels that was warned of; 0: none */
+    int32_t *warned_bad;
 } skg_outcome;
 
 /* Starts an outcome with what the recipe has decided. */
@@ -40,15 +40,15 @@ void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome);
 
 /* --- What is reported of finished work: times, bad pixels, negative exponents, lengths outside the verified range. */
 
-/* What the device leaves of work, in staged memory. */
+/* The counts that the device leaves of work, in staged memory. */
 typedef struct {
     /* [4] pixels with a negative exponent in the last frame; in any frame, pixels outside the range, infinite values, and rays
      * with a sum beyond its bound */
     int32_t *negative;
     int32_t *listed; /* [2] of the last frame, as skg_raster_read_listed leaves it */
     int64_t frames;
-    int32_t
-        *bad_vertex; /* [frames] the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
+    /* [frames] the lowest vertex, over all parts, that was not finite; INT32_MAX: none */
+    int32_t *bad_vertex;
     skg_leaky_verdicts leaky; /* of the last frame */
     /* [meshes] the lowest vertex of each mesh outside of the bounds that the caller gave with it; INT32_MAX: none, or none
      * were given. NULL: for no mesh */

@@ -42,14 +42,14 @@ double skg_cost_of_attenuation(const skg_model *model, double nodes, double plan
  * The rows stand by subject in effects_beam.c (the beam and what stands in it), effects_detector.c, effects_noise.c, effects_meshes.c and
  * effects_sampling.c. */
 
-/* What a plan reports of an effect. */
+/* The report of an effect. */
 typedef struct {
     int32_t on, reserved;
     double cost; /* estimated, in frames without any effect */
     char reason[256];
 } skg_effect_state;
 
-/* What reasons and costs follow from. */
+/* The facts from which reasons and costs follow. */
 typedef struct {
     const skg_recipe *recipe;
     const skg_context *context;          /* its log takes warnings */
@@ -116,7 +116,7 @@ skg_status skg_counting_check(const skg_recipe *recipe);
 /* Pulses of the flat field in a dead time. The detector counts, with pile-up. */
 double skg_open_pulses(const skg_plan_options *options, const skg_model *model, double exposure);
 
-/* What each window records of the flat field. The detector counts. */
+/* The record of each window of the flat field. The detector counts. */
 skg_status skg_open_recorded(const skg_plan_options *options, const skg_model *model, double exposure,
                              double recorded[SKG_THRESHOLDS_MAX]);
 

@@ -6,7 +6,7 @@
 #include "skg_shared.h"
 
 /* --- How the photons of a beam differ over its directions: heel effect and bow-tie filter. *
- * The primary has few directions of the spectrum for them (spectral/shades.h), fitted over its rays. A photon that is to scatter has
+ * The primary has few directions of the spectrum for them (spectral/shading.h), fitted over its rays. A photon that is to scatter has
  * an energy and a direction, so its share is taken from the effects themselves, over the whole field. */
 
 /* Rows of the table of the heel effect. */
@@ -20,8 +20,8 @@ typedef struct {
     double anode[3];      /* unit vector across the anode's face */
     double low, high;     /* cosines between it and the rays to the field */
     double *shares;       /* [SKG_HEEL_ROWS][bins] of photons that leave, even from low to high */
-    double central[3],
-        fan[3]; /* unit vectors to the middle of the detector, and where the angles of the fan grow */
+    /* unit vectors to the middle of the detector, and where the angles of the fan grow */
+    double central[3], fan[3];
     const skg_bowtie *filter; /* the recipe's */
     double *tangents;         /* [rows of the filter] */
     double *attenuation;      /* [bins] of the filter, 1/mm */

@@ -18,8 +18,8 @@
  * of the two flies in any direction with the same chance, so that a mean asks for no more than two photons in any direction. */
 
 typedef struct {
-    skg_shell shell,
-        deeper; /* deeper: of L, the K shell, whose K alpha leaves vacancies there; has_deeper: it is known */
+    /* deeper: of L, the K shell, whose K alpha leaves vacancies there; has_deeper: it is known */
+    skg_shell shell, deeper;
     int32_t has_deeper, pairs;         /* 1: annihilation, which has no shell */
     double photons;                    /* per vacancy, of the lines that are followed; per pair */
     float lines[SKG_SCATTER_LINES][2]; /* share of the photons up to this one, keV */
@@ -76,16 +76,16 @@ typedef struct {
     /* [momenta] 1/mm per coefficient: r_e^2 times the number of atoms per volume times S and times F^2. */
     skg_mixture *incoherent, *coherent;
     int64_t shells; /* that emit; annihilation counts as one */
-    skg_mixture
-        *emission; /* [energies][shells] photons per mm and coefficient that a photon's absorption emits */
+    /* [energies][shells] photons per mm and coefficient that a photon's absorption emits */
+    skg_mixture *emission;
     int64_t materials;
     double (*coefficients)[SKG_SCATTER_RANK]; /* [materials] of 1 mm of each at its density, per mm */
     /* The greatest relative error over the materials of total, Compton and Rayleigh at the energies; and of these and of both
      * distributions of angles (integral of the absolute difference over the integral). At least 1e-6, for the
      * rounding of floats. Interpolation is apart: below 2e-4 away from edges. */
     double attenuation_error, error;
-    double
-        emission_error; /* the greatest difference of what a material emits over the most that any does, of lines and of annihilation; in `error`, too */
+    /* the greatest difference of what a material emits over the most that any does, of lines and of annihilation; in `error`, too */
+    double emission_error;
 } skg_scatter_physics;
 
 /* Makes the tables.

@@ -25,6 +25,7 @@ static const double SETTLED_MORE = 1.1;
 static const double DEFAULT_TOLERANCE = 0.01;
 
 const double *skg_scatter_pose(const skg_scatter_work *work, int64_t part) {
+    SKG_ASSERT(0 <= part && part < work->recipe->scene->count);
     return work->poses && work->poses[part] ? work->poses[part] : work->recipe->scene->parts[part].pose;
 }
 

@@ -21,8 +21,8 @@ struct skg_planting {
     int32_t *part;            /* [faces] */
     skg_cell_amount *amounts; /* [parts] with the sign of the solid */
     uint32_t *more;           /* [parts] the medium that a face adds */
-    uint32_t *
-        own; /* [copies] likewise of faces beyond `originals`, copies for single cells of a volume (volume_faces.c) */
+    /* [copies] likewise of faces beyond `originals`, copies for single cells of a volume (volume_faces.c) */
+    uint32_t *own;
     int64_t originals;
     int64_t *seen; /* [parts] 1 + the cell that a part was last seen in */
     int64_t faced_count;
@@ -73,8 +73,8 @@ typedef struct {
     double low[3];          /* of the coarse cell, in coarse cells */
     double (*corners)[9];   /* [count] while it is made */
     int64_t *first;         /* [n^3 + 1] */
-    uint32_t *
-        list; /* of each finer cell: 2 * the place of a face in the list of the coarse cell, + 1 if it is within */
+    /* of each finer cell: 2 * the place of a face in the list of the coarse cell, + 1 if it is within */
+    uint32_t *list;
     skg_cell_amount *state; /* [n^3] */
 } skg_brick;
 

@@ -11,8 +11,8 @@ typedef struct {
     skg_tracing tracing;
     skg_scattered stage;
     skg_scatter_images images;
-    skg_cosines
-        *components; /* [channels][SKG_SCATTER_KINDS] enum skg_scatter_component; NULL: nothing scatters */
+    /* [channels][SKG_SCATTER_KINDS] enum skg_scatter_component; NULL: nothing scatters */
+    skg_cosines *components;
     double photons, signal; /* as of skg_shown_scatter */
     skg_digest key;         /* of the frame they hold for */
     int64_t number;         /* no other one of the process has it; 0: it has made no series yet */

@@ -20,8 +20,8 @@ typedef struct {
     int64_t index, end; /* histories of a batch so far */
     uint64_t seed;
     double *sums; /* [2][batches][rows][columns] photons and what adds to the variance */
-    double
-        *found[2]; /* [batches][rows][columns] each: cosines of these, per history; photons of the spectrum */
+    /* [batches][rows][columns] each: cosines of these, per history; photons of the spectrum */
+    double *found[2];
     double photons; /* that a sum of 1 stands for, times histories of a batch */
 } knot;
 

@@ -41,14 +41,14 @@ typedef struct {
     int64_t columns, rows; /* most cosines: those of the grid */
     int64_t kept[2];       /* 0 <= m < kept[0], 0 <= n < kept[1] holds all that are kept */
     int64_t count;         /* so many are kept */
-    double *
-        value; /* [rows][columns] coefficients of the smooth function at the middle of a place; 0 if not kept */
+    /* [rows][columns] coefficients of the smooth function at the middle of a place; 0 if not kept */
+    double *value;
     double *variance; /* [rows][columns] of them */
     double *share;    /* [rows][columns] how much of each is kept */
-    double
-        *spread;  /* [rows][columns] coefficients of the variance that the batches show from place to place */
-    double bias;  /* mean square of what was left out, of means over places */
-    double doubt; /* standard error of it */
+    /* [rows][columns] coefficients of the variance that the batches show from place to place */
+    double *spread;
+    double bias;        /* mean square of what was left out, of means over places */
+    double doubt;       /* standard error of it */
     double mean, sigma; /* over the detector: of a place; root mean square of its error, bias included */
 } skg_cosines;
 

@@ -19,8 +19,8 @@ typedef struct {
     skg_beam_profile profile;
     float *profiles; /* [profile_count] as kernels/scatter/profile.clh has them; NULL: none */
     int64_t profile_count;
-    float *
-        detector; /* [detector_count] as kernels/scatter/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
+    /* [detector_count] as kernels/scatter/scatter.cl has it; NULL: neither bands, nor layers, nor oblique */
+    float *detector;
     int64_t detector_count;
     int32_t bands, layers, cosines, oblique; /* images of a frame; of the table of layers: 0: none */
     double photons;                          /* of the spectrum, those that leave towards the field */
@@ -96,8 +96,8 @@ typedef struct {
 
 /* [channels][rows][columns] floats on the device each, and what they are on average. All zero: none. */
 typedef struct {
-    skg_buffer mean,
-        variance; /* what each layer of images gets, before detector and quantity; variance: with noise alone */
+    /* what each layer of images gets, before detector and quantity; variance: with noise alone */
+    skg_buffer mean, variance;
     skg_buffer shown, sigma; /* in the plan's quantity */
     skg_buffer component;    /* likewise; the one that was asked for last */
     double average;          /* of `shown`, over the channels */

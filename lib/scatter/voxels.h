@@ -53,8 +53,8 @@ typedef struct {
     float (*faces)[16];
     int64_t media_count, tree_count, face_count;
     uint32_t rough; /* the first medium of rough cells, of which each has one, [z][y][x]; 0: there are none */
-    int64_t smeared,
-        traced; /* cells that hold the mixture of media which differ little, and those whose faces are met */
+    /* cells that hold the mixture of media which differ little, and those whose faces are met */
+    int64_t smeared, traced;
 } skg_cells;
 
 /* The place of a cell where its medium is known, in shares of its sides: a column that was walked, at an odd height, so that faces
@@ -79,8 +79,8 @@ typedef struct {
     const int32_t *sign; /* 1; -1: the solid's hits have the other sign */
     const double *base;  /* [SKG_SCATTER_RANK] of what is around all solids, per mm; NULL: void */
     const double (*coefficients)[SKG_SCATTER_RANK]; /* of each solid less those of its parent, per mm */
-    const int32_t
-        *priority; /* of each, which decides where solids with the same parent overlap; NULL: amounts add */
+    /* of each, which decides where solids with the same parent overlap; NULL: amounts add */
+    const int32_t *priority;
     int32_t clip;  /* 1, with priority: a solid counts only inside its parent */
     int32_t unite; /* 1: a solid counts once where its winding number is above 0 */
     int64_t volume_count;
@@ -194,8 +194,8 @@ typedef struct {
     double world[SKG_SCATTER_RANK]; /* coefficients of the world; 0: vacuum */
     skg_cells cells;
     skg_judged judged;
-    double
-        settled_error; /* judged.cells if no other cells hold mixtures than those where parts compete, and of a volume */
+    /* judged.cells if no other cells hold mixtures than those where parts compete, and of a volume */
+    double settled_error;
 } skg_scatter_object;
 
 /* The share of a tolerance that the object may use up. */

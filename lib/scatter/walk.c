@@ -1,4 +1,4 @@
-/* Lengths through the object as photons read it: kernels/walk.clh in double precision. */
+/* Lengths through the object as photons read it: kernels/scatter/walk.clh in double precision. */
 #include "scatter/voxels.h"
 
 #include "core/maths.h"

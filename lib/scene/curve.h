@@ -14,10 +14,10 @@ typedef struct {
         normal[3];        /* unit vectors: columns grow, rows grow, from the middle towards the axis */
     double angle, height; /* from one column to the next; mm from one row to the next */
     double distance;      /* mm from the touching plane to the source */
-    double side,
-        along; /* mm from the detector's middle to the foot of the source, along `across` and `down` */
-    double
-        tilt[2];  /* parallel beam: mm along `across` and `down` that rays go for each mm towards the plane */
+    /* mm from the detector's middle to the foot of the source, along `across` and `down` */
+    double side, along;
+    /* parallel beam: mm along `across` and `down` that rays go for each mm towards the plane */
+    double tilt[2];
     double steep; /* parallel beam: mm of a ray for each mm towards the plane */
     int32_t parallel, reserved;
 } skg_curvature;
@@ -28,8 +28,8 @@ typedef struct {
     double scale; /* of distances from the foot of the source along `down`; parallel beam: 1 */
     double moved; /* parallel beam: mm by which rows are moved along `down` */
     double depth; /* mm from the touching plane to the column's pixels */
-    double
-        facing; /* mm from the plane that touches the cylinder at the column to the source; parallel beam: the cosine of incidence */
+    /* mm from the plane that touches the cylinder at the column to the source; parallel beam: the cosine of incidence */
+    double facing;
 } skg_curvature_line;
 
 /* The curve of a view whose radius is above 0. source: another point to look from; NULL: that of the view. The detector's columns and

@@ -6,6 +6,7 @@
 #include <string.h>
 
 int32_t skg_volume_cell(const skg_volume *v, int64_t at, double *amount) {
+    SKG_ASSERT(0 <= at && at < v->size[0] * v->size[1] * v->size[2]);
     if (v->wide) {
         *amount = v->unit * (double)((const int32_t *)v->cells)[at];
         return 0;

@@ -65,10 +65,14 @@ static void note(skg_verdict *verdict, const char *what, int way, double got, do
 static skg_status compare_forward(gradient_run *run, int way, double size, skg_verdict *verdict) {
     double twists[2][6] = {{0}}, sum = 0;
     skg_direction direction;
+    skg_output output;
     twists[way / 3][way % 3] = 1;
     skg_direction_init(&direction);
     direction.poses = twists[0];
-    SKG_TRY(skg_plan_derivatives(run->plan, NULL, 1, &direction, run->derivative, NULL));
+    skg_output_init(&output);
+    output.type = SKG_TYPE_FLOAT64;
+    output.data = run->derivative;
+    SKG_TRY(skg_plan_derivatives(run->plan, NULL, 1, &direction, &output, NULL));
     for (int p = 0; p < PIXELS; p++) sum += run->adjoint[p] * run->derivative[p];
     if (!(fabs(sum - run->poses[way / 3][way % 3]) <= TOLERANCE * size))
         note(verdict, "the sum of the derivatives", way, sum, run->poses[way / 3][way % 3]);

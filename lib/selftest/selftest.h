@@ -57,9 +57,8 @@ skg_tolerance skg_self_test_tolerance(skg_self_test number);
 typedef struct {
     skg_self_test number;
     int32_t parts;
-    skg_box
-        boxes[SKG_SELF_TEST_BOXES +
-              1]; /* the last one is a part of its own, if there are two; of more, those before it are, too */
+    /* the last one is a part of its own, if there are two; of more, those before it are, too */
+    skg_box boxes[SKG_SELF_TEST_BOXES + 1];
     skg_detector_blur blur;
     skg_bowtie bowtie;
     double angles[SKG_SELF_TEST_BOWTIE_ROWS]; /* of the bow-tie, degrees */

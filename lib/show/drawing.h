@@ -15,8 +15,8 @@ typedef struct {
     double axes[3][3]; /* right, up and towards the eye, length 1 */
     double pixel;      /* mm that a pixel covers at the centre */
     double distance;   /* mm from the eye to the centre */
-    double
-        nearest; /* what is less than this in front of the eye is not drawn, mm; 0: everything is in the picture */
+    /* what is less than this in front of the eye is not drawn, mm; 0: everything is in the picture */
+    double nearest;
     float matrix[16]; /* from positions to clip coordinates, column after column */
 } skg_show_camera;
 
@@ -58,8 +58,8 @@ typedef struct {
     double centre[3]; /* mm; positions are relative to it */
     float *positions; /* [vertices][3] */
     int32_t *corners; /* [triangles][3] */
-    int16_t *
-        normals; /* [triangles][3][4] of each corner, times 32767; of the detector places in the image, times 16384 */
+    /* [triangles][3][4] of each corner, times 32767; of the detector places in the image, times 16384 */
+    int16_t *normals;
     uint32_t *colours; /* [triangles] SKG_SHOW_COLOUR */
     int64_t vertices, triangles;
     int64_t sections; /* the first triangles, whose inside is drawn without shading */

@@ -208,7 +208,7 @@ static skg_status add_frame(skg_show_model *model, const skg_view *view, const s
     return SKG_OK;
 }
 
-/* Its area: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) in widths and heights. */
+/* Adds the area of the detector: (0, 0), (1, 0), (1, 1) and (0, 0), (1, 1), (0, 1) in widths and heights. */
 static skg_status add_detector(skg_show_model *model, const skg_view *view, const skg_show_camera *camera) {
     const int64_t before = model->triangles;
     const int strips = strips_of(view);

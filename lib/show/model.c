@@ -46,6 +46,7 @@ void skg_show_model_add_vertex(skg_show_model *model, const double position[3]) 
 
 void skg_show_model_add_triangle(skg_show_model *model, const int64_t corners[3], double normals[3][3],
                                  uint32_t colour) {
+    SKG_ASSERT(model->triangles < model->triangle_capacity);
     for (int k = 0; k < 3; k++) {
         model->corners[3 * model->triangles + k] = (int32_t)corners[k];
         int16_t *normal = model->normals + 12 * model->triangles + 4 * k;

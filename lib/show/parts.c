@@ -16,8 +16,8 @@ typedef struct {
     const double *pose;
     double *world; /* [vertices][3] mm */
     double *faces; /* [triangles][4] normals as long as twice the area, and the square of that */
-    double *
-        smooth; /* [vertices][3] normal of length 1 that all faces around a vertex share; 0 where they do not */
+    /* [vertices][3] normal of length 1 that all faces around a vertex share; 0 where they do not */
+    double *smooth;
     int32_t *starts; /* [vertices + 1] of the triangles around each vertex */
     int32_t *around; /* [3 * triangles] */
 } surface;
@@ -146,6 +146,7 @@ skg_status skg_show_parts_add(skg_show_model *model, const skg_scene *scene, con
 }
 
 const double *skg_show_pose_of(const skg_scene *scene, const skg_look *look, int64_t part) {
+    SKG_ASSERT(0 <= part && part < scene->count);
     return look->poses ? look->poses + 16 * part : scene->parts[part].pose;
 }
 

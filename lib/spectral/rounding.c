@@ -12,8 +12,8 @@ enum { RAYS = SKG_TRACED_SIDE * SKG_TRACED_SIDE };
 typedef struct {
     double longest, deepest; /* lengths: shares of the part's longest and of its extent along the rays */
     double exponential;      /* an exponential and the sum of a few hundred of them; an image in 16 bits */
-    double
-        exponent; /* by its own size: rounded coefficients, planes and sums, half a unit in the last place each */
+    /* by its own size: rounded coefficients, planes and sums, half a unit in the last place each */
+    double exponent;
     double image; /* absolute: the least step of an image, in its unit */
 } share;
 

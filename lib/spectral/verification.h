@@ -54,8 +54,8 @@ typedef struct {
     int32_t planes, reserved; /* planes, then shades, which the caller fills */
     int64_t rays;
     double *lengths; /* [rays][planes] what a ray adds to the planes, mm times weight */
-    double
-        *low; /* [planes] mm, 0 or less; with a margin of a quarter, and a fiftieth of the range below it */
+    /* [planes] mm, 0 or less; with a margin of a quarter, and a fiftieth of the range below it */
+    double *low;
     double *high; /* [planes] mm */
     double *hits; /* [parts] mean per ray of the first view */
     double way;   /* what the longest ray without parts adds to the plane of the world; 0: vacuum */

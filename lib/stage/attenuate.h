@@ -34,8 +34,8 @@ typedef struct {
     int32_t pass; /* of the raster's passes */
     int32_t reserved;
     double scale; /* of the sums */
-    int32_t
-        mixed;    /* accumulators that planes are mixed from (spectral/model.h); 0: accumulators are planes */
+    /* accumulators that planes are mixed from (spectral/model.h); 0: accumulators are planes */
+    int32_t mixed;
     int32_t fine; /* pixels of the raster along each side of a pixel of the image, which shows their sum */
     cl_mem lists; /* [mixed][planes] in the precision of the raster */
 } skg_sums;
@@ -63,23 +63,23 @@ typedef struct {
 } skg_weight_layout;
 skg_weight_layout skg_attenuate_weight_layout(const skg_raster *raster, int32_t fine);
 
-/* What is asked of skg_attenuate_transpose, and where it goes. */
+/* The request to skg_attenuate_transpose, and where it goes. */
 typedef struct {
     double factor; /* of intensities */
     /* The loss is this channel of each pixel by itself; -1: its derivative by the image is `adjoint`, [channels][rows][columns] in the
      * precision of the raster */
     int32_t channel;
-    int32_t
-        of_planes; /* 1: weights are derivatives by the mm of the planes that exponents are made of, and nothing else */
+    /* 1: weights are derivatives by the mm of the planes that exponents are made of, and nothing else */
+    int32_t of_planes;
     int32_t rays; /* SKG_RAYS_... */
     /* 1: all of a ray is divided by a power of two near its intensity, whose exponent is the third plane behind those of accumulators. For a
      * channel of intensities */
     int32_t relative;
     cl_mem adjoint;
     cl_mem wanted; /* [planes] int: 0: the weights of this plane of accumulators are not made */
-    cl_mem
-        weights; /* of the layout; with SKG_RAYS_PLANES the next two planes are, for each ray, the sum over planes of mm times
-                     * derivative by mm, and the derivative by the logarithm of the intensity */
+    /* of the layout; with SKG_RAYS_PLANES the next two planes are, for each ray, the sum over planes of mm times
+     * derivative by mm, and the derivative by the logarithm of the intensity */
+    cl_mem weights;
     cl_mem most;    /* [planes][items] the largest magnitudes of the weights of accumulators */
     cl_mem of_rays; /* [SKG_RAY_SUMS][items] with SKG_RAYS_SUMS; else it may be any buffer */
 } skg_transposition;

@@ -1,4 +1,4 @@
-/* What pixels show of their planes, and the tables of it on the device. Private. */
+/* The attenuation: what pixels show of their planes, and its tables on the device. Private. */
 #ifndef SKG_ATTENUATION_H
 #define SKG_ATTENUATION_H
 
@@ -24,8 +24,8 @@ typedef struct {
     const skg_shades *shades; /* borrowed; count 0, or NULL: none */
     skg_buffer coefficients, weights, variances;
     skg_buffer polynomials, tables; /* of shades */
-    skg_buffer
-        range; /* [planes][2] mm: lowest and highest that an error bound holds for; none: not checked */
+    /* [planes][2] mm: lowest and highest that an error bound holds for; none: not checked */
+    skg_buffer range;
 } skg_attenuation;
 
 /* The tables as the host gives them. */

@@ -6,7 +6,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* What a work-item does, as blur.cl has it: rows of the first pass, vectors of a row, vectors of a run of the second. */
+/* The share of a work-item, as blur.cl has it: rows of the first pass, vectors of a row, vectors of a run of the second. */
 enum { BLUR_ROWS = 4, BLUR_VECTORS = 2, BLUR_RUN = 4 };
 
 /* The most samples that a function may have along either direction. */
@@ -324,6 +324,7 @@ static void add_lines(int64_t taps, const double *weights, int64_t lines, int64_
 skg_status skg_blur_transpose(const skg_blur *blur, int64_t columns, int64_t rows, const double *from,
                               double *to) {
     double *half = NULL;
+    SKG_ASSERT(from != to); /* what is read later would be changed */
     if (!blur->separable) {
         for (int64_t r = 0; r < rows; r++)
             for (int64_t c = 0; c < columns; c++)

@@ -3,7 +3,7 @@
 
 #include <math.h>
 
-/* What one type of image needs. */
+/* The kernels of one type of image. */
 typedef struct {
     cl_kernel kernels[2];   /* with noise and steps, and of the mean */
     cl_kernel variances[2]; /* of values, and of their -ln */

@@ -1,4 +1,4 @@
-/* What memory of a device holds, for the host to read. */
+/* Views of device memory, for the host to read. */
 #include "stage/host_view.h"
 
 skg_status skg_host_view_open(skg_context *context, cl_mem buffer, int64_t first, int64_t bytes,

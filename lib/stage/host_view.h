@@ -1,4 +1,4 @@
-/* What memory of a device holds, for the host to read. Private. */
+/* Views of device memory, for the host to read. Private. */
 #ifndef SKG_HOST_VIEW_H
 #define SKG_HOST_VIEW_H
 

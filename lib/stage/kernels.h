@@ -5,7 +5,7 @@
 #include "arguments.h"
 #include "stage/stage_log.h"
 
-/* What the kernels that project and rasterise are compiled for. */
+/* The options of the kernels that project and rasterise. */
 typedef struct {
     int32_t precision;    /* SKG_PRECISION_SINGLE or SKG_PRECISION_DOUBLE */
     int32_t bits;         /* of an accumulator: 32 or 64 */
@@ -43,13 +43,13 @@ typedef struct {
 skg_status skg_kernels_get(skg_context *context, const skg_kernel_options *options, int32_t files,
                            const char *const *names, const skg_program_options *more, cl_program *program);
 
-/* What a work-item of the stage `attenuate` does on a CPU: vectors of pixels together, and how often. */
+/* The share of a work-item of the stage `attenuate` on a CPU: vectors of pixels together, and how often. */
 enum { SKG_CPU_RUNS = 4, SKG_CPU_STRIP = 8 };
 
 /* Whether these are the options of the program that a first image needs on a CPU. */
 int skg_kernels_are_first(const skg_context *context, const skg_kernel_options *options);
 
-/* That program: strategy `copies`, and the attenuation of one plane. Both together take less time to compile than two programs,
+/* Gets the program of a first image: strategy `copies`, and the attenuation of one plane. Both together take less time to compile than two programs,
  * because a driver reads its own header for each. */
 skg_status skg_kernels_get_first(skg_context *context, cl_program *program);
 

@@ -91,6 +91,7 @@ int64_t skg_layers_bytes(const skg_layers *layers) {
 skg_status skg_layers_place(skg_context *context, skg_layers *layers, int32_t used,
                             const skg_image_place *image, int64_t columns, int64_t rows, int64_t channels,
                             skg_image_place *place) {
+    SKG_ASSERT(used >= 0 && columns > 0 && rows > 0 && channels > 0);
     *place = *image;
     if (used <= 1) return SKG_OK;
     const int64_t element = image->output_double ? sizeof(cl_double) : sizeof(cl_float);

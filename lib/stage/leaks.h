@@ -30,8 +30,8 @@ typedef struct {
     skg_staging *staging;
     int64_t parts;
     const int64_t *indices; /* [parts] into leaky */
-    const skg_raster
-        *raster; /* of their planes: each part's sums in the order of its contributions, then its count */
+    /* of their planes: each part's sums in the order of its contributions, then its count */
+    const skg_raster *raster;
     const skg_raster *shared; /* that their sums join */
 } skg_leaky_batch;
 
@@ -70,7 +70,7 @@ typedef struct {
     int32_t reserved;
 } skg_leaky_parts;
 
-/* What is read of the leaky parts that contribute to the last frame. */
+/* The counts that are read of the leaky parts that contribute to the last frame. */
 typedef struct {
     int64_t count;
     int64_t *indices; /* [count] into the leaky parts; staged */

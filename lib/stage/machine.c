@@ -1,4 +1,4 @@
-/* What a plan has on the device: released, and counted in bytes. */
+/* The machine of a plan on the device: released, and counted in bytes. */
 #include "stage/machine.h"
 
 /* Empties a slot that the device reads no more, or never will. */

@@ -1,4 +1,4 @@
-/* What a plan has on the device: memory, kernels and stages that its frames share. Private.
+/* The machine of a plan on the device: memory, kernels and stages that its frames share. Private.
  *
  * It is filled by lib/frame, which gives each stage the members that it needs. */
 #ifndef SKG_MACHINE_H
@@ -12,7 +12,7 @@
 #include "stage/tables.h"
 #include "stage/volumes.h"
 
-/* What a room above keeps with a plan's device from call to call. All zero: nothing. */
+/* Memory that a room above keeps with a plan's device from call to call. All zero: nothing. */
 typedef struct {
     void *memory;
     void (*release)(void *memory);
@@ -42,8 +42,8 @@ typedef struct {
     skg_volumes volumes;
     skg_buffer image; /* on its way to the host */
     skg_buffer mean;  /* of the transmission, for the variance of its logarithm */
-    skg_buffer
-        negative; /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
+    /* int[3]: pixels with a negative exponent, or outside the verified range; infinite values */
+    skg_buffer negative;
     skg_pass_memory pass;
     skg_together_slot together[SKG_TABLE_SLOTS];
     int64_t together_next; /* how often one was taken */

@@ -49,8 +49,8 @@ typedef struct skg_pass {
     const struct skg_volumes *volumes; /* borrowed: of the machine; NULL: not known */
     int32_t rules;                     /* SKG_RULE_... */
     int32_t fine;                      /* pixels of the camera along each side of a pixel of the image */
-    int32_t
-        window[4]; /* of the camera: the pixels that jaws leave (skg_field_window), of an image with jaws */
+    /* of the camera: the pixels that jaws leave (skg_field_window), of an image with jaws */
+    int32_t window[4];
     skg_raster_pin main; /* the raster of the closed parts */
 } skg_pass;
 

@@ -6,8 +6,8 @@
 
 /* A mesh whose positions the caller gave. */
 typedef struct {
-    int64_t
-        version; /* of the mesh on the host at that time; 0: never. A later version of the host holds again */
+    /* of the mesh on the host at that time; 0: never. A later version of the host holds again */
+    int64_t version;
     float lowest[3]; /* bounds, mm from the mesh's origin */
     float highest[3];
     skg_buffer taken; /* int [vertices of the layout]: the caller's vertex whose position each takes */

@@ -247,6 +247,7 @@ int64_t skg_geometry_bytes(const skg_geometry *geometry) {
 }
 
 void skg_geometry_find(const skg_geometry *geometry, int64_t vertex, int64_t *part, int64_t *mesh_vertex) {
+    SKG_ASSERT(0 <= vertex && vertex < geometry->vertices);
     int64_t low = 0, high = geometry->parts; /* first_vertex[low] <= vertex < first_vertex[high] */
     while (high - low > 1) {
         const int64_t middle = (low + high) / 2;

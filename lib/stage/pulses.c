@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* What one type of image needs. */
+/* The kernels of one type of image. */
 typedef struct {
     cl_kernel kernels[2]; /* of counts, of variances */
     skg_buffer weights;

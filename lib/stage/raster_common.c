@@ -1,4 +1,4 @@
-/* What the strategies of a raster have in common. */
+/* Functions that the strategies of a raster have in common. */
 #include "stage/raster_private.h"
 
 int64_t skg_raster_sum_bytes(const skg_raster *raster) {

@@ -1,4 +1,4 @@
-/* What the strategies of rasters share. Private. */
+/* The interface of a strategy of rasters, and what all share. Private. */
 #ifndef SKG_RASTER_PRIVATE_H
 #define SKG_RASTER_PRIVATE_H
 
@@ -22,7 +22,7 @@ typedef struct {
     /* Sets what the layout has beside the sizes of detector and planes: copies, shape of tiles, entries of a queue. */
     skg_status (*lay_out)(skg_raster *raster);
     skg_status (*allocate)(skg_raster *raster); /* buffers beside sums and used */
-    /* Its program, instead of skg_raster_get_program. program: NULL: it is only prefetched. */
+    /* Gets the program of the strategy, instead of skg_raster_get_program. program: NULL: it is only prefetched. */
     skg_status (*get_program)(const skg_raster *raster, cl_program *program);
     /* Enqueues one frame. */
     skg_status (*run)(skg_raster *raster, const skg_geometry *geometry, skg_stage_log *log);
@@ -42,8 +42,8 @@ struct skg_raster {
     skg_buffer sums;
     skg_buffer used; /* sets of the planes of copies, counters of claims, extents of the planes */
     cl_int *whole;   /* [planes][4] extents of the whole detector */
-    cl_int
-        *sent; /* [planes][4] extents as the device has them; of passes that are drawn together: not used */
+    /* [planes][4] extents as the device has them; of passes that are drawn together: not used */
+    cl_int *sent;
     skg_buffer scratch; /* bands: an image for each worker; passes: projected vertices for each worker */
     skg_buffer counts, starts, list,
         for_all;         /* tiles; for bands: counters, pieces, pool, list for all bands */

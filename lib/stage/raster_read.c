@@ -1,4 +1,4 @@
-/* What is read from a raster: pixels whose signed hits do not cancel, and how full the tiles are. */
+/* Reads from a raster: pixels whose signed hits do not cancel, and how full the tiles are. */
 #include "core/maths.h"
 #include "stage/raster_private.h"
 

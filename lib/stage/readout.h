@@ -179,10 +179,10 @@ typedef struct {
     skg_buffer image; /* [channels][rows][columns] */
 } skg_flat_field;
 
-/* What a flat field is made with. */
+/* The inputs of a flat field. */
 typedef struct {
-    const skg_samples
-        *samples; /* of source and pixel; NULL: the source is a point, and rays go to the pixels' centres */
+    /* of source and pixel; NULL: the source is a point, and rays go to the pixels' centres */
+    const skg_samples *samples;
     const skg_sums *sums; /* of a frame of the same shape; not read */
     skg_attenuator *attenuator;
     const skg_attenuation *attenuation;

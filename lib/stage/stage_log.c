@@ -35,6 +35,7 @@ skg_status skg_stage_log_add(skg_stage_log *log, const char *stage, cl_event eve
 }
 
 skg_status skg_stage_log_time(const skg_stage_log *log, int64_t index, double *ns) {
+    SKG_ASSERT(0 <= index && index < log->count);
     const cl_event event = log->events[index];
     cl_ulong start = 0, end = 0;
     SKG_CL_TRY(clGetEventProfilingInfo(event, CL_PROFILING_COMMAND_START, sizeof start, &start, NULL));

@@ -25,6 +25,7 @@ skg_status skg_staging_take(skg_staging *staging, int64_t count, size_t size, co
 
 skg_status skg_staging_write(skg_staging *staging, skg_buffer *buffer, int64_t bytes, const void *staged,
                              const char *what) {
+    SKG_ASSERT(bytes >= 0 && staged);
     SKG_TRY(skg_buffer_reserve(staging->context, buffer, bytes, CL_MEM_READ_ONLY, what));
     SKG_CL_TRY(clEnqueueWriteBuffer(staging->context->device->queue, buffer->memory, CL_FALSE, 0,
                                     (size_t)bytes, staged, 0, NULL, NULL));
@@ -32,6 +33,7 @@ skg_status skg_staging_write(skg_staging *staging, skg_buffer *buffer, int64_t b
 }
 
 skg_status skg_staging_read(skg_staging *staging, cl_mem buffer, int64_t bytes, void *staged) {
+    SKG_ASSERT(bytes >= 0 && staged);
     SKG_CL_TRY(clEnqueueReadBuffer(staging->context->device->queue, buffer, CL_FALSE, 0, (size_t)bytes,
                                    staged, 0, NULL, NULL));
     return SKG_OK;

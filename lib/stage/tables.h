@@ -87,8 +87,8 @@ typedef struct {
     int32_t each;        /* 1: passes that are drawn together are frames */
     skg_table_slot slots[SKG_TABLE_SLOTS];
     skg_buffer offsets, corners, part_table, contribution_table, vertex_blocks, triangle_blocks;
-    skg_buffer
-        projected; /* x, y, z, t of each vertex over all parts; t: or rests (kernels/raster/fine.clh) */
+    /* x, y, z, t of each vertex over all parts; t: or rests (kernels/raster/fine.clh) */
+    skg_buffer projected;
     /* int [frames of a job]: the lowest vertex over all parts that was not finite since the last reset; INT32_MAX: none */
     skg_buffer bad;
 } skg_geometry;

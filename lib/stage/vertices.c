@@ -29,7 +29,7 @@ static void read_floats(const skg_mesh_layout *layout, const skg_mesh *mesh, flo
     }
 }
 
-/* What rounding the offsets has lost. */
+/* The rest that rounding the offsets has lost. */
 static void read_lost(const skg_mesh_layout *layout, const skg_mesh *mesh, float *to) {
     double at[3];
     for (int64_t i = 0; i < layout->vertices; i++) {

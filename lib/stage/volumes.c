@@ -81,7 +81,7 @@ double skg_volumes_most(const skg_volumes *volumes, int64_t part) {
 
 /* --- weights */
 
-/* What the curves of a volume contribute. */
+/* The contributions of the curves of a volume. */
 typedef struct {
     const skg_model *model;
     int64_t first; /* of its curves, among the contributors of the model */
@@ -229,7 +229,7 @@ static skg_status fill_rays(skg_placed_volume *placed, const skg_pass *pass, skg
     return skg_cell_lines_write(&placed->lines, context, camera, &rays, args->bits);
 }
 
-/* What displaces the volume in this pass. */
+/* The parts that displace the volume in this pass. */
 static skg_status fill_lists(skg_placed_volume *placed, const skg_pass *pass, const skg_hits_memory *hits,
                              skg_staging *staging, skg_volume_args *args) {
     const skg_priority *priority = &pass->priority;

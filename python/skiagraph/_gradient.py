@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike, NDArray
 from ._frames import Batch, cancel, wait
 from ._images import number_frames
 from ._interface import OK, ArgumentError, SceneError
-from ._library import check, ffi, integer, lib, struct, text
+from ._library import check, choice, ffi, integer, lib, struct, text
 
 if TYPE_CHECKING:
     from ._state import State
@@ -182,12 +182,14 @@ def _derivatives(state: State, directions: list[Mapping[str, Any]], options: dic
     bands = options.get("bands")
     shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
     found = np.empty((len(directions), *shape))
+    output = struct("skg_output")
+    output.type, output.data = choice("type", "float64", "the type"), _pointer(found)
 
     def start(plan: Any, frame: Any, job: Any) -> int:
         nodes = integer("skg_plan_node_count", plan)
         for one in filled:
             one.set_nodes(nodes)
-        return int(lib.skg_plan_derivatives_submit(plan, frame, len(directions), given, _pointer(found), ffi.NULL, job))
+        return int(lib.skg_plan_derivatives_submit(plan, frame, len(directions), given, output, ffi.NULL, job))
 
     _run(state, options, start, False, lambda: found)
     return found

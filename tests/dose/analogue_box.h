@@ -8,8 +8,8 @@ typedef struct {
     const char *material;
     double kev;
     double low[3], high[3];
-    double
-        source; /* z; photons fly towards even places of a square of `side` mm at z = plane, which stops none */
+    /* z; photons fly towards even places of a square of `side` mm at z = plane, which stops none */
+    double source;
     double plane, side;
     double inner[2]; /* z: the layer whose share is asked for */
 } analogue_box;

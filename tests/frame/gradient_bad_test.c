@@ -1,6 +1,7 @@
 /* Gradients of scenes that show nothing or cannot be projected, and jobs that are not done: zeros or a sentence, and no crash. Adjoints of another size or with
  * values that are not finite are in gradient_bits_test.c and gradient_job_test.c. */
 #include "gradients.h"
+#include "support/doubles.h"
 
 #include <math.h>
 #include <string.h>
@@ -46,7 +47,7 @@ static void check_zeros(const char *name, const skg_view *view, int by_mu, int i
     direction_of.detector = way.detector, direction_of.densities = &way.density;
     direction_of.attenuations = by_mu ? &way.attenuation : NULL, direction_of.nodes = by_mu;
     direction_of.vertices = moves;
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction_of, found, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction_of, DOUBLES(found), NULL));
     for (int p = 0; p < PIXELS; p++) ck_assert_msg(found[p] == 0, "%s: pixel %d is %g", name, p, found[p]);
     skg_plan_release(&plan);
 }
@@ -231,7 +232,7 @@ START_TEST(a_world_and_a_parallel_beam) {
     skg_direction_init(&moving);
     moving.poses = twists[0];
     plan = make_plan(&set, &view, SKG_PRECISION_SINGLE, SKG_STRATEGY_AUTO);
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, found, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, DOUBLES(found), NULL));
     skg_plan_release(&plan);
     set = (setting){.parallel = 1, .world = 1, .colours = 1, .quantity = SKG_QUANTITY_ATTENUATION};
     view = make_view(&set);

@@ -2,6 +2,7 @@
 #include "gradient_closed.h"
 
 #include "gradients.h"
+#include "support/doubles.h"
 
 #include <math.h>
 #include <string.h>
@@ -34,7 +35,7 @@ static double find_both(skg_plan *plan, int64_t part, const double twist[6], con
     memcpy(twists[part], twist, sizeof twists[part]);
     skg_direction_init(&moving);
     moving.poses = twists[0];
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, found, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, DOUBLES(found), NULL));
     skg_gradient_init(&gradient);
     gradient.poses = poses[0];
     ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));

@@ -2,6 +2,7 @@
  * less what it takes from others. Boxes give both exactly. */
 #include "gradient_closed.h"
 #include "gradients.h"
+#include "support/doubles.h"
 
 #include <math.h>
 
@@ -134,7 +135,7 @@ START_TEST(sides_count_where_their_part_wins) {
     skg_direction_init(&moving);
     twists[c->moving][0] = 1;
     moving.poses = twists[0];
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, found, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, DOUBLES(found), NULL));
     for (int p = 0; p < PIXELS; p++) sum += adjoint[p] * found[p];
     /* the same */
     ck_assert_msg(fabs(sum - expected) <= 1e-5 * fabs(expected), "%s: derivative %.9g, not %.9g", c->name,

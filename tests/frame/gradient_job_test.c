@@ -2,6 +2,7 @@
 #include "core/context.h"
 #include "device/device.h"
 #include "gradients.h"
+#include "support/doubles.h"
 
 #include <math.h>
 #include <string.h>
@@ -176,8 +177,8 @@ START_TEST(several_jobs) {
     skg_direction_init(&along_both);
     along_both.poses = twists[0], along_both.densities = densities;
     make_gradient(plan, set, adjoint, &direct);
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &along_both, along_once, NULL));
-    ck_skg(skg_plan_derivatives_submit(plan, NULL, 1, &along_both, along_job, &saturated, &jobs[0]));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &along_both, DOUBLES(along_once), NULL));
+    ck_skg(skg_plan_derivatives_submit(plan, NULL, 1, &along_both, DOUBLES(along_job), &saturated, &jobs[0]));
     memset(twists, 0, sizeof twists);
     memset(densities, 0, sizeof densities);
     ck_skg(skg_plan_gradient_submit(plan, NULL, &given, &wanted, &jobs[1]));
@@ -263,16 +264,16 @@ START_TEST(bad_submissions) {
     skg_direction_init(&direction_of);
     twists[1][2] = (double)NAN;
     direction_of.poses = twists[0];
-    ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, 1, &direction_of, derivative, NULL, &job),
+    ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, 1, &direction_of, DOUBLES(derivative), NULL, &job),
                  SKG_ERR_ARGUMENT, "number 8 of the direction's poses is nan; it has to be finite");
     skg_direction_init(&direction_of);
     densities[1] = (double)INFINITY;
     direction_of.densities = densities;
-    ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, 1, &direction_of, derivative, NULL, &job),
+    ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, 1, &direction_of, DOUBLES(derivative), NULL, &job),
                  SKG_ERR_ARGUMENT, "number 1 of the direction's densities is inf");
     skg_direction_init(&direction_of);
     direction_of.attenuations = coefficients, direction_of.nodes = 8;
-    ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, 1, &direction_of, derivative, NULL, &job),
+    ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, 1, &direction_of, DOUBLES(derivative), NULL, &job),
                  SKG_ERR_ARGUMENT, "the attenuations have memory for 8 energies, and the plan has 3");
     ck_skg_fails(skg_plan_derivatives_submit(plan, NULL, 1, &direction_of, NULL, NULL, &job),
                  SKG_ERR_ARGUMENT, "skg_plan_derivatives_submit");

@@ -1,6 +1,7 @@
 /* Gradients by attenuation coefficients at the energies of a plan, against differences in double precision. The materials are tables
  * that have the energies of the beam among theirs. */
 #include "gradients.h"
+#include "support/doubles.h"
 
 #include <skiagraph/material.h>
 #include <skiagraph/report.h>
@@ -95,7 +96,7 @@ static void check_direction(skg_plan *plan, const double *adjoint, int64_t count
     changes[number] = 1;
     along_one.attenuations = changes;
     ck_skg(skg_plan_node_count(plan, &along_one.nodes));
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &along_one, derivative, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &along_one, DOUBLES(derivative), NULL));
     for (int64_t p = 0; p < count; p++) sum += adjoint[p] * derivative[p];
     /* Sums in double, in another order. */
     ck_assert_msg(fabs(sum - gradient) <= 1e-9 * size, "coefficient %d: %.12g, gradient %.12g", (int)number,

@@ -1,6 +1,7 @@
 /* Gradients against differences of images in double precision, with Richardson's step: (4 D(h/2) - D(h)) / 3. Pixels whose
  * hits change within the step are left out: their differences at two steps disagree. */
 #include "gradients.h"
+#include "support/doubles.h"
 
 #include <math.h>
 
@@ -204,7 +205,7 @@ START_TEST(sides_of_a_box_change_pixels_along_a_direction) {
                      .quantity = SKG_QUANTITY_ATTENUATION});
     skg_direction_init(&moving);
     moving.poses = twist;
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, found, &saturated));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, DOUBLES(found), &saturated));
     ck_assert_int_eq(saturated, 0);
     for (int p = 0; p < PIXELS; p++) {
         const double left = (p % SIDE - SIDE / 2) * pitch, low = (p / SIDE - SIDE / 2) * pitch;
@@ -252,7 +253,7 @@ START_TEST(a_derivative_of_sides_is_along_the_gradient) {
     gradient.poses = poses, gradient.source = of_source, gradient.detector = of_detector;
     gradient.vertices = of_parts;
     ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, found, NULL));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &moving, DOUBLES(found), NULL));
     for (int k = 0; k < 6; k++) expected += twist[k] * poses[k] + detector[k] * of_detector[k];
     for (int k = 0; k < 3; k++) expected += source[k] * of_source[k];
     for (int k = 0; k < 24; k++) expected += moves[k] * vertices[k];

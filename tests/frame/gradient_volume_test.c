@@ -1,5 +1,6 @@
 /* Derivatives by the places of meshes in a volume of cells, and beside it, and by all densities, against differences of images. */
 #include "suite.h"
+#include "support/doubles.h"
 #include "support/random.h"
 #include "support/run.h"
 
@@ -164,7 +165,7 @@ START_TEST(derivatives_are_those_of_differences) {
             twists[part][way] = 1;
             skg_direction_init(&direction);
             direction.poses = twists[0];
-            ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL));
+            ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction, DOUBLES(derivative), NULL));
             differentiate(plan, part, way, slope);
             for (int p = 0; p < PIXELS; p++) {
                 largest = isnan(slope[p]) ? largest : fmax(largest, fabs(slope[p]));
@@ -291,7 +292,7 @@ START_TEST(densities_have_the_derivatives_of_differences) {
         skg_gradient_init(&gradient);
         skg_direction_init(&direction);
         change[part] = 1, direction.densities = change;
-        ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL));
+        ck_skg(skg_plan_derivatives(plan, NULL, 1, &direction, DOUBLES(derivative), NULL));
         given.channels = 1, given.rows = given.columns = SIDE, given.data = adjoint;
         gradient.densities = densities;
         ck_skg(skg_plan_gradient(plan, NULL, &given, &gradient));
@@ -372,14 +373,14 @@ START_TEST(what_has_no_derivative_is_refused) {
                  "no vertices of its own");
     skg_direction_init(&direction);
     poses[VOLUME][1] = 1, direction.poses = poses[0];
-    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL), SKG_ERR_UNSUPPORTED,
-                 "no derivative by its place");
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &direction, DOUBLES(derivative), NULL),
+                 SKG_ERR_UNSUPPORTED, "no derivative by its place");
     skg_direction_init(&direction);
     ck_skg(skg_plan_node_count(plan, &direction.nodes));
     ck_assert_int_le(PARTS * direction.nodes, PARTS * 6);
     more[VOLUME] = 1, direction.attenuations = more;
-    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &direction, derivative, NULL), SKG_ERR_UNSUPPORTED,
-                 "no common attenuation coefficient");
+    ck_skg_fails(skg_plan_derivatives(plan, NULL, 1, &direction, DOUBLES(derivative), NULL),
+                 SKG_ERR_UNSUPPORTED, "no common attenuation coefficient");
     skg_plan_release(&plan);
     skg_scene_release(&scene);
 }

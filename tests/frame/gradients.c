@@ -1,5 +1,6 @@
 /* What tests of gradients share: a scene of a few parts, directions in which it moves, and its gradient. */
 #include "gradients.h"
+#include "support/doubles.h"
 
 #include <math.h>
 #include <string.h>
@@ -253,7 +254,7 @@ void make_derivative(skg_plan *plan, const direction *d, double *derivative) {
     if (moves_view > 0) given.source = d->source, given.detector = d->detector;
     for (int64_t p = 0; p < parts; p++)
         if (d->densities[p] != 0) given.densities = d->densities;
-    ck_skg(skg_plan_derivatives(plan, NULL, 1, &given, derivative, &saturated));
+    ck_skg(skg_plan_derivatives(plan, NULL, 1, &given, DOUBLES(derivative), &saturated));
     ck_assert_int_eq(saturated, 0);
     for (int64_t p = 0; p < parts; p++) free(moves[p]);
 }

@@ -1,6 +1,8 @@
 /* Derivatives for failing_test: of everything, and along a direction. */
 #include "hard/failing_gradient.h"
 
+#include "support/doubles.h"
+
 #include <stddef.h>
 
 enum { PARTS = 3, VERTICES = 512, PIXELS = 24 * 18, CHANNELS = 2, NODES = 256 };
@@ -63,9 +65,21 @@ static skg_status along_a_direction(skg_plan *plan, float *image) {
     direction.attenuations = coefficients;
     directions[0] = direction;
     directions[1].poses = *twists;
-    TRY(skg_plan_derivatives(plan, NULL, 2, directions, derivatives, saturated));
+    TRY(skg_plan_derivatives(plan, NULL, 2, directions, DOUBLES(derivatives), saturated));
     for (int i = 0; i < PIXELS; i++) image[i] = (float)derivatives[i];
     return SKG_OK;
+}
+
+/* Floats in the caller's buffer, which has been read by now. */
+static skg_status into_a_buffer(skg_plan *plan, void *buffer) {
+    static const double twists[PARTS][6] = {{0}, {0, 0, 0.1, 0, 0, 0}};
+    skg_direction direction;
+    skg_output output;
+    skg_direction_init(&direction);
+    skg_output_init(&output);
+    direction.poses = *twists;
+    output.buffer = buffer;
+    return skg_plan_derivatives(plan, NULL, 1, &direction, &output, NULL);
 }
 
 skg_status failing_gradient(skg_plan *plan, const skg_scene *scene, const skg_view *view, void *weights,
@@ -79,6 +93,7 @@ skg_status failing_gradient(skg_plan *plan, const skg_scene *scene, const skg_vi
     if (count > VERTICES || channels > CHANNELS) return SKG_ERR_ARGUMENT;
     TRY(by_everything(plan, view, weights, channels));
     TRY(along_a_direction(plan, image));
+    TRY(into_a_buffer(plan, weights));
     for (int k = 0; k < 6; k++) image[k] = (float)poses[1][k], image[6 + k] = (float)detector[k];
     for (int k = 0; k < 3; k++)
         image[12 + k] = (float)source[k], image[15 + k] = (float)densities[k],

@@ -15,8 +15,8 @@
 
 /* What one picture came to, in units of L. */
 typedef struct {
-    int64_t sound,
-        beyond;        /* pixels anywhere where the length hardly changes under the shifts; beyond 3e-6 L */
+    /* pixels anywhere where the length hardly changes under the shifts; beyond 3e-6 L */
+    int64_t sound, beyond;
     int64_t sensitive; /* pixels where it changes */
     double squares;    /* of the errors of the sound ones */
     double worst, lowest, outside;

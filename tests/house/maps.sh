@@ -39,6 +39,25 @@ for file in $(find lib host kernels tests bench materials examples python -name 
     case $file in *.py) begins='^("""|r"""|# [A-Za-z`])' ;; *) begins='^/\* *[A-Za-z0-9`$-]' ;; esac
     sed -n '/^#!/d;/./{p;q;}' "$file" | grep -qE "$begins" || { echo "$file begins without a sentence"; status=1; }
 done
+# A declaration stands on one line: clang-format tears one whose comment behind it is too long for the line.
+# shellcheck disable=SC2046 # a word a file
+torn=$(awk 'FNR == 1 { before = "" }
+    before ~ /^ +((const|struct|static|unsigned|volatile) )*[a-z_0-9]+( \*+)?$/ && before !~ /^ +(else|do|return|break)$/ &&
+        /^ +\**[a-zA-Z_0-9]+(\[|;|,)/ { print FILENAME ":" FNR }
+    before ~ /^ +(const )?[a-z_0-9]+ \*?[a-z_]+(\[[^]]*\])?,$/ && /^ +\**[a-z_]+(\[[^]]*\])?; *\/\*/ { print FILENAME ":" FNR }
+    { before = $0 }' $(find lib host kernels tests bench examples -name '*.[ch]'))
+[ -z "$torn" ] || { echo "Torn declarations; put the comment above them: $torn"; status=1; }
+# A file that a comment names by its folder is there.
+sources=$(find lib host kernels tests bench materials examples python docs -type f -not -path '*/build/*')
+# shellcheck disable=SC2046 # a word a file
+named=$(echo "$sources" | awk 'FILENAME == "-" { for (name = $0; ; sub(/^[^\/]*\//, "", name)) { there[name]; if (name !~ /\//) next } }
+    /#include/ { next }
+    { gsub(/%s\//, "") }
+    { for (line = $0; match(line, /[a-z_]+(\/[a-z_0-9]+)*\/[a-z_0-9]+\.(clh|cl|c|h)[^a-z_0-9]/); line = substr(line, RSTART + RLENGTH)) {
+        name = substr(line, RSTART, RLENGTH - 1)
+        if (!(name in there) && name !~ /^skiagraph\//) print FILENAME ":" FNR " " name
+    } }' - $(echo "$sources" | grep -E '^(lib|host|kernels|tests|bench)/.*\.(c|h|cl|clh)$'))
+[ -z "$named" ] || { echo "These files are named and are not there:"; echo "$named"; status=1; }
 # Structs of at most 40 members; more have a reason in structs.txt.
 # shellcheck disable=SC2013,SC2046 # a word a file and a line
 for struct in $(awk -v most=40 -f tests/house/structs.awk $(find lib host kernels bench tests -name '*.[ch]') | awk '{ print $2 }'); do

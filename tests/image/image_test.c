@@ -74,6 +74,33 @@ START_TEST(tiffs_that_are_turned_are_refused) {
 }
 END_TEST
 
+/* A page that is larger than the first was once written beyond the memory that the caller has for the first. */
+START_TEST(pages_of_other_sizes_are_refused) {
+    uint8_t row[4] = {1, 2, 3, 4};
+    double values[2] = {0};
+    skg_picture_contents contents;
+    skg_picture_contents_init(&contents);
+    TIFF *tiff = TIFFOpen(at("a.tif"), "w");
+    ck_assert_ptr_nonnull(tiff);
+    for (int page = 0; page < 3; page++) {
+        TIFFSetField(tiff, TIFFTAG_IMAGEWIDTH, page == 1 ? 4 : 2);
+        TIFFSetField(tiff, TIFFTAG_IMAGELENGTH, 1);
+        TIFFSetField(tiff, TIFFTAG_BITSPERSAMPLE, 8);
+        TIFFSetField(tiff, TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+        ck_assert_int_eq(TIFFWriteScanline(tiff, row, 0, 0), 1);
+        ck_assert_int_eq(TIFFWriteDirectory(tiff), 1);
+    }
+    TIFFClose(tiff);
+    ck_skg(skg_picture_contents_get(at("a.tif"), &contents));
+    ck_assert(contents.columns == 2 && contents.rows == 1 && contents.pages == 3);
+    ck_skg_fails(skg_picture_load(path, 1, values), SKG_ERR_UNSUPPORTED,
+                 "a.tif: page 1 has 4 x 1 pixels, page 0 has 2 x 1; write pages of one size");
+    ck_assert(values[0] == 0 && values[1] == 0);
+    ck_skg(skg_picture_load(path, 2, values));
+    ck_assert(values[0] == 1 && values[1] == 2);
+}
+END_TEST
+
 START_TEST(tiff_keeps_every_bit) {
     skg_picture picture = picture_of(SKG_TYPE_FLOAT32);
     ck_skg(skg_picture_save(&picture, at("a.tif")));
@@ -269,6 +296,7 @@ static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, tiff_keeps_every_bit);
     tcase_add_test(tests, tiffs_that_are_turned_are_refused);
+    tcase_add_test(tests, pages_of_other_sizes_are_refused);
     tcase_add_test(tests, metaimage_keeps_bits_and_place);
     tcase_add_test(tests, channels_have_names_of_their_own);
     tcase_add_test(tests, metaimage_interleaves_channels);

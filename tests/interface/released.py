@@ -4,8 +4,12 @@
     python3 released.py keep INTERFACE RELEASED VERSION SOVERSION
 
 INTERFACE is lib/bindings/interface.json, RELEASED the same of a release, compressed: released.json.gz. `keep` writes it anew, which is
-a step of a release (CONTRIBUTING.md). Descriptions of a binary are no help here: every signature has int32_t for the enums, so that they
-name no enumerator, and they hold private structs beside the public ones.
+a step of a release (CONTRIBUTING.md). Nodes of versions and what the library exports are interface_symbols's.
+
+Descriptions of a binary (abidw, abidiff) are no help here. Every signature has int32_t for the enums, so that they name no enumerator.
+A struct may grow at its end, which callers say by its size; abidiff of Debian 12 lets it by a suppression
+(has_data_member_inserted_at = end) that also hides a field of another type and fields that changed places. And a library has private
+structs beside the public ones, or no types where it is built without debug information.
 """
 import gzip
 import json

@@ -50,6 +50,7 @@ CASES = [
     (edit("callbacks", "skg_progress_function", lambda f: f.__setitem__("returns", "void")), "0.2.0", "skg_progress_function"),
     (take_out("structs", "skg_view"), "0.2.0", "struct skg_view is gone"),
     (edit("structs", "skg_view", swap_fields), "0.2.0", "skg_view.columns"),
+    (edit("structs", "skg_view", lambda s: s["fields"][1].__setitem__("type", "double")), "0.2.0", "skg_view.projection"),
     (edit("structs", "skg_view", lambda s: s["fields"].pop()), "0.2.0", "skg_view.radius"),
     (new_field(-4), "0.2.0", "put it at the end"),
     (new_field(0), "0.2.0", None),

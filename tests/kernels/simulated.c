@@ -1,6 +1,7 @@
 /* Scenes small enough for a simulator (Oclgrind: races, bounds), a group of kernels each: simulated GROUP. Exit
  * status 0: every call succeeded, and every pixel lies between nothing and the open beam. */
 #include "device/device.h"
+#include "support/doubles.h"
 #include "support/shapes.h"
 
 #include <skiagraph/skiagraph.h>
@@ -337,7 +338,7 @@ static int draw_picture(skg_context *context, const skg_scene *scene, const skg_
     return 1;
 }
 
-/* That of the sum of an image. */
+/* The adjoint of the sum of an image. */
 static skg_adjoint sum_of_pixels(void) {
     static double adjoint[PIXELS];
     skg_adjoint given;
@@ -360,7 +361,7 @@ static int makes_gradient(skg_plan *plan) {
     skg_direction direction;
     skg_direction_init(&direction);
     direction.poses = twists;
-    TRY(skg_plan_derivatives(plan, NULL, 1, &direction, along, NULL));
+    TRY(skg_plan_derivatives(plan, NULL, 1, &direction, DOUBLES(along), NULL));
     for (int p = 0; p < PIXELS; p++) sum += along[p];
     /* The same hits, added up in another order in single precision. */
     const double error = 1e-4 * (fabs(sum) + fabs(source[0]));

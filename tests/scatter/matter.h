@@ -20,8 +20,8 @@ typedef struct {
     double incoherent[MATTER_MOMENTA + 1]; /* over its greatest value; of rows even in the root */
     double coherent[MATTER_MOMENTA + 1];   /* likewise */
     double sum[MATTER_MOMENTA + 1];        /* of `coherent` over the square of the momentum, from 0 on */
-    double compton_norm[MATTER_NORMS + 1],
-        rayleigh_norm[MATTER_NORMS + 1]; /* of the chances below, over the cosine */
+    /* of the chances below, over the cosine */
+    double compton_norm[MATTER_NORMS + 1], rayleigh_norm[MATTER_NORMS + 1];
 } matter;
 
 /* material: of skg_material_create_named; density: g/cm3; 0: its own */

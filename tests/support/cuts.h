@@ -27,9 +27,9 @@ typedef struct {
     double pose[CUTS_PIECES][16], mu[CUTS_PIECES];
     int64_t inside[CUTS_PIECES]; /* the parent's number; -1: none */
     skg_view view;
-    double
-        magnified; /* 1: the block lies within the picture; more: the picture shows this share of its sides */
-    int bodies;    /* the truth: exponents are the sum of weight[k] times the length in body[k], mm */
+    /* 1: the block lies within the picture; more: the picture shows this share of its sides */
+    double magnified;
+    int bodies; /* the truth: exponents are the sum of weight[k] times the length in body[k], mm */
     solid body[CUTS_BODIES];
     double weight[CUTS_BODIES];
     double least, most; /* factors on that sum: the range of two materials */

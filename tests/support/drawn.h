@@ -22,8 +22,8 @@ void drawn_scene_free(drawn_scene *s);
 /* The worst relative errors of an image. */
 typedef struct {
     double whole; /* against the other image */
-    double
-        outside; /* of the interval of rays that are shifted by 4 last places of a coordinate relative to each part */
+    /* of the interval of rays that are shifted by 4 last places of a coordinate relative to each part */
+    double outside;
     int64_t pixel; /* of `outside` */
 } drawn_error;
 

@@ -175,8 +175,8 @@ struct skg_body {
     double tendon[3];            /* displacement as posed, mm */
     double descended;            /* the same over that at weight 1 */
     double withdrawn;            /* by how much the needle is drawn back, mm */
-    double *
-        bone_motion; /* per organ, of bones: displacement of p is row k times p plus the fourth number, 12 numbers */
+    /* per organ, of bones: displacement of p is row k times p plus the fourth number, 12 numbers */
+    double *bone_motion;
     int bones_move;     /* 1: one of them is not at rest */
     int loop;           /* states stored for hysteresis: 0 or LOOP_STEPS */
     int64_t loop_size;  /* doubles of one of them */

@@ -30,8 +30,8 @@ typedef struct {
  * order gives the same gains; this one saves most second visits. */
 typedef struct {
     double *gain; /* mm, per node: how far it moves in the direction of the search; 0 where unseen */
-    int32_t *
-        next; /* per node, then per bucket: the buckets are rings of waiting nodes, each with a place of its own */
+    /* per node, then per bucket: the buckets are rings of waiting nodes, each with a place of its own */
+    int32_t *next;
     int32_t *last; /* the same rings backwards */
     int32_t *seen; /* nodes whose gain was set */
     int64_t found; /* number of nodes in seen */
@@ -54,10 +54,10 @@ typedef struct {
 } skg_chain;
 
 typedef struct {
-    double
-        conflict_mm; /* largest L - U: by how much two drivers contradict each other; 0: every driver is met */
-    int32_t axis;    /* of that conflict, 0 to 2; -1: none */
-    int64_t driver;  /* the driver of that conflict; -1: none */
+    /* largest L - U: by how much two drivers contradict each other; 0: every driver is met */
+    double conflict_mm;
+    int32_t axis;       /* of that conflict, 0 to 2; -1: none */
+    int64_t driver;     /* the driver of that conflict; -1: none */
     int64_t settled[6]; /* nodes moved, per axis and direction */
 } skg_chain_report;
 

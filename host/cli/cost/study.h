@@ -156,11 +156,11 @@ typedef struct {
     int state;         /* COST_ABSENT ... */
     double error, max; /* root mean square and largest, as fractions of the flat field; NaN: not measured */
     int own, halving;  /* points: of today's setting and of the fastest with half of its error; -1: none */
-    double halving_ms,
-        halving_uncertainty_ms; /* what `halving` adds to the price of an image; NaN: nothing halves it */
-    char buys[96];              /* the dial's value that halves it: "84000 triangles" */
-    char reason[320];           /* why something is not known or not measured, or why the error is 0 */
-    char *command;              /* NULL: none */
+    /* what `halving` adds to the price of an image; NaN: nothing halves it */
+    double halving_ms, halving_uncertainty_ms;
+    char buys[96];    /* the dial's value that halves it: "84000 triangles" */
+    char reason[320]; /* why something is not known or not measured, or why the error is 0 */
+    char *command;    /* NULL: none */
 } cost_source;
 
 enum { COST_WHOLE_IS_RAYS, COST_WHOLE_MEASURED, COST_WHOLE_TOO_LONG };

@@ -52,8 +52,8 @@ typedef struct {
     double *band_kev;            /* [channels + 1] edges of the bands; NULL: there are none */
     int64_t parts, projections;
     double load_ms, plan_ms;
-    double
-        frame_ms; /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
+    /* of the last whole image but the first, for which kernels are made; 0: there is none yet */
+    double frame_ms;
     int64_t frames; /* whole images so far */
     float *values;  /* [channels][rows][columns] of an image */
     int is_shown;   /* 1: `values` is a whole image: channel shown_channel of the view `shown` is shown */

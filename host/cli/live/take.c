@@ -6,7 +6,6 @@
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
-#include <unistd.h>
 
 /* The share of the pixels that a .png shows as black, and that it shows as white: those of `image`. */
 static const double OUTSIDE = 0.005;
@@ -16,42 +15,24 @@ static int fail(char *sentence) {
     return 0;
 }
 
-/* Puts name and bytes of a file into one message. */
-static int wrap(const char *name, FILE *file, unsigned char **bytes, size_t *size) {
-    const uint32_t length = (uint32_t)strlen(name);
-    if (fseek(file, 0, SEEK_END) != 0) return 0;
-    const long whole = ftell(file);
-    if (whole < 0 || fseek(file, 0, SEEK_SET) != 0) return 0;
-    *size = 8 + length + (size_t)whole;
+/* Puts the name and the bytes of a file into one message. */
+static int encode(const skg_picture *picture, const char *format, unsigned char **bytes, size_t *size,
+                  char *sentence) {
+    char name[32];
+    int64_t whole = 0;
+    const uint32_t length = (uint32_t)snprintf(name, sizeof name, "image.%s", format);
+    const size_t head = 8 + length;
+    if (skg_picture_encode(picture, name, NULL, 0, &whole) != SKG_OK) return fail(sentence);
+    *size = head + (size_t)whole;
     *bytes = malloc(*size);
-    if (!*bytes) return 0;
+    if (!*bytes) {
+        snprintf(sentence, LIVE_SENTENCE, "%s: out of host memory", name);
+        return 0;
+    }
     memcpy(*bytes, "SKLB", 4);
     memcpy(*bytes + 4, &length, 4);
     memcpy(*bytes + 8, name, length);
-    return fread(*bytes + 8 + length, 1, (size_t)whole, file) == (size_t)whole;
-}
-
-/* Writes the picture into a folder of its own and reads it back, because only files have these formats. */
-static int encode(const skg_picture *picture, const char *format, unsigned char **bytes, size_t *size,
-                  char *sentence) {
-    char folder[] = "/tmp/skiagraph-live-XXXXXX", path[64], name[32];
-    if (!mkdtemp(folder)) {
-        snprintf(sentence, LIVE_SENTENCE, "/tmp: no folder can be made for the file");
-        return 0;
-    }
-    snprintf(name, sizeof name, "image.%s", format);
-    snprintf(path, sizeof path, "%s/%s", folder, name);
-    int is_made = skg_picture_save(picture, path) == SKG_OK;
-    if (!is_made) fail(sentence);
-    FILE *file = is_made ? fopen(path, "rb") : NULL;
-    if (is_made && !(file && wrap(name, file, bytes, size))) {
-        snprintf(sentence, LIVE_SENTENCE, "%s: cannot be read back", path);
-        is_made = 0;
-    }
-    if (file) fclose(file);
-    unlink(path);
-    rmdir(folder);
-    return is_made;
+    return skg_picture_encode(picture, name, *bytes + head, whole, &whole) == SKG_OK || fail(sentence);
 }
 
 int live_take(const live_base *base, const live_wish *wish, const char *format, unsigned char **bytes,

@@ -7,8 +7,8 @@
 typedef struct {
     int rank, count;
     void *state; /* of MPI; NULL: one process */
-    int64_t total,
-        next; /* numbers that are shared out, and how many of them were; next is known to rank 0 only */
+    /* numbers that are shared out, and how many of them were; next is known to rank 0 only */
+    int64_t total, next;
 } cli_ranks;
 
 /* Starts MPI in a process that mpirun or srun started as one of several. Returns an exit status: a build without MPI

@@ -17,8 +17,8 @@ typedef struct {
     cli_scattering *scattering; /* of an image; NULL: path lengths */
     cli_beside *beside;         /* likewise */
     int lengths;                /* 1: path lengths, which have one channel whatever the plan's images have */
-    skg_picture
-        picture; /* quantity and display, for path lengths also name and unit; cli_render fills in the rest */
+    /* quantity and display, for path lengths also name and unit; cli_render fills in the rest */
+    skg_picture picture;
 } cli_rendering;
 
 /* Before anything is computed, checks --repeat, --range and the extension of every -o. */

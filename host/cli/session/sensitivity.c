@@ -47,6 +47,7 @@ typedef struct {
 /* The derivatives of the image by one part's place along x, y and z. */
 static skg_status differentiate(const measuring *m, int64_t part) {
     skg_direction directions[3];
+    skg_output images;
     int64_t cut[3] = {0};
     for (int k = 0; k < 3; k++) {
         double *twists = m->twists + 6 * k * m->found->count;
@@ -54,7 +55,10 @@ static skg_status differentiate(const measuring *m, int64_t part) {
         directions[k].poses = twists;
         twists[6 * part + k] = 1;
     }
-    const skg_status status = skg_plan_derivatives(m->plan, m->frame, 3, directions, m->images, cut);
+    skg_output_init(&images);
+    images.type = SKG_TYPE_FLOAT64;
+    images.data = m->images;
+    const skg_status status = skg_plan_derivatives(m->plan, m->frame, 3, directions, &images, cut);
     for (int k = 0; k < 3; k++) {
         m->twists[6 * (k * m->found->count + part) + k] = 0;
         m->found->saturated += cut[k];

@@ -16,10 +16,10 @@ typedef struct {
     skg_setup_source source; /* of this library's size; its text and path are in `file` */
     int32_t has_side; /* 1: the source stands on a side of the parts, and is placed with the detector */
     double side[3];   /* from the middle to the source, of length 1 */
-    int32_t
-        seen_from_detector; /* 1: columns grow to the right as seen from the detector, not from the source */
-    double source_mm,
-        detector_mm;       /* from the source to the middle, and to the detector; 0: chosen by the parts */
+    /* 1: columns grow to the right as seen from the detector, not from the source */
+    int32_t seen_from_detector;
+    /* from the source to the middle, and to the detector; 0: chosen by the parts */
+    double source_mm, detector_mm;
     int32_t has_isocentre; /* 1: the middle is isocentre; 0: the centre of the parts' bounds */
     double isocentre[3];
     int32_t noted_beyond_table; /* 1: it was said that Schneider's table ends below a Hounsfield number */

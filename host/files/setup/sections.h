@@ -123,8 +123,8 @@ typedef struct {
         char *path;
         const char *group;
         double unit_mm;
-        skg_loaded
-            loaded; /* its mesh is NULL if that failed; the failure is found again where the sample is read */
+        /* its mesh is NULL if that failed; the failure is found again where the sample is read */
+        skg_loaded loaded;
     } * fetched;
     int64_t fetched_count;
     int32_t as_wound; /* as in skg_mesh_reading */

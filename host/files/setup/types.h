@@ -128,8 +128,8 @@ struct skg_setup {
     int32_t oblique;       /* 1: rays cross the scintillator obliquely */
     int32_t supersampling; /* rays along a side of a pixel */
     int32_t bins_once;     /* 1: electronic noise is that of a bin */
-    double
-        bins_variance; /* behind a blur: the variance of a bin over that of the sum of blurred pixels; 0: no blur */
+    /* behind a blur: the variance of a bin over that of the sum of blurred pixels; 0: no blur */
+    double bins_variance;
     int64_t bins[2]; /* sensor pixels of a pixel, along a row and along a column */
     skg_view view;   /* of the first projection */
     skg_scan_section scan;

@@ -13,8 +13,8 @@ enum { TERMS_MAX = 8 };
 struct skg_lag {
     int64_t pixels, count, ghosts;
     double share[TERMS_MAX], stays[TERMS_MAX]; /* stays: of what is held, from one frame to the next */
-    double change[TERMS_MAX],
-        keeps[TERMS_MAX]; /* of the sensitivity; keeps: of what was received, likewise */
+    /* of the sensitivity; keeps: of what was received, likewise */
+    double change[TERMS_MAX], keeps[TERMS_MAX];
     double full;
     double *held;     /* [count][pixels] keV */
     double *received; /* [ghosts][pixels] mean of late frames, over the open beam */

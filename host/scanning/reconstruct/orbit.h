@@ -27,8 +27,8 @@ typedef struct {
     double low, high;   /* places of the outermost columns across the beam (skg_orbit_place) */
     int is_full;
     int is_parker; /* a short scan of a point source: Parker's weights */
-    double
-        period; /* rad: after so much the same lines are seen again; half a turn of a parallel beam that is not displaced */
+    /* rad: after so much the same lines are seen again; half a turn of a parallel beam that is not displaced */
+    double period;
     double times;  /* whole periods */
     double excess; /* rad: what the scan goes on beyond them */
     int displaced; /* in a full turn: 1 or -1, the side on which the detector is wider by more than a column; else 0 */

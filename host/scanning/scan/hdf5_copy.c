@@ -23,7 +23,7 @@ static int copy_value(hid_t old, hid_t to, const char *name, hid_t type, hid_t s
     return done;
 }
 
-/* It may be missing. */
+/* Copies an attribute, which may be missing. */
 static int copy_attribute(hid_t from, hid_t to, const char *name) {
     if (H5Aexists(from, name) <= 0) return 1;
     const hid_t old = H5Aopen(from, name, H5P_DEFAULT);

@@ -149,24 +149,28 @@ SKG_INIT(skg_direction)
  *     frame         NULL: as plan and scene stand
  *     count         of directions, at least 1
  *     directions    [count] what moves or changes; they may be changed when the call returns
- *     derivatives   result, when the job was waited for: [directions][channels][rows][columns], in the plan's quantity for a unit of
- *                   the direction. The job writes there until then. Undefined if it fails or was cancelled
+ *     derivatives   where they go when the job was waited for: an output of the kind SKG_OUTPUT_IMAGE whose frames are the directions,
+ *                   [direction][channel][row][column], in the plan's quantity for a unit of the direction; its frame_stride leads from a
+ *                   direction to the next. They are computed in double: SKG_TYPE_FLOAT64 needs no fp64 of the device,
+ *                   SKG_TYPE_FLOAT32 has the same numbers rounded, and dense doubles in host memory need no memory beside. The job may
+ *                   write there until then. Undefined if it fails or was cancelled
  *     saturated     result: [directions] number of slopes of faces at their corners that were cut off at 2^24 times the mean
  *                   slope, because the sums over hits are 64-bit integers; may be NULL
  *     memory        while the job runs, 8 bytes for each ray and plane of a direction with densities, and for each ray and energy of
  *                   one with attenuations
  *     limits        as above: faces that contain rays change the means of their pixels
  *     job           result
- *     errors        as of skg_plan_gradient_submit; SKG_ERR_ARGUMENT for fewer than one direction and for numbers that are not
- *                   finite; SKG_ERR_UNSUPPORTED also for a blur that depends on depth, and for a volume of cells that
+ *     errors        as of skg_plan_gradient_submit; SKG_ERR_ARGUMENT for fewer than one direction, for numbers that are not
+ *                   finite, and for an output of another kind or one that does not hold the directions; SKG_ERR_UNSUPPORTED also for a
+ *                   blur that depends on depth, and for a volume of cells that
  *                   moves, or whose attenuation coefficients change */
 SKG_API skg_status skg_plan_derivatives_submit(skg_plan *plan, const skg_frame *frame, int64_t count,
-                                               const skg_direction *directions, double *derivatives,
+                                               const skg_direction *directions, const skg_output *derivatives,
                                                int64_t *saturated, skg_job **job);
 
 /** Makes the derivatives of a frame's image along directions: skg_plan_derivatives_submit and skg_job_wait. */
 SKG_API skg_status skg_plan_derivatives(skg_plan *plan, const skg_frame *frame, int64_t count,
-                                        const skg_direction *directions, double *derivatives,
+                                        const skg_direction *directions, const skg_output *derivatives,
                                         int64_t *saturated);
 
 #ifdef __cplusplus

@@ -1,5 +1,5 @@
 /** @file
- * Image files: TIFF, MetaImage and PNG, written and read. A file that is written appears whole or not at all.
+ * Image files: TIFF, MetaImage and PNG, written and read, on disk and in memory. A file that is written appears whole or not at all.
  *
  * @since 0.1.0 */
 #ifndef SKIAGRAPH_IMAGE_H
@@ -67,6 +67,17 @@ SKG_INIT(skg_picture)
  *              detector's steps are not perpendicular, which MetaImage cannot express: use TIFF */
 SKG_API skg_status skg_picture_save(const skg_picture *picture, const char *path);
 
+/** Makes the file that skg_picture_save would write, byte by byte, in memory of the caller.
+ *
+ *     name       its extension says the format, as that of a path does: "frame.png". Messages have it; nothing of this name is opened
+ *     bytes      result: [capacity], of which the file takes the first `size`; NULL: its size alone is wanted
+ *     capacity   bytes of memory
+ *     size       result: bytes of the file, also if they do not fit. Each call makes the file anew: memory for the pixels and
+ *                64 KiB, which suffices for nearly all, saves the call that asks for the size
+ *     errors     as of skg_picture_save; SKG_ERR_ARGUMENT if capacity does not suffice */
+SKG_API skg_status skg_picture_encode(const skg_picture *picture, const char *name, void *bytes,
+                                      int64_t capacity, int64_t *size);
+
 /** Checks that skg_picture_save could write to a path, before a long computation: the extension is known,
  * and a file can be made beside it (one is, for a moment). Errors as of skg_picture_save. */
 SKG_API skg_status skg_picture_path_check(const char *path);
@@ -117,9 +128,24 @@ SKG_API skg_status skg_picture_contents_get(const char *path, skg_picture_conten
 /** Reads a page of an image file as numbers: those of the file, without display curve or scale.
  *
  *     page     0 <= page < number of pages
- *     values   result: [rows][columns]
- *     errors   as above; SKG_ERR_ARGUMENT (page) */
+ *     values   result: [rows][columns] of skg_picture_contents
+ *     errors   as above; SKG_ERR_ARGUMENT (page); SKG_ERR_UNSUPPORTED also for a page of a TIFF that has another size than the first */
 SKG_API skg_status skg_picture_load(const char *path, int64_t page, double *values);
+
+/** Looks at an image file in memory; otherwise as skg_picture_contents_get.
+ *
+ *     name     its extension says the format, as that of a path does; messages have it
+ *     bytes    [size] the file, which is only read, and no longer than the call lasts
+ *     errors   as above; SKG_ERR_UNSUPPORTED also for a MetaImage whose values are in another file */
+SKG_API skg_status skg_picture_contents_decode(const char *name, const void *bytes, int64_t size,
+                                               skg_picture_contents *contents);
+
+/** Reads a page of an image file in memory; otherwise as skg_picture_load. name, bytes: as of skg_picture_contents_decode
+ *
+ *     page     0 <= page < number of pages
+ *     values   result: [rows][columns] */
+SKG_API skg_status skg_picture_decode(const char *name, const void *bytes, int64_t size, int64_t page,
+                                      double *values);
 
 #ifdef __cplusplus
 }

@@ -123,11 +123,17 @@ typedef struct {
     /** A detector that counts; NULL: one that integrates energy. Each window is a channel, of photons, transmission or attenuation. In place
      * of response, bands, blurs and DQE; not with scatter, half precision or derivatives. Its pixels are those of the view. */
     skg_counter *counter;
-    /** 1: quantum noise of the photons that each pixel detects; exact where they are few. */
-    int32_t noise;
+    /** Scattered photons, which are added to images before noise and blur; NULL: none. Frames whose scene or view
+     * differs from the last one's take seconds, and submitting waits for them. Needs closed meshes, materials of known
+     * composition and density; not with half precision, nor a world that scatters more
+     * than 20 % of the beam by itself. The field of the beam may not be wider than the heel's anode and the bow-tie's
+     * profile allow. */
+    const skg_scatter *scatter;
     /** 1: the photons of `scatter` do not meet the world at all; the primary does. 0 (default): the world scatters and stops them,
      * everywhere between source and detector. */
     int32_t world_scatter_off;
+    /** 1: quantum noise of the photons that each pixel detects; exact where they are few. */
+    int32_t noise;
     /** Swank factor of the detector at all energies, above 0 to 1, times that of the response: pulse heights
      * multiply the variance of the noise by 1 / swank. 1 (default): none. No effect where photons are
      * counted. */
@@ -141,12 +147,6 @@ typedef struct {
     /** Noise power by spatial frequency; NULL: quantum noise is blurred as the signal is. Needs noise, and neither bands
      * nor depth_blur. */
     const skg_dqe *dqe;
-    /** Scattered photons, which are added to images before noise and blur; NULL: none. Frames whose scene or view
-     * differs from the last one's take seconds, and submitting waits for them. Needs closed meshes, materials of known
-     * composition and density; not with half precision, nor a world that scatters more
-     * than 20 % of the beam by itself. The field of the beam may not be wider than the heel's anode and the bow-tie's
-     * profile allow. */
-    const skg_scatter *scatter;
 } skg_plan_options;
 
 /** Gets the name and the unit of a quantity.

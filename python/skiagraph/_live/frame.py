@@ -1,9 +1,7 @@
 """Images for a page: computed by the plans of the scene, and packed as docs/live.md has them. Private."""
 from __future__ import annotations
 
-import pathlib
 import struct
-import tempfile
 import time
 import warnings
 from dataclasses import dataclass
@@ -17,7 +15,7 @@ from .._device import RangeWarning
 from .._frames import Batch
 from .._interface import ENUMS, ArgumentError
 from .._library import listed
-from .._picture import write_picture
+from .._picture import encode_picture
 from ..view import View
 from .subject import Subject
 from .wish import Wish
@@ -146,10 +144,7 @@ def take(subject: Subject, ending: str) -> bytes:
     with state.calls():
         channel = listed("skg_channel", "skg_plan_channel", state.plan({}, view))[0]
     name = f"image.{ending}"
-    with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
-        path = pathlib.Path(folder, name)
-        low, high = np.quantile(image, (_OUTSIDE, 1 - _OUTSIDE))
-        write_picture(path, image, names=[channel["name"]], unit=channel["unit"], view=view, flat_field=channel["flat_field"],
-                      range=(float(low), float(high)))
-        data = path.read_bytes()
+    low, high = np.quantile(image, (_OUTSIDE, 1 - _OUTSIDE))
+    data = encode_picture(name, image, names=[channel["name"]], unit=channel["unit"], view=view,
+                          flat_field=channel["flat_field"], range=(float(low), float(high)))
     return b"SKLB" + struct.pack("<I", len(name)) + name.encode() + data
