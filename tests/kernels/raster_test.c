@@ -378,6 +378,7 @@ START_TEST(vertex_that_is_not_finite) {
     int32_t merged[30] = {0, 1, 3};
     skg_mesh_layout layouts[2] = {{.vertices = 10}, {.vertices = 30, .source = merged}};
     skg_geometry geometry = {.parts = 3,
+                             .vertices = 40,
                              .first_vertex = (int64_t[]){0, 10, 10, 40},
                              .mesh_of_part = (int64_t[]){0, 0, 1},
                              .layouts = layouts};
