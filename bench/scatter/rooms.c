@@ -79,8 +79,8 @@ static void take_blocks(const room *r, const subject *s, const double *image, do
 /* What was found of a room, over the mean. */
 typedef struct {
     double off, blocks, worst; /* of the sum; root mean square over the blocks; of a block */
-    double found, still,
-        stated; /* root mean square over the pixels; the part of it that stays in a long run; as stated */
+    /* root mean square over the pixels; the part of it that stays in a long run; as stated */
+    double found, still, stated;
 } finding;
 
 /* The square of the root mean square of a run's blocks beside the truth's, less what the truth's own noise explains. */

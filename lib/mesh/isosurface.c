@@ -180,7 +180,6 @@ static double gyroid(const double *box, double period, double level, double cell
 /* The wave changes by at most 2 pi / period sqrt(3) a mm, and an edge of the grid is at most sqrt(3) cells long, so that with so many
  * cells along a period no edge leaps over the sheet, which would leave a hole there. */
 static skg_status find_cells(const char *shape, double level, int64_t *cells) {
-    const int64_t least = (int64_t)ceil(3 * SKG_PI / level);
     if (!(level > 0 && level <= 1.4))
         return skg_fail(SKG_ERR_ARGUMENT, "gyroid: level %g: above 0 to 1.4", level);
     if (3 * SKG_PI / level > GYROID_CELLS_MAX)
@@ -188,6 +187,7 @@ static skg_status find_cells(const char *shape, double level, int64_t *cells) {
             SKG_ERR_ARGUMENT,
             "gyroid: level %g: a sheet so thin would have holes at %d cells along a period; give at least %.2g",
             level, GYROID_CELLS_MAX, 3 * SKG_PI / GYROID_CELLS_MAX + 0.0005);
+    const int64_t least = (int64_t)ceil(3 * SKG_PI / level);
     if (*cells == 0) *cells = least < 24 ? 24 : least;
     SKG_TRY(skg_check_count(shape, "cells along a period", *cells, 4, GYROID_CELLS_MAX));
     if (*cells >= least) return SKG_OK;

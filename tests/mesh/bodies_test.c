@@ -175,6 +175,8 @@ START_TEST(a_gyroid_is_one_sheet) {
     ck_assert_double_le(health.bounds[3], 10 * (1 + DBL_EPSILON));
     skg_mesh_release(&mesh);
     ck_skg_fails(skg_mesh_create_gyroid(box, 8, 2, 24, &mesh), SKG_ERR_ARGUMENT, "level 2");
+    ck_skg_fails(skg_mesh_create_gyroid(box, 8, 0, 0, &mesh), SKG_ERR_ARGUMENT, "level 0: above 0");
+    ck_skg_fails(skg_mesh_create_gyroid(box, 8, (double)NAN, 0, &mesh), SKG_ERR_ARGUMENT, "above 0 to 1.4");
     ck_skg_fails(skg_mesh_create_gyroid(box, 8, 0.3, 31, &mesh), SKG_ERR_ARGUMENT,
                  "may have holes; give at least 32");
     ck_skg_fails(skg_mesh_create_gyroid(box, 8, 0.03, 0, &mesh), SKG_ERR_ARGUMENT, "give at least 0.037");
