@@ -32,7 +32,7 @@ try_gvxr() {
             echo "$line: works without skiagraph-gvxr"
             exit 1
         fi
-        grep -q '^ModuleNotFoundError: skiagraph.gvxr is a package of its own: pip install skiagraph-gvxr' "$stage/without" ||
+        grep -q '^ModuleNotFoundError: skiagraph.gvxr is a package of its own, skiagraph-gvxr: pip install' "$stage/without" ||
             { cat "$stage/without"; exit 1; }
     done
     for path in "$2:$3" "$3:$2"; do
