@@ -113,6 +113,35 @@ def test_a_list_of_directions_has_the_bits_of_each(scene):
         scene.derivative([{"source": [0, 0, 1]}, {"source": [0, 0, float("nan")]}])
 
 
+def test_a_ray_through_an_edge_has_the_derivative_of_one_side():
+    """Rays of a parallel beam aslant meet the edges of a box exactly: there the image has one slope on each side, and the derivative is one of the two."""
+    made, step, given = sk.Scene(), 1e-4, np.random.default_rng(2).uniform(0.5, 1, (60, 60))
+    made.add("box", sk.Mesh.cuboid(15, 40, 40), material="mu:0.3")
+    made.view = sk.View(source=(-120, -70, -700), detector=(30, 20, 300), column_step=(1, 0, 0), row_step=(0, 1, 0), pixels=(60, 60),
+                        projection="parallel")
+    made.beam = sk.Beam.mono(60, 1)
+    options = {"quantity": "attenuation"}
+    images = []
+    for moved in (step, 0, -step):
+        made["box"].pose = sk.translate(moved, 0, 0)
+        images.append(made.image(precision="double", **options))
+    made["box"].pose = np.eye(4)
+    sides = np.array([images[0] - images[1], images[1] - images[2]]) / step
+    # differences of attenuations of about 1, whose rounding is divided by the step
+    near = 64 * np.finfo(float).eps / step
+    kinks = np.abs(sides[0] - sides[1]) > near
+    assert 20 < kinks.sum() < 1000
+    taken = {}
+    for precision, tolerance in (("single", 1e-5), ("double", near)):  # of single: rounding of a length of 40 mm, some epsilons of float
+        found = made.derivative({"poses": {"box": [1, 0, 0, 0, 0, 0]}}, precision=precision, **options)
+        distance = np.abs(sides - found)
+        assert distance.min(axis=0).max() < tolerance
+        taken[precision] = distance.argmin(axis=0)
+        back = made.gradient(given, wrt=("poses",), precision=precision, **options)["poses"]["box"][0]
+        assert back == pytest.approx(float((found * given).sum()), rel=tolerance, abs=tolerance)
+    assert (taken["single"] == taken["double"])[kinks].all()
+
+
 def test_what_is_wrong_is_said(scene):
     with pytest.raises(sk.ArgumentError, match="'colour'"):
         scene.derivative({"colour": {"inner": 1}})
