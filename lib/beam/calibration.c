@@ -10,6 +10,10 @@
  *     tungsten     160, 180, 200, 225, 250, 275, 300 kV at the same, behind 2.5 mm of aluminium, 0.5 and 2 mm of copper
  *     molybdenum   20, 25, 28, 30, 32, 35, 40, 49 kV at 12, 16, 20 degrees
  *     rhodium      the same
+ *
+ * SpekPy ends at 300 kV. From there to 400 kV the continuum of tungsten changes as that of xpecgen 1.3.1 does (G. Hernandez, F. Fernandez,
+ * Medical Physics 43 (2016) 4655; electrons as simulated by FLUKA), at 12 and 20 degrees, weighted behind 2.5 mm of aluminium and 0, 0.5, 2
+ * and 8 mm of copper (bench/validate/beyond.py).
  */
 #include "beam/spectrum.h"
 #include "material/material.h"
@@ -23,12 +27,14 @@ enum { TUNGSTEN = 74 };
  *
  *     continuum   factor exp(sum of c[i][j] x^i v^j), depth factor exp(d[0] + d[1] x + d[2] v + d[3] x v)
  *     continuum   above the seam also: factor exp(sum of h[i][j] x^i w^(j + 1)), depth factor exp((g[0] + g[1] x) w)
+ *     continuum   beyond the range also: factor exp(sum of e[i] x^i ln(tube voltage / end of the range))
  *     K lines     factor exp(k[0] + k[1] t + k[3] t^2), depth factor exp(k[2] + k[4] t)
  *     K lines     above the seam also: factor exp((k_high[0] + k_high[1] w) w), depth factor exp(k_high[2] w)
  *     L lines     factor 1e6 exp(l[0] + l[1] t + l[4] t^2), depth factor exp(l[2] + l[3] ln u); 0: none */
 static const skg_tube_calibration calibrations[] = {
     {.range = {.z = TUNGSTEN, .kvp = {20, 300}, .angle_deg = {6, 20}},
      .seam_kvp = 150,
+     .last_kvp = 400,
      .continuum =
          {[SKG_TUBE_MODEL_EBEL] =
               {.c = {{-0.26528, -0.57181, -0.16581},
@@ -37,7 +43,8 @@ static const skg_tube_calibration calibrations[] = {
                      {0.05661, 1.71574, 0.88452}},
                .d = {-0.29947, 0.37146, -0.17210, 0.18890},
                .h = {{-0.13369, -0.89064}, {-2.31199, 3.86295}, {4.00020, -4.97012}, {-1.18446, 2.10099}},
-               .g = {0.15850, -1.60806}},
+               .g = {0.15850, -1.60806},
+               .e = {-1.72793, 6.32674, -10.77686, 7.69090}},
           [SKG_TUBE_MODEL_BIRCH] =
               {.c = {{17.95876, 0.40644, -0.15790},
                      {5.72188, -1.21525, 1.08842},
@@ -45,7 +52,8 @@ static const skg_tube_calibration calibrations[] = {
                      {4.01228, -1.10565, 1.17225}},
                .d = {-1.02967, 0.76355, -0.06929, 0.05092},
                .h = {{1.07614, -0.04556}, {-4.43441, -1.11170}, {5.37455, 4.61532}, {-2.17859, -4.04920}},
-               .g = {0.60334, -1.77872}}},
+               .g = {0.60334, -1.77872},
+               .e = {0.23505, 0.43538, -2.18388, 1.28500}}},
      .k = {1.13267, -0.20704, 1.27924, -0.01750, -0.84165},
      .k_high = {-0.23551, -0.23381, -1.41698},
      .l = {1.52205, -0.21778, 0.16689, -0.23292, -0.03205}},
@@ -83,7 +91,7 @@ const skg_tube_calibration *skg_tube_calibration_of(int32_t z) {
     return &calibrations[0];
 }
 
-/* Beyond its range, a calibration continues as at the end of it: powers of the fit would grow without bounds. */
+/* Beyond its range, the fit continues as at the end of it: its powers would grow without bounds. */
 static double below_seam(double kvp, const skg_tube_calibration *calibration) {
     return fmin(fmax(kvp, calibration->range.kvp[0]), calibration->seam_kvp);
 }
@@ -93,15 +101,20 @@ static double above_seam(double kvp, const skg_tube_calibration *calibration) {
     return log(fmax(fmin(kvp, calibration->range.kvp[1]) / calibration->seam_kvp, 1));
 }
 
+/* The logarithm of the voltage over the end of the range, 0 within it. */
+static double beyond_range(double kvp, const skg_tube_calibration *calibration) {
+    return log(fmax(fmin(kvp, calibration->last_kvp) / calibration->range.kvp[1], 1));
+}
+
 double skg_tube_continuum(const skg_tube_calibration *calibration, int32_t model, const skg_anode *anode,
                           double energy_kev) {
     const skg_continuum_factors *f = &calibration->continuum[model];
     const double x = energy_kev / anode->kvp, v = log(below_seam(anode->kvp, calibration) / 80);
-    const double w = above_seam(anode->kvp, calibration);
+    const double w = above_seam(anode->kvp, calibration), beyond = beyond_range(anode->kvp, calibration);
     double logarithm = 0;
     for (int i = 3; i >= 0; i--)
         logarithm = logarithm * x + f->c[i][0] + v * (f->c[i][1] + v * f->c[i][2]) +
-                    w * (f->h[i][0] + w * f->h[i][1]);
+                    w * (f->h[i][0] + w * f->h[i][1]) + beyond * f->e[i];
     const double deeper =
         exp(f->d[0] + f->d[1] * x + (f->d[2] + f->d[3] * x) * v + (f->g[0] + f->g[1] * x) * w);
     return exp(logarithm) * (model == SKG_TUBE_MODEL_BIRCH ? skg_birch_continuum(anode, energy_kev, deeper)

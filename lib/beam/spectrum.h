@@ -85,11 +85,13 @@ typedef struct {
 typedef struct {
     double c[4][3], d[4];
     double h[4][2], g[2]; /* above the seam */
+    double e[4];          /* beyond the range */
 } skg_continuum_factors;
 
 typedef struct {
     skg_tube_range range;
     double seam_kvp; /* where factors of higher voltages begin; the end of the range: there are none */
+    double last_kvp; /* up to which spectra follow another computation than that of the range; 0: none */
     skg_continuum_factors continuum[2]; /* by SKG_TUBE_MODEL_ */
     double k[5], l[5], k_high[3];
 } skg_tube_calibration;

@@ -110,7 +110,8 @@ skg_status skg_tube_bare(const skg_tube *tube, skg_spectrum **spectrum) {
 /* Says what lies outside the range for which the model was compared with others. */
 static void warn_of_range(const skg_tube *tube, const skg_logger *log) {
     const char *symbol = skg_elements[tube->anode].symbol;
-    const skg_tube_range *range = &skg_tube_calibration_of(tube->anode)->range;
+    const skg_tube_calibration *calibration = skg_tube_calibration_of(tube->anode);
+    const skg_tube_range *range = &calibration->range;
     if (range->z != tube->anode) {
         skg_logger_say(
             log, SKG_LOG_WARNING,
@@ -123,8 +124,11 @@ static void warn_of_range(const skg_tube *tube, const skg_logger *log) {
         skg_logger_say(
             log, SKG_LOG_WARNING,
             "%g kV: the tube model is validated from %g to %g kV only, with an anode of %s; output and "
-            "half-value layers are not verified",
-            tube->kvp, range->kvp[0], range->kvp[1], symbol);
+            "half-value layers %s",
+            tube->kvp, range->kvp[0], range->kvp[1], symbol,
+            tube->kvp > range->kvp[1] && tube->kvp <= calibration->last_kvp
+                ? "change from there as by another computation (xpecgen), and are not verified by measurements"
+                : "are not verified");
     if (tube->angle_deg < range->angle_deg[0] || tube->angle_deg > range->angle_deg[1])
         skg_logger_say(
             log, SKG_LOG_WARNING,

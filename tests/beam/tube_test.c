@@ -262,6 +262,9 @@ START_TEST(limits_are_warned_of) {
         {74, 19, 12, 1, "validated from 20 to 300 kV"},
         {74, 160, 12, 4, NULL},
         {74, 320, 12, 4,
+         "validated from 20 to 300 kV only, with an anode of W; output and half-value layers change from there as by another "
+         "computation (xpecgen)"},
+        {74, 420, 12, 4,
          "validated from 20 to 300 kV only, with an anode of W; output and half-value layers are not verified"},
         {74, 60, 5, 2.5, "validated from 6 to 20 degrees"},
         {74, 60, 25, 2.5, "validated from 6 to 20 degrees"},
@@ -290,6 +293,34 @@ START_TEST(limits_are_warned_of) {
         skg_spectrum_release(&s);
     }
     skg_material_release(&al);
+}
+END_TEST
+
+/* How beams of tungsten at 12 degrees change from 300 kV in xpecgen 1.3.1 (bench/validate/beyond.py), whose electrons follow simulations by
+ * FLUKA: air kerma and first half-value layers in Al and Cu, behind 2.5 mm of aluminium and some copper. */
+START_TEST(changes_from_300_kv) {
+    static const struct {
+        double kv, mm_cu, kerma, hvl_al, hvl_cu;
+    } rows[] = {{350, 0, 1.294, 1.143, 1.400},   {400, 0, 1.631, 1.268, 1.821},
+                {350, 0.5, 1.403, 1.069, 1.213}, {400, 0.5, 1.875, 1.130, 1.407},
+                {350, 2, 1.504, 1.049, 1.139},   {400, 2, 2.111, 1.092, 1.260},
+                {350, 8, 1.693, 1.041, 1.104},   {400, 8, 2.584, 1.078, 1.192}};
+    const int32_t model = _i ? SKG_TUBE_MODEL_BIRCH : SKG_TUBE_MODEL_EBEL;
+    for (size_t i = 0; i < sizeof rows / sizeof *rows; i++) {
+        const layer layers[] = {{"Al", 2.5}, {rows[i].mm_cu > 0 ? "Cu" : NULL, rows[i].mm_cu}, {NULL, 0}};
+        const skg_quality here = quality(model, rows[i].kv, 12, layers),
+                          seam = quality(model, 300, 12, layers);
+        const double kerma = here.air_kerma_ugy / seam.air_kerma_ugy / rows[i].kerma - 1;
+        const double al = here.hvl1_mm_al / seam.hvl1_mm_al / rows[i].hvl_al - 1;
+        const double cu = here.hvl1_mm_cu / seam.hvl1_mm_cu / rows[i].hvl_cu - 1;
+        if (getenv("SKG_LIST"))
+            printf("%g kV, %g mm Cu: kerma %+.1f %%, HVL1 %+.1f %% in Al, %+.1f %% in Cu\n", rows[i].kv,
+                   rows[i].mm_cu, 100 * kerma, 100 * al, 100 * cu);
+        /* What the four factors of the fit reach, and a fifth more. */
+        ck_assert_msg(fabs(kerma) <= 0.03 && fabs(al) <= 0.008 && fabs(cu) <= 0.04,
+                      "%g kV, %g mm Cu: kerma %+.1f %%, HVL1 %+.1f %% in Al, %+.1f %% in Cu", rows[i].kv,
+                      rows[i].mm_cu, 100 * kerma, 100 * al, 100 * cu);
+    }
 }
 END_TEST
 
@@ -334,6 +365,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, k_lines_share);
     tcase_add_test(tests, heel_of_a_tube);
     tcase_add_test(tests, limits_are_warned_of);
+    tcase_add_loop_test(tests, changes_from_300_kv, 0, 2);
     tcase_add_loop_test(tests, beyond_the_calibration, 0, 2);
     tcase_add_test(tests, beam_of_figure_4);
     tcase_add_test(tests, output_scales);

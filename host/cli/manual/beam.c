@@ -44,7 +44,7 @@ static const cli_flag beam_unit = {"--unit", NULL, "The unit of the file's energ
 static const char *const text[] = {
     "Computes the spectrum of a tube behind its filters by the model of Ebel 1999 or of Birch and Marshall 1979; "
     "output and lines are calibrated to SpekPy 2.5: tungsten from 20 to 300 kV (up to 150 kV half-value layers agree with measured ones, too), "
-    "molybdenum and rhodium from 20 to 49 kV. Beyond, nothing is verified, and a warning says so. Prints the mean energy, the half-value layers of air kerma, the "
+    "molybdenum and rhodium from 20 to 49 kV. Of tungsten from there to 400 kV spectra change as another computation says (xpecgen), and beyond nothing is verified; a warning says so. Prints the mean energy, the half-value layers of air kerma, the "
     "homogeneity and the output. Give --kvp, or --file for a spectrum that is known.",
     "Bins hold photons per mm2, for the load --mas at --distance.",
     "--json prints {mean_energy_keV, hvl1_mm_al, hvl2_mm_al, hvl1_mm_cu, hvl2_mm_cu, homogeneity, "

@@ -95,7 +95,8 @@ enum skg_tube_model {
  * 2.5 mm Al, with tungsten at 12 degrees, air kerma at 1 m is within 2 % of 48.9, 82.0, 118.9, 158.7 and
  * 222.8 uGy/mAs at 60, 80, 100, 120 and 150 kV, and the first half-value layer within 1 % of 2.082, 2.734,
  * 3.458, 4.219 and 5.372 mm Al; from 160 to 300 kV, behind 2.5 mm Al and 0.5 and 2 mm Cu, air kerma is within 2 % and first
- * half-value layers in Al and Cu within 1.5 % of SpekPy's at 12 degrees (3 % at 20 degrees); beyond 300 kV nothing is verified;
+ * half-value layers in Al and Cu within 1.5 % of SpekPy's at 12 degrees (3 % at 20 degrees); from 300 to 400 kV they change as xpecgen's
+ * do, which is no measurement; beyond nothing is verified;
  * behind 0.5 mm Al at 25 to 40 kV both are within 5 %; mammographic beams (Mo/Mo,
  * Mo/Rh, Rh/Rh, W/Rh, W/Ag) are within 2 %. First half-value layers that PTB measured are reproduced within 3 %.
  * What lies outside the range of the calibration is reported as a warning: other voltages and angles, other
