@@ -8,7 +8,7 @@
 /* Cells along each axis. More would separate components better and cost more: 33^3 counts are 140 KiB. */
 enum { CELLS = 32, EDGES = CELLS + 1 };
 
-/* Boxes counted per cell of the mesh's bounds: differences at the corners of each box, summed at the end. */
+/* Boxes counted per cell of the mesh's bounds: differences at the edges of each box along z, summed at the end. */
 typedef struct {
     double low[3], step[3];
     int32_t *counts; /* [EDGES][EDGES][EDGES] */
@@ -20,35 +20,31 @@ static int64_t cell_of(const cell_grid *grid, int axis, double x) {
     return cell < 0 ? 0 : cell > CELLS - 1 ? CELLS - 1 : (int64_t)cell;
 }
 
+/* Columns of cells along z are filled as they are; along x and y the differences at the corners are added. */
 static void add_box(cell_grid *grid, const float *box) {
     int64_t from[3], to[3];
     for (int k = 0; k < 3; k++) {
         from[k] = cell_of(grid, k, (double)box[k]);
         to[k] = cell_of(grid, k, (double)box[3 + k]) + 1;
     }
-    for (int corner = 0; corner < 8; corner++) {
-        int64_t at = 0, sign = 1;
-        for (int k = 0; k < 3; k++) {
-            int last = corner >> k & 1;
-            at = at * EDGES + (last ? to[k] : from[k]);
-            if (last) sign = -sign;
-        }
-        grid->counts[at] += (int32_t)sign;
+    for (int corner = 0; corner < 4; corner++) {
+        const int64_t x = corner & 1 ? to[0] : from[0], y = corner & 2 ? to[1] : from[1];
+        const int32_t sign = corner == 0 || corner == 3 ? 1 : -1;
+        int32_t *column = grid->counts + (x * EDGES + y) * EDGES;
+        for (int64_t z = from[2]; z < to[2]; z++) column[z] += sign;
     }
 }
 
-/* Sums the differences along each axis in turn, and returns the largest count. */
+/* Sums the differences along x and y, and returns the largest count. Loops have no dependence along z, so that they take vectors. */
 static int64_t largest(cell_grid *grid) {
-    enum { PLANE = EDGES * EDGES };
+    enum { PLANE = EDGES * EDGES, ROWS = CELLS * EDGES };
     int32_t *counts = grid->counts, most = 1;
     for (int i = PLANE; i < EDGES * PLANE; i++) counts[i] += counts[i - PLANE];
-    for (int x = 0; x < EDGES; x++)
-        for (int i = EDGES; i < PLANE; i++) counts[x * PLANE + i] += counts[x * PLANE + i - EDGES];
-    for (int row = 0; row < PLANE; row++)
-        for (int i = row * EDGES, end = i + EDGES, sum = 0; i < end; i++) {
-            sum += counts[i];
-            most = sum > most ? sum : most;
-        }
+    for (int x = 0; x < CELLS; x++) {
+        int32_t *plane = counts + x * PLANE;
+        for (int i = EDGES; i < PLANE; i++) plane[i] += plane[i - EDGES];
+        for (int i = 0; i < ROWS; i++) most = plane[i] > most ? plane[i] : most;
+    }
     return most;
 }
 

@@ -177,9 +177,10 @@ static skg_status pose_one(skg_body *body, skg_body_organ *o) {
 /* Writes an organ's positions into its mesh, as floats where the upload reads them. At rest the file's own positions
  * return. */
 static skg_status write_mesh(skg_body_organ *o) {
-    int rests = 1, differs = 0;
-    for (int64_t i = 0; i < 3 * o->vertices; i++) rests = rests && o->moved[i] == 0;
-    if (rests) {
+    int64_t at_rest = 0;
+    int differs = 0;
+    while (at_rest < 3 * o->vertices && o->moved[at_rest] == 0) at_rest++;
+    if (at_rest == 3 * o->vertices) {
         if (!o->changed) return SKG_OK;
         o->changed = 0;
         return skg_mesh_positions_set(o->mesh, o->rest, 0);
