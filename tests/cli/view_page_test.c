@@ -117,9 +117,13 @@ static const char moving_script[] =
     "differs('between key frames', () => setTime(0.02));\n"
     "byId('moment').value = 0.25; differs('slider', () => byId('moment').oninput()); check('stopped', !playing);\n"
     "check('says the time', byId('now').textContent === '1.00 s of 4 s'); key(' '); check('plays', playing);\n"
-    "const liver = scene.parts.find(q => q.label === 'liver'), ofFrame = f => shorts(liver.positions, 3 * liver.vertices * liver.frames)\n"
+    "const liver = scene.parts.find(q => q.label === 'liver'), ofFrame = f => positionsOf(liver)\n"
     "  .subarray(3 * liver.vertices * f, 3 * liver.vertices * (f + 1)).filter((_, i) => i % 3 === 2);\n"
     "const mean = f => ofFrame(f).reduce((s, x) => s + x, 0) / liver.vertices * liver.step[2];\n"
+    "check('rounded by less than .03 mm', liver.unit.every((u, k) => u >= 1 && u * liver.step[k] < 0.06));\n"
+    "const all = positionsOf(liver), count = 3 * liver.vertices, most = k => all.reduce((m, x, i) => i % 3 === k && i >= count ?\n"
+    "  Math.max(m, Math.abs(x - all[i - count])) : m, 0);\n"
+    "check('8 bits are used', [0, 1, 2].some(k => most(k) > 100 * liver.unit[k]));\n"
     "check('the liver goes down', mean(10) - mean(0) > 8);\n"; /* mm, from inspiration to expiration; breathe_test */
 
 /* Colours by sensitivity: the tissue changes the image more than the bone in it, and comes first. */

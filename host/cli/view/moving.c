@@ -17,9 +17,9 @@ enum { KEY_FRAMES_MAX = 100, FRAMES_MAX = 1000000 };
  * 0.8 MB. */
 enum { TRIANGLES_MAX = 100000, BYTES_MAX = 3000000, PIXELS_MAX = 600000, SIDE_MAX = 512 };
 
-/* A triangle has 3 corners of 2 bytes; for each triangle there is half a vertex, of 6 bytes in each frame. */
+/* A triangle has 3 corners of 2 bytes; for each triangle there is half a vertex, of 6 bytes in the first frame and 3 in each later one. */
 int64_t view_max_triangles(int64_t frames) {
-    const double most = (double)BYTES_MAX / (6 + 3 * (double)frames);
+    const double most = (double)BYTES_MAX / (7.5 + 1.5 * (double)frames);
     return most < TRIANGLES_MAX ? (int64_t)most : TRIANGLES_MAX;
 }
 

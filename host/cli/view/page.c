@@ -38,25 +38,72 @@ static size_t place_of(const blob *of, const void *block) {
     return (size_t)((const unsigned char *)block - of->bytes);
 }
 
-/* Positions as 16 bits between the least and the largest of all frames. low, step: [3] mm. Returns NULL if memory is
- * exhausted. */
-static uint16_t *add_positions(const view_shape *shape, int64_t frames, double *low, double *step, blob *to) {
-    const int64_t count = frames * shape->surface.vertices;
+/* A part's positions as a page has them: those of the first frame as 16 bits between the least and the largest of all frames, and of each
+ * later frame the changes from the one before, 8 bits of a unit of its own along each axis. */
+typedef struct {
+    double low[3], step[3]; /* mm; of 16 bits */
+    int unit[3];            /* steps */
+    uint16_t *first;        /* [vertices][3] */
+    int8_t *changes;        /* [frames - 1][vertices][3] */
+} places_packed;
+
+static int packed_at(const view_shape *shape, const places_packed *p, int64_t i) {
+    const int k = (int)(i % 3);
+    return p->step[k] > 0 ? (int)lround(((double)shape->positions[i] - p->low[k]) / p->step[k]) : 0;
+}
+
+static void find_steps(const view_shape *shape, int64_t frames, places_packed *p) {
+    const int64_t frame = 3 * shape->surface.vertices;
     double high[3];
-    for (int k = 0; k < 3; k++) low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
-    for (int64_t i = 0; i < 3 * count; i++) {
-        low[i % 3] = fmin(low[i % 3], (double)shape->positions[i]);
+    int most[3] = {0};
+    for (int k = 0; k < 3; k++) p->low[k] = HUGE_VAL, high[k] = -HUGE_VAL;
+    for (int64_t i = 0; i < frames * frame; i++) {
+        p->low[i % 3] = fmin(p->low[i % 3], (double)shape->positions[i]);
         high[i % 3] = fmax(high[i % 3], (double)shape->positions[i]);
     }
     for (int k = 0; k < 3; k++) {
-        if (count == 0) low[k] = high[k] = 0;
-        step[k] = (high[k] - low[k]) / UINT16_MAX;
+        if (frame == 0) p->low[k] = high[k] = 0;
+        p->step[k] = (high[k] - p->low[k]) / UINT16_MAX;
     }
-    uint16_t *block = add_block(to, (size_t)(3 * count) * sizeof *block);
-    for (int64_t i = 0; block && i < 3 * count; i++)
-        block[i] =
-            step[i % 3] > 0 ? (uint16_t)lround(((double)shape->positions[i] - low[i % 3]) / step[i % 3]) : 0;
-    return block;
+    for (int64_t i = frame; i < frames * frame; i++) {
+        const int change = abs(packed_at(shape, p, i) - packed_at(shape, p, i - frame));
+        most[i % 3] = change > most[i % 3] ? change : most[i % 3];
+    }
+    /* One less than the largest number: what was rounded off in the frame before comes on top. */
+    for (int k = 0; k < 3; k++) p->unit[k] = most[k] / (INT8_MAX - 1) + 1;
+}
+
+/* Changes are from what a reader has of the frame before, so that what is rounded off does not add up. */
+static void add_changes(const view_shape *shape, int64_t frames, places_packed *p) {
+    const int64_t frame = 3 * shape->surface.vertices;
+    for (int64_t i = 0; i < frame; i++) {
+        const int unit = p->unit[i % 3];
+        int now = p->first[i] = (uint16_t)packed_at(shape, p, i);
+        for (int64_t f = 1; f < frames; f++) {
+            int change = (int)lround((packed_at(shape, p, i + f * frame) - now) / (double)unit);
+            if (now + change * unit < 0) change++;
+            if (now + change * unit > UINT16_MAX) change--;
+            now += change * unit;
+            p->changes[i + (f - 1) * frame] = (int8_t)change;
+        }
+    }
+}
+
+static int add_positions(const view_shape *shape, int64_t frames, json_t *object, blob *to) {
+    const int64_t frame = 3 * shape->surface.vertices;
+    places_packed p;
+    find_steps(shape, frames, &p);
+    const size_t first = (size_t)frame * sizeof *p.first, changes = (size_t)(frame * (frames - 1));
+    unsigned char *block = add_block(to, first + changes);
+    if (!block) return 0;
+    p.first = (uint16_t *)(void *)block;
+    p.changes = (int8_t *)(block + first);
+    add_changes(shape, frames, &p);
+    json_object_set_new(object, "positions", json_integer((json_int_t)place_of(to, block)));
+    json_object_set_new(object, "low", cli_json_numbers(p.low, 3));
+    json_object_set_new(object, "step", cli_json_numbers(p.step, 3));
+    json_object_set_new(object, "unit", json_pack("[i,i,i]", p.unit[0], p.unit[1], p.unit[2]));
+    return 1;
 }
 
 /* 16 bits for each corner, or 32 if there are more vertices. */
@@ -87,15 +134,13 @@ static int part_json(const view_page *page, int64_t id, const uint8_t *colour, b
     const int64_t frames = shape->moves ? page->shapes->frames : 1;
     const int wide = shape->surface.vertices > UINT16_MAX + 1;
     skg_part part;
-    double low[3], step[3], density = 0;
+    double density = 0;
     const char *material = NULL;
     json_t *object = *made = json_object();
     skg_part_init(&part);
     const skg_status status = skg_scene_part_get(page->session->scene, id, &part);
     if (status != SKG_OK) return cli_fail(status);
-    const uint16_t *positions = add_positions(shape, frames, low, step, to);
-    if (!positions) return fail_memory();
-    json_object_set_new(object, "positions", json_integer((json_int_t)place_of(to, positions)));
+    if (!add_positions(shape, frames, object, to)) return fail_memory();
     const void *corners = add_corners(&shape->surface, wide, to);
     if (!corners) return fail_memory();
     json_object_set_new(object, "corners", json_integer((json_int_t)place_of(to, corners)));
@@ -111,8 +156,6 @@ static int part_json(const view_page *page, int64_t id, const uint8_t *colour, b
     json_object_set_new(object, "vertices", json_integer(shape->surface.vertices));
     json_object_set_new(object, "frames", json_integer(frames));
     json_object_set_new(object, "wide", json_boolean(wide));
-    json_object_set_new(object, "low", cli_json_numbers(low, 3));
-    json_object_set_new(object, "step", cli_json_numbers(step, 3));
     return CLI_DONE;
 }
 

@@ -5,9 +5,18 @@ const text = atob(document.getElementById('bytes').textContent.trim()), bytes = 
 for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
 const CREASE = Math.SQRT1_2; // faces that differ by more than 45 degrees
 
-// [frames][vertices][3] of 16 bits, [triangles][3], and [columns x rows] greys, as they lie in the bytes.
+// [vertices][3] of 16 bits and [frames - 1][vertices][3] changes of 8, [triangles][3], and [columns x rows] greys, as they lie in the bytes.
 const shorts = (at, count) => new Uint16Array(bytes.buffer, at, count);
 const cornersOf = part => part.wide ? new Uint32Array(bytes.buffer, part.corners, 3 * part.shown) : shorts(part.corners, 3 * part.shown);
+
+// [frames][vertices][3] of 16 bits.
+function positionsOf(part) {
+  const count = 3 * part.vertices, all = new Uint16Array(count * part.frames);
+  const changes = new Int8Array(bytes.buffer, part.positions + 2 * count, count * (part.frames - 1));
+  all.set(shorts(part.positions, count));
+  for (let i = count; i < all.length; i++) all[i] = all[i - count] + changes[i - count] * part.unit[i % 3];
+  return all;
+}
 
 function faceNormals(corners, positions, step) {
   const normals = new Float32Array(corners.length);
@@ -61,7 +70,7 @@ function vertexNormals(numbers, faces, count) {
 
 // Of each frame the positions and normals of the vertices after splitting.
 function makeMesh(part) {
-  const corners = cornersOf(part), all = shorts(part.positions, 3 * part.vertices * part.frames), frames = [];
+  const corners = cornersOf(part), all = positionsOf(part), frames = [];
   const ofFrame = f => all.subarray(3 * part.vertices * f, 3 * part.vertices * (f + 1));
   const [numbers, origin] = split(corners, faceNormals(corners, ofFrame(0), part.step), part.vertices);
   for (let f = 0; f < part.frames; f++) {
