@@ -16,7 +16,7 @@ extern "C" {
 /** A file of projections that is being written. */
 typedef struct skg_scan_file skg_scan_file;
 
-/** What a file of projections holds. Prepare with skg_scan_file_options_init: float. */
+/** Contents of a file of projections to be written. Prepare with skg_scan_file_options_init: float. */
 typedef struct {
     /** Set by skg_scan_file_options_init. */
     int32_t size;

@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/** What limits the beam. */
+/** Kinds of collimation. */
 enum skg_collimation_kind {
     /** Nothing. */
     SKG_COLLIMATION_OPEN = 0,

@@ -22,7 +22,7 @@ extern "C" {
 /** Vertices and triangles. */
 typedef struct skg_mesh skg_mesh;
 
-/** What a mesh is made of. The arrays are the caller's. */
+/** Vertices and triangles of a mesh to be made. The arrays are the caller's. */
 typedef struct {
     /** Set by skg_mesh_source_init. */
     int32_t size;
@@ -33,7 +33,7 @@ typedef struct {
     int64_t vertices;
     /** Rows of x, y, z in units of unit_mm. */
     const double *positions;
-    /** The same as floats; one of the two is NULL. */
+    /** Positions in single precision instead; one of positions and floats is NULL. */
     const float *floats;
     /** Elements from one row to the next, at least 3; 0: 3. */
     int64_t position_stride;
