@@ -1,4 +1,4 @@
-/* What photons meet: shapes, cross sections, angles. Private. */
+/* Interactions of photons: shapes, cross sections, angles. Private. */
 #ifndef SKG_INTERACTIONS_H
 #define SKG_INTERACTIONS_H
 
