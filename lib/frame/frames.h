@@ -128,10 +128,10 @@ skg_status skg_frame_check_places(const skg_recipe *recipe, const skg_machine *m
 /* Computes the scatter of the frame, waits for it, and enqueues what adds it to the intensities. image: where these are. */
 skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image);
 
-/* The same of an output that shows the scatter, its standard error or a component, alone. */
+/* Computes the scatter of the frame as the output itself: the scatter, its standard error or a component, alone. */
 skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work);
 
-/* --- What the detector makes of a frame's intensities, of their means and of their variances */
+/* --- The detector's readout of a frame: intensities, their means and their variances */
 
 /* Whether a frame shows what photons are expected, without noise, or how much noise varies. */
 static inline int skg_frame_is_expected(const skg_recipe *recipe, const skg_frame_work *work) {

@@ -123,11 +123,11 @@ enum { SKG_SIDE_MAX = 4 }; /* most passes that a worker draws side by side */
  * workers at each pass. side: of these, how many a worker draws side by side. */
 int32_t skg_passes_choose(const skg_passes_request *request, int32_t *side);
 
-/* The same of frames of a job, each of one pass; request->passes is the number of frames. A multiple of the workers, or 1: frames are
- * drawn one after another, with all workers at each. */
+/* Chooses the number of frames of a job, each of one pass, that are drawn at once; request->passes is the number of frames. A multiple of
+ * the workers, or 1: frames are drawn one after another, with all workers at each. */
 int32_t skg_frames_choose(const skg_passes_request *request, int32_t *side);
 
-/* The most that it chooses. */
+/* The largest number that skg_frames_choose returns. */
 int32_t skg_frames_most(int32_t workers);
 
 /* --- What a plan says of its precision. */
