@@ -1,4 +1,4 @@
-/* What a registration holds, and what its files call of each other. Private.
+/* State of a registration, and the functions that its files share. Private.
  *
  * The body is the parts that move. A scene of the body holds them and the parts that they lie inside, since their attenuation counts less
  * what they displace; the rest of the scene adds a constant, at one energy. */
@@ -254,9 +254,9 @@ skg_status reg_prepare(skg_registration *r);
 /* The shares of a radiograph, once the energy of the model is known: shares.c. */
 skg_status reg_shares_find(skg_registration *r, reg_image *image);
 
-/* --- What is said of the result: judge.c, words.c */
+/* --- Verdict on the result: judge.c, words.c */
 
-/* What is left in a radiograph, and how it is correlated. */
+/* Residual of a radiograph, and its correlation. */
 typedef struct {
     double squares, noise; /* sums over pixels, and over differences of 2 x 2 pixels */
     int64_t pixels, blocks;
