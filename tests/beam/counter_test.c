@@ -1,4 +1,4 @@
-/* What a detector that counts makes of single photons, in closed form. */
+/* Counts of single photons in a counting detector, in closed form. */
 #include "suite.h"
 #include "support/named.h"
 

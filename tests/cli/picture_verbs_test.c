@@ -353,7 +353,7 @@ START_TEST(of_many_overlaps_the_worst_three_are_printed) {
 }
 END_TEST
 
-/* What the plan has to say reaches standard error, and the picture is made all the same. */
+/* Warnings of the plan reach standard error, and the picture is made all the same. */
 START_TEST(warnings_are_printed_unless_quiet) {
     write_text("open.obj",
                "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 4 3\nf 2 3 4\n"); /* without y = 0 */
@@ -480,7 +480,7 @@ START_TEST(times_are_printed) {
 }
 END_TEST
 
-/* The same bytes as through files, and nothing else on standard output. */
+/* Bytes through standard input and output are those through files, and nothing else is on standard output. */
 START_TEST(dashes_are_standard_input_and_output) {
     char line[1024];
     snprintf(

@@ -23,7 +23,7 @@ for room in $rooms; do
         ;;
     esac
 done
-# What is gone must not be named any more.
+# Rooms that are gone must not be named any more.
 # shellcheck disable=SC2013,SC2016 # a word a line; a pattern
 for room in $(sed -n '/^### Each room/,/^Which room/s/^| `\([a-z/]*\)` | .*/\1/p' "$root/docs/architecture.md"); do
     echo "$rooms" | grep -qxF "$room" || { echo "docs/architecture.md names $room, which is no room"; status=1; }
