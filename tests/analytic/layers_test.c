@@ -195,7 +195,7 @@ START_TEST(each_energy_by_its_depths) {
         /* As above, twice: of two energies, and of the ratio's weights. */
         ck_assert_double_eq_tol(both[p], by_depths[0][p] + by_depths[1][p], 4e-6 * flat);
         ck_assert_double_eq_tol(ratio[p], both[p] / flat, 4e-6);
-        /* The same. */
+        /* Likewise. */
         ck_assert_double_eq_tol(exp(-logarithm[p]), ratio[p], 4e-6);
     }
     free(both), free(ratio), free(logarithm);

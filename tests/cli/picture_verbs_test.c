@@ -414,7 +414,7 @@ START_TEST(noise_is_said_to_be_missing_only_where_it_is) {
     ck_assert_msg(strstr(complained, "there is no noise"), "%s", complained);
     ck_run(0, "image %s -o a.png --set Noise=true", with);
     ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
-    /* It stands where pixels are the result and in the table of the plan, and not before every command. */
+    /* The warning stands where pixels are the result and in the table of the plan, and not before every command. */
     ck_run(0,
            "plan %s --tolerance 0 --set 'Samples.bone.Material=H2O' --set Samples.bone.Density=1 --set "
            "Samples.skin.Material=H2O --set Samples.skin.Density=1",

@@ -189,7 +189,7 @@ START_TEST(a_curved_detector_is_drawn_curved) {
 }
 END_TEST
 
-/* Who does not ask has no legend, and the list in the order of the scene. */
+/* A page without --sensitivity has no legend, and the list in the order of the scene. */
 START_TEST(a_page_without_sensitivity) {
     need_browser();
     write_text("s.json", scene);

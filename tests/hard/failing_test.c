@@ -183,7 +183,7 @@ static skg_status place_and_draw(const run *r) {
     return status == SKG_RANGE ? SKG_OK : status;
 }
 
-/* The same; the next frames have the positions of the host again. */
+/* Places and draws, then undoes the placing: the next frames have the positions of the host again. */
 static skg_status draw_placed(const run *r) {
     const skg_status status = place_and_draw(r);
     for (int n = 0; n < 2; n++) {
