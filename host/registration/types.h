@@ -239,7 +239,7 @@ void reg_images_free(const skg_registration *r, float ***images);
 /* Minimizes at a level from a state; *loss: at the end. */
 skg_status reg_search(skg_registration *r, const reg_level *level, reg_state *state, double *loss);
 
-/* The same, and once more with a gain of the body's contrast where the radiographs ask for it: gain.c. */
+/* Minimizes likewise, and once more with a gain of the body's contrast where the radiographs ask for it: gain.c. */
 skg_status reg_gain_search(skg_registration *r, const reg_level *level, reg_state *state, double *loss);
 
 /* Replaces the state by the best of several starts, searched at all levels but the last. */

@@ -9,7 +9,7 @@
 
 #include <skiagraph/dose.h>
 
-/* --- What was found. */
+/* --- Results */
 
 struct skg_dose {
     skg_refs refs;
@@ -118,7 +118,7 @@ void skg_dose_found_free(skg_dose_found *found);
 skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, skg_progress *progress,
                             double *volumes);
 
-/* --- What the detector gets. */
+/* --- Exposure of the detector */
 
 typedef struct {
     double kerma;          /* uGy, mean over the field */

@@ -12,7 +12,7 @@
 
 #include <string.h>
 
-/* So many rounds, between which progress is told. */
+/* Rounds of the histories, between which progress is reported. */
 enum { ROUNDS = 16 };
 
 /* Fails unless the cells have elements: coefficients alone do not say how much energy stays. */

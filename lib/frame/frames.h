@@ -89,7 +89,7 @@ skg_status skg_waiting_draw(skg_job *job, const skg_waiting *gathered, cl_event 
 void skg_waiting_empty(skg_waiting *gathered);
 void skg_waiting_release(skg_waiting *gathered);
 
-/* --- What the parts of one pass contribute and where they lie */
+/* --- Contributions of the parts of one pass, and their places */
 
 /* Fills a pass, but for its raster. number: of the passes that samples of source and pixel need; below 0: the point source and
  * the pixels' centres. The pass borrows memory; release it with skg_pass_release, also after a failure. */

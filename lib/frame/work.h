@@ -7,7 +7,7 @@
 #include "stage/machine.h"
 #include "stage/staging.h"
 
-/* --- What a frame is to show */
+/* --- Work of a frame: its output, and how it is made */
 
 /* Beside SKG_LENGTHS_NET and SKG_LENGTHS_SURFACE: what the cells of a volume add to a plane of the model. */
 enum { SKG_LENGTHS_CELLS = 2 };

@@ -172,7 +172,7 @@ skg_status skg_judging_begin(const skg_cell_parts *parts, const skg_scatter_phys
 skg_status skg_judging_of(skg_judging *judging, skg_judged *judged);
 void skg_judging_end(skg_judging **judging);
 
-/* --- What stands in the beam, as cells. */
+/* --- The scattering object: the parts in the beam, as cells */
 
 /* A frame's scene. */
 typedef struct {

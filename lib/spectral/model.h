@@ -121,7 +121,7 @@ int skg_quantity_counts(const skg_plan_options *options);
 /* Whether the quantity is a ratio to the flat field. */
 int skg_quantity_is_ratio(const skg_plan_options *options);
 
-/* --- What one photon adds to an image, by its energy. */
+/* --- Contribution of one photon to an image, by its energy */
 
 /* To the image: the recorded energy, keV, or 1 if photons are counted, times the efficiency of the response. */
 skg_status skg_signal_get(const skg_plan_options *options, double energy_kev, double *signal);

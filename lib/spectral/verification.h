@@ -88,7 +88,7 @@ typedef void skg_take_trace(void *user, const skg_trace *trace);
 skg_status skg_ranges_trace(const skg_scene *scene, const skg_view *view, const skg_model *model,
                             const unsigned char *wanted, skg_take_trace *take, void *user);
 
-/* --- What the precision of path lengths does to intensities. */
+/* --- Error of intensities by the precision of path lengths */
 
 typedef struct {
     /* Of the relative error of intensities: relative where more than 1e-6 of the flat field arrives, else in units of 1e-6 of

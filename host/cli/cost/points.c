@@ -67,7 +67,7 @@ int cost_measure(cost_study *study, cost_point *point, double *image) {
     if (exit_status == CLI_DONE && keep)
         exit_status = cost_compare_shot(study, image, &study->measured.shots[number]);
     if (exit_status == CLI_DONE && keep) exit_status = compare(study, point, number, image);
-    /* Others that are waiting for the same image. */
+    /* Other points that are waiting for the same image. */
     for (int i = 0; i < study->measured.count && exit_status == CLI_DONE && keep; i++) {
         cost_point *other = &study->measured.points[i];
         if (other->state == COST_PLANNED && study->measured.references[other->reference].image &&

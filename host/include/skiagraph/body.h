@@ -120,9 +120,9 @@ enum skg_organ_kind {
     SKG_ORGAN_BY_LABEL = 0,
     /** Not at all. */
     SKG_ORGAN_STATIC = 1,
-    /** It turns as a whole with the ribs. */
+    /** The organ turns as a whole with the ribs. */
     SKG_ORGAN_RIGID = 2,
-    /** It is linked to other organs and deforms. */
+    /** The organ is linked to others and deforms. */
     SKG_ORGAN_DEFORMABLE = 3
 };
 

@@ -183,7 +183,7 @@ typedef struct {
     int32_t reserved;
     /** Number of the part. */
     int64_t part;
-    /** Its label, valid as long as the set-up. */
+    /** Label of the part, valid as long as the set-up. */
     const char *label;
     /** Phase of the target. */
     double phase;

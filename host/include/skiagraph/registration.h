@@ -60,17 +60,17 @@ enum skg_registration_loss {
 
 /** Verdict on the result of a registration. */
 enum skg_registration_verdict {
-    /** It has not run. */
+    /** The registration has not run. */
     SKG_REGISTRATION_VERDICT_NONE = 0,
     /** The images agree: what is left is noise. */
     SKG_REGISTRATION_VERDICT_AGREES = 1,
-    /** They agree, but what is left has a structure that neither the parts nor the polynomials explain. */
+    /** The images agree, but the residual has a structure that neither the parts nor the polynomials explain. */
     SKG_REGISTRATION_VERDICT_STRUCTURE = 2,
     /** The radiographs do not determine some direction as well as options.need_mm asks. */
     SKG_REGISTRATION_VERDICT_UNDETERMINED = 3,
     /** The body is not where it shows in the radiographs, or does not show in them. */
     SKG_REGISTRATION_VERDICT_FAILED = 4,
-    /** It was cancelled: the best pose so far stands. */
+    /** The registration was cancelled: the best pose so far stands. */
     SKG_REGISTRATION_VERDICT_STOPPED = 5
 };
 

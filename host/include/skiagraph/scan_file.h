@@ -28,7 +28,7 @@ typedef struct {
     const char *hash;
     /** Name of the quantity, such as "energy"; copied. NULL: "". */
     const char *name;
-    /** Its unit, such as "keV per pixel"; copied. NULL: "". */
+    /** Unit of the quantity, such as "keV per pixel"; copied. NULL: "". */
     const char *unit;
     /** I0 in the unit of the projections; 0: unknown. */
     double flat_field;

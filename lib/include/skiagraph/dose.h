@@ -111,7 +111,7 @@ typedef struct {
     int32_t scattered;
     /** The pixel of the field with the least signal. */
     int64_t darkest_row;
-    /** Its column. */
+    /** Column of this pixel. */
     int64_t darkest_column;
     /** The mean there, in the plan's quantity. */
     double darkest_signal;
@@ -140,7 +140,7 @@ typedef struct {
      * place is outside the field, or parts stand between it and the source. Interactions nearest to the
      * place count as they do on average there. */
     double backscatter;
-    /** Its standard error. */
+    /** Standard error of the backscatter factor. */
     double backscatter_sigma;
 } skg_dose_point;
 
@@ -160,7 +160,7 @@ typedef struct {
     int32_t reserved;
     /** Mean absorbed dose: energy over mass, uGy. NAN: photons were not followed, or the part has no mass. */
     double dose_ugy;
-    /** Its standard error, uGy. NAN likewise, and where no photon came near the part. */
+    /** Standard error of dose_ugy, uGy. NAN likewise, and where no photon came near the part. */
     double sigma_ugy;
     /** Energy that stays in the part, without those that lie inside it, keV. NAN as dose_ugy. */
     double energy_kev;

@@ -80,9 +80,9 @@ enum skg_output_kind {
     /** The scattered part of the images, without noise and blur, in the plan's quantity; of an attenuation or a transmission, as a
      * fraction of the flat field. Needs skg_plan_options.scatter. */
     SKG_OUTPUT_SCATTER = 2,
-    /** Its standard error, smoothing included. */
+    /** Standard error of SKG_OUTPUT_SCATTER, smoothing included. */
     SKG_OUTPUT_SCATTER_SIGMA = 3,
-    /** One of its components, in the same unit (skg_output.component). Smoothed by the same cosines, so that the components
+    /** A component of the scatter, in the same unit (skg_output.component). Smoothed by the same cosines, so that the components
      * add up to SKG_OUTPUT_SCATTER; a small one may be slightly negative. */
     SKG_OUTPUT_SCATTER_COMPONENT = 4,
     /** The images that are expected, without noise and without the steps of the detector, in the plan's quantity. Of an attenuation

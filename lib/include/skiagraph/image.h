@@ -35,7 +35,7 @@ typedef struct {
     const void *data;
     /** Name of the quantity, for the file's header, such as "energy"; NULL: "". */
     const char *name;
-    /** Its unit, such as "keV per pixel"; NULL: "". */
+    /** Unit of the quantity, such as "keV per pixel"; NULL: "". */
     const char *unit;
     /** Where the detector is, for the file's header; NULL: pixels of 1 mm at no particular place. */
     const skg_view *view;

@@ -17,9 +17,9 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Such as "energy", "photons from 20 to 40 keV". */
+    /** Name of the channel, such as "energy", "photons from 20 to 40 keV". */
     const char *name;
-    /** Such as "keV per pixel". */
+    /** Unit of its values, such as "keV per pixel". */
     const char *unit;
     /** I0 in this unit: what the beam gives without parts and world, before it is weakened by falloff. 1 for
      * transmission, 0 for attenuation. */
@@ -111,7 +111,7 @@ typedef struct {
     int32_t cosines;
     /** Mean over the detector and all channels, in the unit of SKG_OUTPUT_SCATTER. */
     double mean;
-    /** Its standard error: root mean square over both, smoothing included, in the same unit. */
+    /** Standard error of the mean: root mean square over detector and channels, smoothing included, in the same unit. */
     double sigma;
     /** Photons from the source. */
     int64_t histories;
@@ -154,14 +154,14 @@ typedef struct {
     double ratio;
     /** Root mean square of the scatter over the detector, as a fraction of the open beam: the error of images without it. */
     double rms;
-    /** Its maximum, likewise. */
+    /** Maximum of the scatter over the detector, likewise. */
     double max;
     /** Transmission of the anti-scatter grid for primary radiation, averaged over the detector in this scene instead of behind the
      * phantom of IEC 60627; its selectivity is grid_primary / grid_scatter. 1 without a grid. */
     double grid_primary;
-    /** Its transmission for scatter, likewise. */
+    /** Transmission of the grid for scatter, likewise. */
     double grid_scatter;
-    /** Its transmission for primary radiation and scatter together, likewise. */
+    /** Transmission of the grid for primary radiation and scatter together, likewise. */
     double grid_total;
     /** Wall time. */
     double seconds;
@@ -268,7 +268,7 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Such as "raster". */
+    /** Name of the stage, such as "raster". */
     const char *name;
     /** Time on the device in ns, over all frames of the job. */
     double ns;
