@@ -1,5 +1,5 @@
-/* What it costs when OpenMP binds the calling thread to one core, as clusters have it: processes with OMP_PROC_BIND=true
- * and =false alternately, each a new one, because OpenMP binds when a program starts. */
+/* Measures the cost of OpenMP binding the calling thread to one core, as clusters have it: processes with OMP_PROC_BIND=true and =false
+ * alternately, each a new one, because OpenMP binds when a program starts. */
 #include "common/bench.h"
 #include "common/scenes.h"
 

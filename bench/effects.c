@@ -1,4 +1,4 @@
-/* What each effect costs by itself: a scene with it against the same scene without it, alternately. */
+/* Measures the cost of each effect by itself: a scene with it against the same scene without it, alternately. */
 #include "common/bench.h"
 #include "common/scenes.h"
 

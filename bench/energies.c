@@ -1,6 +1,5 @@
-/* What energies cost, with 5 materials at 1024 x 1024 pixels: the library's attenuation of 90 energies
- * against a plain kernel of the same sum with OpenCL's exp; and images of 150 energies against images of the
- * compressed spectrum. */
+/* Measures the cost of energies, with 5 materials at 1024 x 1024 pixels: the library's attenuation of 90 energies against a plain kernel of
+ * the same sum with OpenCL's exp; and images of 150 energies against images of the compressed spectrum. */
 #include "common/bench.h"
 
 #include "affinity/affinity.h"

@@ -1,4 +1,4 @@
-/* What a gradient costs: the thorax with a material for each organ, the image alone against image and gradient, alternately. Then
+/* Measures the cost of a gradient: the thorax with a material for each organ, the image alone against image and gradient, alternately. Then
  * image and gradient against those of a volume, 200 x 200 pixels, by six numbers. */
 #include "common/bench.h"
 #include "common/thorax.h"

@@ -62,7 +62,7 @@ static void read_settings(int count, char **words, settings *out) {
     }
 }
 
-/* The same projections without a run: batches of frames, one after another. */
+/* Makes the projections without a run: batches of frames, one after another. */
 static void image_loop(void *contender) {
     subject *self = contender;
     for (int64_t k = 0; k < self->projections; k += BATCH) {

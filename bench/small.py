@@ -1,4 +1,4 @@
-"""What a call of Python for one small image takes, and a frame of a batch; bench/run calls it.
+"""Times a call of Python for one small image, and a frame of a batch; bench/run calls it.
 
 usage: small.py [--quick] SCENE.json
 """

@@ -24,7 +24,7 @@ install(FILES ${skiagraph_BINARY_DIR}/skiagraph-config.cmake ${skiagraph_BINARY_
 
 # The .pc files find the prefix from their own place: an installed tree may be moved.
 file(RELATIVE_PATH SKG_PREFIX_FROM_PC "/${CMAKE_INSTALL_LIBDIR}/pkgconfig" "/")
-# What a static program links besides, by -l: Requires.private would ask for these libraries' .pc files from programs
+# Libraries that a static program links besides, by -l: Requires.private would ask for these libraries' .pc files from programs
 # that link the shared library, too.
 set(SKG_LIBS_PRIVATE ${ASSIMP_LDFLAGS} ${JANSSON_LDFLAGS} ${PNG_LDFLAGS} ${ZLIB_LDFLAGS} ${TIFF_LDFLAGS} ${ZIP_LDFLAGS} ${MD_LDFLAGS} ${HDF5_LDFLAGS} ${OPENCL_LDFLAGS})
 list(TRANSFORM OpenMP_C_LIB_NAMES PREPEND -l OUTPUT_VARIABLE openmp)

@@ -1,4 +1,4 @@
-# What Skiagraph needs. All that is missing is named in one message, by the packages of Debian that have it.
+# Finds the packages that Skiagraph needs. All that are missing are named in one message, by the packages of Debian that have them.
 set(SKG_MISSING "")
 find_package(OpenMP COMPONENTS C)
 if(NOT OpenMP_C_FOUND)

@@ -11,7 +11,7 @@ skg_optional_packages="libhdf5-dev libgif-dev ffmpeg libmeshoptimizer-dev libciv
 # shellcheck disable=SC2034
 skg_mpi_packages="libopenmpi-dev openmpi-bin"
 
-# What tests need. libxrl-dev: an independent table of cross sections. chromium: pages work in it. groff-base: the pages of the
+# Packages for tests. libxrl-dev: an independent table of cross sections. chromium: pages work in it. groff-base: the pages of the
 # manual. ninja-build: looks at all files in a tenth of a second.
 # shellcheck disable=SC2034
 skg_test_packages="check gfortran g++ python3 python3-numpy python3-cffi python3-pytest python3-scipy python3-venv oclgrind libxrl-dev \

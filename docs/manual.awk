@@ -26,7 +26,7 @@ is_functions && /^\.SS / {
     next
 }
 { print > page }
-# What the first sentence says is the line of `apropos`.
+# The first sentence is the line of `apropos`.
 is_functions && its && !is_named && !/^\./ && NF {
     brief = $0
     sub(/\\&\.( .*)?$/, "", brief)

@@ -18,7 +18,7 @@ enum { LEVELS = 40, DIRECTIONS = 96, ORGANS_MAX = 256 };
 static const double MARGIN = 14; /* mm of fat over the outermost organ */
 static const double TURN = 6.283185307179586;
 
-/* What names begin with, and 1/cm at 60 keV. The first that fits. */
+/* First words of the names of parts, and 1/cm at 60 keV. The first that fits. */
 static const struct {
     const char *prefix;
     double per_cm;

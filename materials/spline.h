@@ -6,7 +6,7 @@
  * they are 0 (a straight line between points) below 4 points. scratch: [count]. */
 void skg_spline_natural(int count, const double *x, const double *y, double *second, double *scratch);
 
-/* The same between two absorption edges. If a point is ten times closer to an edge than to its next neighbour, the
+/* Second derivatives between two absorption edges. If a point is ten times closer to an edge than to its next neighbour, the
  * point of the edge is not part of the spline, and the short interval is a straight line. The tables agree there to
  * 0.5 % only, and a slope taken from the two points would bend the whole piece by up to 20 %. */
 void skg_spline_piece(int count, const double *x, const double *y, double *second, double *scratch);

@@ -1,4 +1,4 @@
-"""What a frame of the breathing thorax of ./demo consists of, on one thread and on all; bench/run calls it.
+"""Times the steps of a frame of the breathing thorax of ./demo, on one thread and on all; bench/run calls it.
 
 usage: frames.py COMMAND
 """

@@ -1,4 +1,4 @@
-/* What all benchmarks share: clock, samples, options, errors. */
+/* Shared code of the benchmarks: clock, samples, options, errors. */
 #include "bench.h"
 
 #include <errno.h>

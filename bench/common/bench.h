@@ -1,4 +1,4 @@
-/* What all benchmarks share: clock, samples, options, errors. Times are in ms. */
+/* Shared code of the benchmarks: clock, samples, options, errors. Times are in ms. */
 #ifndef BENCH_H
 #define BENCH_H
 

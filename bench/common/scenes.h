@@ -24,7 +24,7 @@ typedef struct {
  * STL file; "shuffled:N", in random order; or NULL for 60 bumpy organs in an envelope, 42,000 triangles in total. A file
  * has a view of its own. For the others the detector has size x size pixels and just covers the scene, seen along y. */
 void scene_open(skg_context *context, const char *what, long size, bench_scene *out);
-/* The same with `count` settings KEY=VALUE for the scene file. */
+/* Opens a scene with `count` settings KEY=VALUE for the scene file. */
 void scene_open_set(skg_context *context, const char *what, long size, int count, const char *const *settings,
                     bench_scene *out);
 void scene_generate(skg_context *context, const scene_changes *changes, long size, bench_scene *out);

@@ -11,7 +11,7 @@ typedef struct {
     int32_t from, to;  /* vertices, from < to */
 } edge;
 
-/* What is near the pixel: few triangles of many. */
+/* Triangles near the pixel: few of many. */
 typedef struct {
     const skg_view *view;
     double middle[2], shift;

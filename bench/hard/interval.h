@@ -16,7 +16,7 @@ typedef struct {
 hard_sight hard_see(const solid *s, const skg_view *view);
 void hard_sight_free(hard_sight *sight);
 
-/* What the rays to places within `shift` pixels, less than half a pixel, of a pixel, in columns and in rows, may meet. */
+/* Range of the exact lengths of the rays to places within `shift` pixels, less than half a pixel, of a pixel, in columns and in rows. */
 typedef struct {
     double low, high;    /* least and greatest exact length, mm; NAN if a ray's hits do not cancel */
     int64_t steep_faces; /* faces there whose depth changes by more than 1e-6 of `longest` within the shift */

@@ -6,7 +6,7 @@
 
 enum { SUBJECT_VIEWS = 2 };
 
-/* What a radiograph has beside the clean image of one energy: bits. */
+/* Contents of a radiograph beside the clean image of one energy: bits. */
 enum { SUBJECT_NOISE = 1, SUBJECT_SPECTRUM = 2, SUBJECT_TISSUE = 4, SUBJECT_SCATTER = 8 };
 
 /* Meshes of the body as a segmentation has them. */

@@ -53,7 +53,7 @@ static void count_triangle(const double *a, const double *b, const double *c, in
         *warp = fmax(*warp, t->box);
 }
 
-/* What accumulators stand for. */
+/* Contributions that an accumulator holds: of all parts, of one material, or of one kind. */
 typedef enum { ALL, MATERIALS, KINDS } meaning;
 
 /* Materials of an accumulator's parts, and of their parents. */

@@ -17,7 +17,7 @@ typedef struct {
     double vectors, box; /* vector additions, in all planes; pixels of the box */
 } scaling_triangle;
 
-/* What a frame consists of. */
+/* Work of a frame. */
 typedef struct {
     double vertices, triangles;
     /* pixels that triangles cover, by their area; times the planes that each is added to */
@@ -34,8 +34,8 @@ typedef struct {
 
 scaling_counts scaling_count(const bench_scene *scene, const skg_plan_report *report);
 
-/* What one worker needs, ns: for a vertex, for sorting a triangle into bands, for setting one up, for a vector addition, for an
- * exponential, for reading an accumulator; and bytes that it clears in a ns. */
+/* Prices of one worker, ns: for a vertex, for sorting a triangle into bands, for setting one up, for a vector addition, for an exponential,
+ * for reading an accumulator; and bytes that it clears in a ns. */
 typedef struct {
     double vertex, sort, triangle, addition, exponential, accumulator, clear;
 } scaling_prices;

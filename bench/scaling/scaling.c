@@ -116,7 +116,7 @@ static void solve(const double rows[2][3], double *x, double *y) {
     if (*y < 0) *y = 0, *x = p[2] / p[0];
 }
 
-/* What a worker of this device needs, from a sphere of large triangles in one energy and one of small ones in ten. */
+/* Fits the prices of a worker of this device, from a sphere of large triangles in one energy and one of small ones in ten. */
 static scaling_prices fit(skg_context *context, const settings *s) {
     static const char *const spheres[2] = {"sphere:20000", "sphere:500000"};
     const double workers = s->info.compute_units;

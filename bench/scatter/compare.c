@@ -13,7 +13,7 @@
 enum { SIDE = 32, PIXELS = SIDE * SIDE, BLOCK = 4, ROW = SIDE / BLOCK, BLOCKS = ROW * ROW };
 static const double THEIR_PER_CM = 0.20554967;
 
-/* What is compared: planes of sums (a bit for each), the reference's file, and the bar of the middle in %; 0: none. */
+/* Parts of the comparison: planes of sums (a bit for each), the reference's file, and the bar of the middle in %; 0: none. */
 typedef struct {
     const char *name, *file;
     unsigned planes;

@@ -8,7 +8,7 @@
  * of the files, up to "w0_". histories: of each run. Returns how many bars are missed. */
 int compare_water(skg_context *context, const char *prefix, int64_t histories, FILE *csv);
 
-/* The same of the cube. prefix: up to "a_" */
+/* Compares images of the cube likewise. prefix: up to "a_" */
 int compare_cube(skg_context *context, const char *prefix, const char *scene, double tolerance, FILE *csv);
 
 #endif

@@ -76,7 +76,7 @@ static void take_blocks(const room *r, const subject *s, const double *image, do
             image[i] / kev / (BLOCK_PIXELS * BLOCK_PIXELS);
 }
 
-/* What was found of a room, over the mean. */
+/* Errors of a room, over the mean. */
 typedef struct {
     double off, blocks, worst; /* of the sum; root mean square over the blocks; of a block */
     /* root mean square over the pixels; the part of it that stays in a long run; as stated */

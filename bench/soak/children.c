@@ -130,7 +130,7 @@ void soak_killed_scan(soak *s, int64_t number) {
     soak_folder_clear(s);
 }
 
-/* What an image has written before it was killed stays under its temporary name, since no later run knows of it. */
+/* Pixels that an image has written before it was killed stay under its temporary name, since no later run knows of it. */
 void soak_killed_image(soak *s, int64_t number) {
     char path[SOAK_PATH + 64];
     in_folder(s, "scene.json", path);

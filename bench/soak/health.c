@@ -1,4 +1,4 @@
-/* What a process holds: memory, files, folders, over a soak. */
+/* Reads the resources of a process: memory, files, folders, over a soak. */
 #define _GNU_SOURCE /* malloc_trim, nftw */
 #include "soak.h"
 

@@ -93,7 +93,7 @@ static void read_settings(int count, char **words, soak *s, progress *p) {
         bench_die("no folder can be made in %s", into);
 }
 
-/* What --fault asks for. The compiler must not see that the memory is lost. */
+/* Makes the fault of --fault. The compiler must not see that the memory is lost. */
 static void misbehave(const soak *s) {
     static void *volatile lost;
     char path[SOAK_PATH + 16];

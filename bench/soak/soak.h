@@ -44,7 +44,7 @@ void soak_scene_write(const soak *s, int64_t number, int projections, const char
 uint64_t soak_hash(const void *bytes, size_t count);
 uint64_t soak_hash_file(const char *path);
 
-/* What a round does. A wrong result ends the program. */
+/* A round of the soak. A wrong result ends the program. */
 typedef void (*soak_round)(soak *s, int64_t number);
 
 /* In this process (rounds.c, threads.c): images in one job, in several jobs at once, a scan, a file of it that is closed
@@ -65,7 +65,7 @@ void soak_killed_image(soak *s, int64_t number);
 void soak_mpi(soak *s, int64_t number);
 int soak_mpi_is_there(const soak *s);
 
-/* What has to stay flat (health.c). */
+/* Numbers that have to stay flat (health.c). */
 typedef struct {
     long resident_kib, heap_kib; /* after free pages were given back to the system */
     int kernels;                 /* that the driver has compiled, here or in children */

@@ -20,7 +20,7 @@ static void unlock(const worker *w) {
     if (w->turn) pthread_mutex_unlock(w->turn);
 }
 
-/* Whoever has the turn makes one call, or one image; scenes belong to their thread. */
+/* Makes one call, or one image, at each turn; scenes belong to their thread. */
 static void *work(void *argument) {
     worker *w = argument;
     soak_case c;

@@ -26,7 +26,7 @@ typedef struct {
     int64_t count;
 } samples;
 
-/* What is fitted: the samples of one anode and kind, and for the continuum the model. */
+/* Target of a fit: the samples of one anode and kind, and for the continuum the model. */
 typedef struct {
     const samples *from;
     int32_t z, kind, model, high; /* high: 1: the factors above the seam, from voltages above it */

@@ -1,4 +1,4 @@
-"""What a scintillator keeps of the energy of photons, beside photons that are followed one by one."""
+"""Compares the energy that a scintillator keeps of photons with photons that are followed one by one."""
 from __future__ import annotations
 
 import csv

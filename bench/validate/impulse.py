@@ -27,7 +27,8 @@ def _shells(xraylib: Any, z: int) -> list[tuple[float, float, float]]:
 
 
 def _probabilities(kev: float, cosine: Any, binding: float, profile: float) -> tuple[Any, Any]:
-    """That an electron of a shell scatters to an angle, over a free one at rest; and the mean energy that is left, over the free one's."""
+    """Probability that an electron of a shell scatters to an angle, over a free one at rest; and the mean energy that is left, over the
+    free one's."""
     free = 1 / (1 + kev / ELECTRON_KEV * (1 - cosine))
     transfer = numpy.sqrt(1 + free * free - 2 * free * cosine)
     slope = numpy.maximum(transfer * (1 + free * (free - cosine) / transfer ** 2), 0)

@@ -4,7 +4,7 @@
 
 #include "common/bench.h"
 
-/* What is measured. The first ones are measured once for each process, the others in turns. */
+/* Measured times. The first ones are measured once for each process, the others in turns. */
 enum {
     VERSUS_CONTEXT,
     VERSUS_SCENE,
@@ -24,7 +24,7 @@ typedef struct {
     const char *settings[VERSUS_SETTINGS]; /* KEY=VALUE */
 } versus_settings;
 
-/* What a process sends after its first image, and after each turn. */
+/* Messages of a process after its first image, and after each turn. */
 typedef struct {
     double ms[VERSUS_COUNT];
     int64_t parts, triangles, vertices, columns, rows;
@@ -36,8 +36,8 @@ typedef struct {
     double ms[VERSUS_FRAMES];
 } versus_turn;
 
-/* What a contender does: reads the numbers of turns to take (VERSUS_WARM and so on) from standard input and writes to
- * standard output until the input ends. */
+/* Runs a contender: reads the numbers of turns to take (VERSUS_WARM and so on) from standard input and writes to standard output until the
+ * input ends. */
 int versus_contend(const versus_settings *set);
 
 #endif

@@ -38,7 +38,7 @@ typedef struct {
     char *options[WORDS]; /* for contenders */
 } command;
 
-/* What all rounds gave for one scene. */
+/* Results of all rounds for one scene. */
 typedef struct {
     bench_times times[VERSUS_COUNT][BUILDS];
     int ratio_count[VERSUS_COUNT];

@@ -1,5 +1,5 @@
-/* What a volume of cells costs: an image of one energy, of a spectrum, and with a rod inside, against rays through the same cells in plain
- * C with OpenMP, whose error is told beside the library's. */
+/* Measures the cost of a volume of cells: an image of one energy, of a spectrum, and with a rod inside, against rays through the same cells
+ * in plain C with OpenMP, whose error is printed beside the library's. */
 #include "common/bench.h"
 #include "volume/walk.h"
 

@@ -16,7 +16,7 @@ typedef struct {
 /* From plane to plane, in float (J. Amanatides, A. Woo, Eurographics 1987), a thread for each row. */
 void walk_frame(void *work);
 
-/* The same in double, of one pixel. */
+/* Attenuation along the ray to one pixel, in double. */
 double walk_exactly(const walk_work *work, int64_t row, int64_t column);
 
 #endif

@@ -110,7 +110,7 @@ static cairo_surface_t *shadow(const char *label, const projection *view) {
     return mask;
 }
 
-/* What of a mask lies beside what is not of it. */
+/* Outline of a mask: those of its pixels that lie beside others. */
 static cairo_surface_t *outline(cairo_surface_t *mask) {
     cairo_surface_t *border = cairo_image_surface_create(CAIRO_FORMAT_A8, 2 * PANEL, 2 * PANEL);
     const unsigned char *from = cairo_image_surface_get_data(mask);

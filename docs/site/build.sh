@@ -36,7 +36,7 @@ mkdir -p "$site/doxygen" "$site/extra"
     echo "OUTPUT_DIRECTORY = $site/doxygen"
 } | doxygen - >"$site/doxygen.log" 2>&1 || { cat "$site/doxygen.log"; exit 1; }
 
-# What the first page shows.
+# Files that the first page shows.
 skiagraph thorax -o "$site/thorax" --quiet
 skiagraph view "$site/thorax/thorax.json" --seconds 4 -o "$site/extra/thorax.html" --quiet
 skiagraph image "$site/thorax/thorax.json" -o "$site/extra/thorax.png" --quiet

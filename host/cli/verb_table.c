@@ -1,4 +1,4 @@
-/* What runs each verb. */
+/* Table of the verbs and the functions that run them. */
 #include "verb_table.h"
 
 #include "verbs/verbs.h"

@@ -1,4 +1,4 @@
-/* What runs each verb. */
+/* Table of the verbs and the functions that run them. */
 #ifndef SKG_CLI_VERB_TABLE_H
 #define SKG_CLI_VERB_TABLE_H
 

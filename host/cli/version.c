@@ -1,4 +1,4 @@
-/* What `skiagraph version` says: the version, and what the command was built by and with. */
+/* Implements `skiagraph version`: the version, and how the command was built. */
 #include "version.h"
 
 #include "common/args.h"

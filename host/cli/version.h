@@ -1,4 +1,4 @@
-/* What `skiagraph version` says. */
+/* Prints `skiagraph version`. */
 #ifndef CLI_VERSION_H
 #define CLI_VERSION_H
 

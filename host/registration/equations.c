@@ -36,7 +36,7 @@ static modelled model_at(double exponent, double added) {
     return (modelled){-log(total), passed / total, 1 / total};
 }
 
-/* What a Gram matrix is made of at one level in one radiograph. */
+/* Columns of a Gram matrix at one level in one radiograph. */
 typedef struct {
     const reg_shrunk *shrunk;
     const float *body;

@@ -1,4 +1,4 @@
-/* What a registration needs before it can search: checks, the energy of the model, masks, and what does not move. */
+/* Prepares the search of a registration: checks, the energy of the model, masks, and the constant image of the parts that do not move. */
 #include "registration/types.h"
 
 #include <inttypes.h>
@@ -155,7 +155,7 @@ cleanup:
     return status;
 }
 
-/* What the scene of the body lacks. */
+/* Attenuation of the parts that are missing in the scene of the body. */
 static skg_status find_rest(skg_registration *r, const reg_scene *all, reg_image *image) {
     const int64_t count = image->view.rows * image->view.columns;
     double *body = NULL;

@@ -1,4 +1,4 @@
-/* What a registration tells: numbers, words, views, poses, pictures. */
+/* Results of a registration: numbers, words, views, poses, pictures. */
 #include "registration/types.h"
 
 #include "core/text.h"
@@ -121,7 +121,7 @@ static double sum_about(const reg_shrunk *s, const double *sums, int64_t row, in
            sums[top * step + first];
 }
 
-/* What is left at the end without the noise: means of neighbourhoods that are beyond three standard deviations of it. */
+/* Structure in the residual at the end: means of neighbourhoods that are beyond three standard deviations of its noise. */
 static skg_status structure_of(skg_registration *r, int64_t image, double *values) {
     const reg_shrunk *s = &r->levels[r->level_count - 1].images[image];
     const int64_t reach = (s->rows < s->columns ? s->rows : s->columns) / 80;

@@ -111,7 +111,7 @@ static skg_status note(skg_registration *r, const reg_level *level, double loss)
     return SKG_OK;
 }
 
-/* What a step moves at most, mm. */
+/* Largest motion of a step, mm. */
 static double step_length(const skg_registration *r, const double *step) {
     double most = 0;
     for (int64_t k = 0; k < reg_count(r); k++) most = fmax(most, fabs(step[k]));

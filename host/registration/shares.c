@@ -1,4 +1,4 @@
-/* What does not move, in shares that have a gain each: materials of a kind are wrong together, by density or energy. */
+/* Divides the parts that do not move into shares that have a gain each: materials of a kind are wrong together, by density or energy. */
 #include "registration/types.h"
 
 #include <string.h>

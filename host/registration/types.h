@@ -1,4 +1,4 @@
-/* What a registration holds, and what its files call of each other. Private.
+/* State of a registration, and the functions that its files share. Private.
  *
  * The body is the parts that move. A scene of the body holds them and the parts that they lie inside, since their attenuation counts less
  * what they displace; the rest of the scene adds a constant, at one energy. */
@@ -239,7 +239,7 @@ void reg_images_free(const skg_registration *r, float ***images);
 /* Minimizes at a level from a state; *loss: at the end. */
 skg_status reg_search(skg_registration *r, const reg_level *level, reg_state *state, double *loss);
 
-/* The same, and once more with a gain of the body's contrast where the radiographs ask for it: gain.c. */
+/* Minimizes likewise, and once more with a gain of the body's contrast where the radiographs ask for it: gain.c. */
 skg_status reg_gain_search(skg_registration *r, const reg_level *level, reg_state *state, double *loss);
 
 /* Replaces the state by the best of several starts, searched at all levels but the last. */
@@ -254,9 +254,9 @@ skg_status reg_prepare(skg_registration *r);
 /* The shares of a radiograph, once the energy of the model is known: shares.c. */
 skg_status reg_shares_find(skg_registration *r, reg_image *image);
 
-/* --- What is said of the result: judge.c, words.c */
+/* --- Verdict on the result: judge.c, words.c */
 
-/* What is left in a radiograph, and how it is correlated. */
+/* Residual of a radiograph, and its correlation. */
 typedef struct {
     double squares, noise; /* sums over pixels, and over differences of 2 x 2 pixels */
     int64_t pixels, blocks;

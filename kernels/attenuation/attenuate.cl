@@ -19,7 +19,7 @@ static void skg_of_image(skg_realv value, float half_unit, skg_out *lanes) {
 #endif
 }
 
-/* What the stores of an image need of the arguments: how values are rounded, and whether they are added to what is there. */
+/* Arguments of the stores of an image: how values are rounded, and whether they are added to the values there. */
 typedef struct {
     float half_unit;
     int add;
@@ -50,7 +50,7 @@ static void skg_show_rays(const skg_realv *values, skg_storing storing, __global
 /* Rare ways are functions of their own, so that there is little to compile. They take copies of vectors, because an array that
  * is reached by an address or a variable index stays in memory. */
 
-/* What skg_show does at the end of a row; with SKG_HALF, everywhere. */
+/* Stores the end of a row for skg_show; with SKG_HALF, all of it. */
 SKG_APART void skg_show_some(const skg_realv *values, const skg_storing *storing, __global skg_out *place, int pixels) {
     for (int r = 0; r * SKG_WIDE < pixels && r < SKG_RUNS; r++) {
         skg_out lanes[SKG_WIDE];
@@ -197,7 +197,7 @@ static skg_realv skg_flat_field(const skg_strip *strip, const skg_realv *amounts
     return flat;
 }
 
-/* What intensities of run r are multiplied by. */
+/* Factor of the intensities of run r: the plan's, times the falloff with the distance. */
 static skg_realv skg_factor_v(const skg_strip *strip, int r) {
     const skg_realv factor = (skg_realv)(strip->args.factor);
     if (!SKG_FALLS_OFF(strip)) return factor;

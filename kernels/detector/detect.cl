@@ -1,5 +1,5 @@
-/* What a detector does to an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is
- * shown. The image is changed in place, in the type of skg_real. One work-item per SKG_WIDE pixels of a row of a channel.
+/* Reads out an image after quantum noise and blur: electronic noise, quantisation, and the quantity that is shown. The image is changed in
+ * place, in the type of skg_real. One work-item per SKG_WIDE pixels of a row of a channel.
  *
  * factor       [channels] times `args.scale`: from keV or photons per pixel to what is shown
  * flat_field   [channels][rows][columns] that values are divided by; NULL without SKG_FLAT_FIELD */

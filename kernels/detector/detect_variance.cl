@@ -1,5 +1,5 @@
-/* What electronic noise, steps and the quantity that is shown make of the variances of pixels behind the blur, in place. One
- * work-item per pixel.
+/* Carries the variances of pixels behind the blur through electronic noise, steps and the quantity that is shown, in place. One work-item
+ * per pixel.
  *
  * factor       [channels] times `args.scale`: from keV or photons per pixel to what is shown
  * flat_field   [channels][rows][columns] that values are divided by; NULL without SKG_FLAT_FIELD

@@ -1,4 +1,4 @@
-/* What a detector that counts makes of the counts of independent pixels: photons that count beside the pixel that they enter, noise that
+/* Turns the counts of independent pixels into those of a counting detector: photons that count beside the pixel that they enter, noise that
  * neighbours and windows share, and dead time. A pixel beyond the border has the value of the nearest one. One work-item per pixel.
  *
  * from      images of all channels and, with args.noise, those of their deviations behind them
@@ -33,7 +33,7 @@ static skg_real skg_square(const skg_pulses_args *args, __global const skg_real 
     return sum;
 }
 
-/* What dead time leaves of n pulses for each: their share, and the variance of their number over its mean. */
+/* Recorded share of n pulses for each dead time, and the variance of their number over its mean. */
 static skg_real skg_dead(int pile_up, skg_real n, skg_real *fano) {
     const skg_real shorter = (skg_real)(1) / ((skg_real)(1) + n);
     const skg_real longer = skg_exp2_of(-n * SKG_LOG2_E);

@@ -54,7 +54,7 @@ typedef struct {
 } skg_gathering;
 
 #if SKG_PRIORITY
-/* What priorities add to d loss / d q of a hit: the mean over the pixel's hits that are like it. */
+/* Contribution of priorities to d loss / d q of a hit: the mean over the pixel's hits that are like it. */
 static skg_real skg_slope_of(const skg_gathering *g, int column, int row, skg_real q, int enters) {
     const int4 window = vload4(0, g->args->window);
     if (column < window.x || row < window.y || column >= window.z || row >= window.w) return 0;

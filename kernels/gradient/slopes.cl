@@ -1,4 +1,4 @@
-/* What priorities add to the derivative by the depth of a hit. Over interval k, from depth_k to depth_k+1, the parts that lose it
+/* Derivative by the depth of a hit through priorities. Over interval k, from depth_k to depth_k+1, the parts that lose it
  * are taken off the sums: T_k for a unit of length. Lengths are continuous where the winner changes, so a hit that moves
  * changes the sums by T_k - T_k-1 for a unit of its depth. So do hits at one place, in the order in which they are taken. */
 
@@ -35,7 +35,7 @@ static int skg_is_larger(__global const int *table, int slot, int than) {
     return 0;
 }
 
-/* What enters stands before what leaves, or if they are apart behind it, and parts that do both between them. */
+/* Order of a hit: entering parts stand before leaving ones, or if they are apart behind them, and parts that do both between them. */
 static int skg_phase(__global const skg_listed *hits, int count, int apart, int k) {
     for (int m = 0; m < count; m++)
         if (hits[m].code == (hits[k].code ^ 1)) return 1;
@@ -74,7 +74,7 @@ SKG_APART void skg_order_hits(__global const skg_listed *hits, int count, __glob
     }
 }
 
-/* What a pixel's losses are made of. */
+/* Losses of a pixel: its parts, contributions and weights. */
 typedef struct {
     __global const skg_part_entry *parts;
     __global const skg_contribution *contributions;
@@ -83,7 +83,7 @@ typedef struct {
     int plane;
 } skg_losing;
 
-/* What all that lose there would add for a unit of length. */
+/* Sum over all parts that lose the interval, for a unit of length. */
 SKG_APART skg_real skg_all_off(const skg_losing *l, const int *winding, const uint *active) {
     uint dropped[SKG_WORDS];
     skg_real off = 0;

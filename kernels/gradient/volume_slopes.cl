@@ -1,5 +1,5 @@
-/* What the cells of a volume add to the derivative by the depth of a hit (slopes.cl): at a hit where other parts begin or end to displace the
- * volume, a move by a unit of depth changes the sums by what the cell there adds for a unit of length. */
+/* Derivative by the depth of a hit through the cells of a volume (slopes.cl): at a hit where other parts begin or end to displace the
+ * volume, a move by a unit of depth changes the sums by the contribution of the cell there for a unit of length. */
 
 /* The number of the cell at a place of a ray, or -1. */
 static long skg_cell_at(const skg_volume_args *args, const long *base, const long *way, skg_real depth) {

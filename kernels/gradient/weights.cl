@@ -3,7 +3,7 @@
 
 /* Planes of accumulators: SKG_WEIGHED of them, from which args.sums are mixed if that is not 0. */
 
-/* What is asked of the weights, by the kernel's names. */
+/* Arguments of the weights, by the kernel's names. */
 typedef struct {
     __global const skg_real *adjoint;
     __global const int *wanted;
@@ -16,7 +16,7 @@ static int skg_weighed(const skg_strip *strip) {
     return strip->args.sums == 0 ? SKG_SUMMED : strip->args.sums;
 }
 
-/* What a work-item finds of its rays: see `most` and `of_rays` of the kernel. */
+/* Results of a work-item for its rays: see `most` and `of_rays` of the kernel. */
 typedef struct {
     skg_realv most[SKG_WEIGHED];
     skg_realv lengths, across, down, intensity;

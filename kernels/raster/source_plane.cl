@@ -122,7 +122,7 @@ static skg_real skg_depth_between(const skg_cut *a, const skg_cut *b, skg_real i
     return r < -reference ? -reference : r > end ? end : r;
 }
 
-/* What is done with a hit. It is added to the sums, unless a file before this one (hits.cl) says otherwise. */
+/* Handling of a hit: it is added to the sums, unless a file before this one (hits.cl) defines otherwise. */
 #ifndef SKG_SOURCE_HIT
 #define SKG_SOURCE_KERNEL skg_source_plane
 #define SKG_SOURCE_ARGS skg_raster_layout layout

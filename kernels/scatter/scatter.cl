@@ -108,7 +108,8 @@ static void skg_interact(const skg_scattering *s, skg_photons *p, const skg_mixt
     }
 }
 
-/* What stands where photons interact. draw: of the line of a shell that emits */
+/* Cross sections at the places where photons interact, and the energy of a line of fluorescence. draw: chooses the line of a shell that
+ * emits */
 static void skg_find_interaction(const skg_scattering *s, const skg_photons *p, const skg_rows *rows, skg_fv draw, skg_interaction *i) {
     skg_fv *const values[] = {&i->total, &i->compton, &i->rayleigh, &i->compton_shape, &i->rayleigh_shape};
     for (int k = 0; k < SKG_OF_SIGNAL; k++) *values[k] = skg_value(s->energies, SKG_SCATTER_COLUMNS, k, rows, &i->medium);

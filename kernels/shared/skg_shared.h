@@ -88,8 +88,8 @@
 #define SKG_LINES_ROW 8
 #define SKG_LINES_SIZE(rows) (SKG_LINES_HEAD + SKG_LINES_ROW * (rows))
 
-/* What a hit of a part adds to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count
- * plane has weight 0 and bias 1. */
+/* Contribution of a hit of a part to one plane: round(q * weight + bias), where q = r / reference (parallel beam: r). A count plane has
+ * weight 0 and bias 1. */
 #define SKG_CONTRIBUTION_MEMBERS(real)                                                                       \
     real weight, bias;                                                                                       \
     SKG_INT plane, reserved;
@@ -195,10 +195,10 @@ typedef struct {
 
 /* Faces that are narrower in the picture are seen as lines, in pixels. */
 #define SKG_LINE 1e-4f
-/* The same in last places of the farthest coordinate of their corners. */
+/* Likewise, in last places of the farthest coordinate of their corners. */
 #define SKG_LINE_PLACES 16
 
-/* What skg_weights makes of the rays: nothing, two planes, or sums, of which there are SKG_RAY_SUMS. */
+/* Results of skg_weights for the rays: none, two planes, or SKG_RAY_SUMS sums. */
 #define SKG_RAYS_NONE 0
 #define SKG_RAYS_PLANES 1
 #define SKG_RAYS_SUMS 2
@@ -210,7 +210,7 @@ typedef struct {
 /* Added to the part of a competitor that counts once where its winding number is above 0. */
 #define SKG_HITS_UNITED 0x40000000
 
-/* What a launch does with hits: counts those of winners, or those of background parts; lists all. */
+/* Modes of a launch over hits: count those of winners, count those of background parts, list all. */
 #define SKG_HITS_COUNT 0
 #define SKG_HITS_COUNT_BACKGROUND 1
 #define SKG_HITS_LIST 2
@@ -301,7 +301,7 @@ typedef struct {
     SKG_INT window[4];   /* columns from, to, rows from, to */                                               \
     skg_image_args image;
 
-/* What skg_attenuate shows: the sum of weight * exp(-exponent); -ln of that; the exponent of the only node, which is a path length
+/* Quantity that skg_attenuate shows: the sum of weight * exp(-exponent); -ln of that; the exponent of the only node, which is a path length
  * or an attenuation of one energy. */
 #define SKG_SHOW_INTENSITY 0
 #define SKG_SHOW_LOGARITHM 1

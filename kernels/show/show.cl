@@ -222,7 +222,7 @@ typedef struct {
     skg_floatv through[SKG_SHOW_TILE], red[SKG_SHOW_TILE], green[SKG_SHOW_TILE], blue[SKG_SHOW_TILE];
 } skg_show_strip;
 
-/* What is the same for all rows of a triangle in a strip. */
+/* Values common to all rows of a triangle in a strip. */
 typedef struct {
     skg_floatv sides[3], depth; /* at the strip's first row */
     float down[3], depth_down;  /* more in each further row */

@@ -11,7 +11,7 @@
 
 #include <pthread.h>
 
-/* What is counted of one energy. */
+/* Mean counts for a photon of one energy. */
 typedef struct {
     double kev;
     /* [windows], then [windows][pixels] where, then [windows][windows][pixels] pairs; if pulses may be moved, then
@@ -69,7 +69,7 @@ void skg_pile_up_below(const skg_counting *counting, double *below);
  * each window, which sum to 1 at most; read if pulses are moved */
 void skg_counter_pile(const skg_counting *counting, const double *heights, double *counts);
 
-/* What a pixel records of a beam in each window. exposure: times these photons; recorded: result: [windows] */
+/* Computes the counts that a pixel records of a beam in each window. exposure: times these photons; recorded: result: [windows] */
 skg_status skg_counter_record(skg_counter *counter, int64_t count, const double *energy_kev,
                               const double *photons, double exposure, double *recorded);
 

@@ -1,4 +1,5 @@
-/* What neighbours share of the counts of a beam: where means go, and what makes their noise as correlated as counts are. */
+/* Sharing of counts between neighbouring pixels for a beam: kernels of the means, and kernels that give the noise the covariance of
+ * counts. */
 #include "beam/counter_kernels.h"
 #include "core/eigen.h"
 #include "core/maths.h"

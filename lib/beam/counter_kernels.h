@@ -1,4 +1,4 @@
-/* What neighbours share of the counts of a beam. Private. */
+/* Sharing of counts between neighbouring pixels for a beam. Private. */
 #ifndef SKG_COUNTER_KERNELS_H
 #define SKG_COUNTER_KERNELS_H
 

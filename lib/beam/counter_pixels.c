@@ -1,4 +1,4 @@
-/* What the pixels of a detector that counts make of the charge of one photon: shares of clouds, thresholds, anti-coincidence. */
+/* Counts of the pixels of a counting detector for the charge of one photon: shares of clouds, thresholds, anti-coincidence. */
 #include "beam/counter_pixels.h"
 
 #include <math.h>

@@ -1,4 +1,4 @@
-/* What the pixels of a detector that counts make of the charge of one photon. Private. */
+/* Counts of the pixels of a counting detector for the charge of one photon. Private. */
 #ifndef SKG_COUNTER_PIXELS_H
 #define SKG_COUNTER_PIXELS_H
 

@@ -31,7 +31,7 @@ struct skg_deposition {
     row *rows;   /* [count] */
 };
 
-/* What a photon may do: shares of its interactions, and the angles of two of them. */
+/* Interactions of a photon of one energy: their shares, and the angles of two of them. */
 typedef struct {
     double kev, photo, compton, rayleigh, pair;
     double weight[2][ANGLES]; /* add up to 1 for each kind */
@@ -179,7 +179,7 @@ typedef struct {
     double first[CELLS], second[CELLS], own_first[WAYS], own_second[WAYS], cross[WAYS];
 } balance;
 
-/* What a scattered photon leaves in each cell by its direction, and what the scattering has left. */
+/* Energy that a scattered photon leaves in each cell by its direction, and energy that the scattering itself leaves. */
 typedef struct {
     double lost, kev;                               /* keV of the electron and of the photon */
     double own;                                     /* the photon's share of the row `self` */

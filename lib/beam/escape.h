@@ -26,7 +26,7 @@ void skg_escape_release(skg_escape **escape);
 void skg_escape_moments(const skg_escape *escape, double energy_kev, double per_mm, double oblique,
                         double *energy, double *square);
 
-/* The same of photons that interact at one of some depths, mm. energy, square: [depths] */
+/* Energy and its square that leave the layer for photons that interact at each of some depths, mm. energy, square: [depths] */
 void skg_escape_left(const skg_escape *escape, double energy_kev, int depths, const double *depth_mm,
                      double *energy, double *square);
 

@@ -51,7 +51,7 @@ skg_status skg_response_create_screen(const skg_material *material, double mg_cm
     return make_layer(material, mg_cm2 / 1000 / density * 10, response);
 }
 
-/* The same layer with fluorescence that leaves it, scattered photons that are followed, or both. */
+/* Makes the layer again with fluorescence that leaves it, scattered photons that are followed, or both. */
 static skg_status make_again(const skg_response *layer, int escapes, int transports,
                              skg_response **response) {
     SKG_TRY(make_layer(layer->material, layer->mm, response));

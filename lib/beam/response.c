@@ -194,7 +194,7 @@ int skg_response_transports(const skg_response *response) {
            (response->base ? skg_response_transports(response->base) : response->deposition != NULL);
 }
 
-/* What a detector makes of a photon of one energy. */
+/* Mean recorded energy in keV, efficiency and Swank factor for photons of one energy. */
 typedef struct {
     double recorded, efficiency, swank;
 } recording;
@@ -236,7 +236,7 @@ static skg_status look_up(const skg_response *r, double energy_kev, recording *f
 
 static skg_status record(const skg_response *response, double energy_kev, double oblique, recording *found);
 
-/* What the base records, with the Swank factor of a measured DQE. */
+/* The recording of the base, with the Swank factor of a measured DQE. */
 static skg_status record_measured(const skg_response *r, double energy_kev, double oblique,
                                   recording *found) {
     recording straight;

@@ -1,4 +1,4 @@
-/* What a response is made of: a table, or a layer that absorbs. Private. */
+/* Representation of a response: a table, or a layer that absorbs. Private. */
 #ifndef SKG_RESPONSE_H
 #define SKG_RESPONSE_H
 

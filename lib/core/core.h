@@ -26,7 +26,7 @@ void skg_one_line(char *sentence);
  * and the argument as the header has them: "skg_plan_view_set: the argument view is NULL". */
 #define SKG_NEEDS(argument) SKG_NEEDS_OF(__func__, argument)
 
-/* The same in a function that a public one calls, whose name is given. */
+/* SKG_NEEDS for a function that a public one calls, whose name is given. */
 #define SKG_NEEDS_OF(call, argument)                                                                         \
     do {                                                                                                     \
         if (!(argument)) return skg_fail(SKG_ERR_ARGUMENT, "%s: the argument %s is NULL", call, #argument);  \
@@ -71,7 +71,7 @@ void skg_refs_init(skg_refs *refs);
 void skg_ref(skg_refs *refs);
 int skg_unref(skg_refs *refs);
 
-/* What every exported skg_X_init_sized does: zeroes `size` bytes of the caller's struct, writes those of our
+/* Implements every exported skg_X_init_sized: zeroes `size` bytes of the caller's struct, writes those of our
  * defaults that fit, and stores size in its first field. NULL or a size that holds no size field: nothing. */
 void skg_struct_init(void *theirs, int32_t size, const void *defaults, size_t our_size);
 
@@ -80,7 +80,7 @@ void skg_struct_init(void *theirs, int32_t size, const void *defaults, size_t ou
  * for the message. */
 skg_status skg_struct_read(const void *theirs, const char *name, void *ours, size_t our_size);
 
-/* The same of element `index` of an array, whose elements lie as far apart as the first one's size says. An
+/* Reads element `index` of an array as skg_struct_read does; elements lie as far apart as the first one's size says. An
  * element of another size was not prepared like the first, and is refused. */
 skg_status skg_struct_read_at(const void *array, int64_t index, const char *name, void *ours,
                               size_t our_size);

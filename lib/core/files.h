@@ -21,7 +21,7 @@
  * errors   SKG_ERR_FILE: it cannot be read, is not a regular file, or is longer */
 skg_status skg_input_open(const char *path, int64_t most, FILE **stream, int64_t *size);
 
-/* The same check for a file that another library opens by its name. */
+/* Checks a file that another library opens by its name as skg_input_open does. */
 skg_status skg_input_check(const char *path, int64_t most);
 
 /* Fails with the sentence for an input that is longer than `most` bytes. */
@@ -56,7 +56,7 @@ skg_status skg_output_open(const char *path, skg_output_file *file);
  * otherwise   the reason in words if `reason` is 0 */
 skg_status skg_output_fail(const char *path, int reason, const char *otherwise);
 
-/* The same where skg_part_open failed; the sentence names the leftover that is in the way. */
+/* Reports a failure of skg_part_open, as skg_output_fail does; the sentence names the leftover that is in the way. */
 skg_status skg_output_part_fail(const char *path, const char *temporary, int reason);
 
 /* Syncs, closes and renames the file. On failure no file is left. */
@@ -80,7 +80,7 @@ skg_status skg_read_columns(const char *path, const char *word, int64_t *count, 
  * skipped. The caller frees the numbers. Errors as above. */
 skg_status skg_read_list(const char *path, int64_t *count, double **numbers);
 
-/* The same for rows of `least` to `most` numbers (at most 8), all of the same number, without a word.
+/* Reads rows of `least` to `most` numbers (at most 8), all of the same number, without a word.
  *
  * width     numbers of a row
  * columns   [most] arrays of [count] that are allocated, NULL from `width` on; the caller frees them */

@@ -40,7 +40,7 @@ typedef struct skg_mailbox skg_mailbox;
 skg_status skg_mailbox_create(skg_mailbox **mailbox);
 void skg_mailbox_release(skg_mailbox **mailbox);
 
-/* What a callback is given to reach the mailbox; not to be dereferenced. */
+/* Address by which a callback reaches the mailbox; not to be dereferenced. */
 void *skg_mailbox_address(const skg_mailbox *mailbox);
 
 /* Leaves a sentence; from any thread, whether or not the mailbox still exists. */

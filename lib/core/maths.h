@@ -63,7 +63,7 @@ static inline double skg_dot(const double *a, const double *b) {
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
 
-/* The same for vectors of any length, added up in rising order. */
+/* The dot product of vectors of any length, added up in rising order. */
 static inline double skg_dot_long(int64_t count, const double *a, const double *b) {
     double sum = 0;
     for (int64_t i = 0; i < count; i++) sum += a[i] * b[i];

@@ -21,7 +21,7 @@ static uint64_t mix(uint64_t hash, uint64_t word) {
     return hash ^ hash >> 31;
 }
 
-/* What tells this start of this machine, and this name space of processes, from others: only there a number names a process. 0: not
+/* Number of this start of this machine and this name space of processes, without which the number of a process is ambiguous. 0: not
  * known. */
 static uint32_t machine(void) {
     char boot[40] = "";

@@ -53,7 +53,7 @@ int skg_part_is_of(const char *name, const char *end);
 /* 1: `name` is an unfinished file of a process that lived on this machine since its start, and has ended: nobody will finish it. */
 int skg_part_is_left(const char *name);
 
-/* --- What may be meant by the path of a file that is not there. */
+/* --- Names that may be meant by the path of a file that is not there */
 
 /* Fails with SKG_ERR_FILE, "PATH: cannot be read: REASON", and a hint where a file of almost this path exists: one with
  * / for every backslash, or one whose name is spelled in other case.
@@ -61,7 +61,7 @@ int skg_part_is_left(const char *name);
  * reason   a value of errno */
 skg_status skg_fail_unreadable(const char *path, int reason);
 
-/* --- What a call must not take from its caller: a decimal comma, another rounding mode, traps, flushing to zero. */
+/* --- State of the caller that must not change a call's result: a decimal comma, another rounding mode, traps, flushing to zero */
 
 typedef struct {
     fenv_t arithmetic; /* the caller's */

@@ -72,7 +72,7 @@ static void device_text(cl_device_id device, cl_device_info what, char *text, si
     text[size - 1] = '\0';
 }
 
-/* What drivers say without thinking: 0 compute units, or 2^64-1 bytes for "no limit". Work is divided by the one and buffers are
+/* Bounds on implausible answers of drivers: 0 compute units, or 2^64-1 bytes for "no limit". Work is divided by the one and buffers are
  * compared with the other, so both stay numbers that a device can have. */
 static int32_t believable_units(cl_uint units) {
     enum { MOST_UNITS = 1 << 20 };

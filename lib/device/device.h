@@ -113,7 +113,7 @@ void skg_buffer_forget(skg_context *context);
 skg_status skg_buffer_create(skg_context *context, int64_t bytes, const void *data, const char *what,
                              skg_buffer *buffer);
 
-/* The same of memory that outlives the buffer: a CPU reads it where it is. bytes: above 0 */
+/* Makes a buffer of memory that outlives the buffer: a CPU reads it where it is. bytes: above 0 */
 skg_status skg_buffer_share(skg_context *context, int64_t bytes, void *data, const char *what,
                             skg_buffer *buffer);
 

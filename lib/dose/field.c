@@ -140,8 +140,8 @@ double skg_dose_beam_begin(const skg_dose_beam *b, const skg_forest *tree, const
     return far;
 }
 
-/* What a photon of the spectrum gives on average along a direction, with the profile of the beam. of: [bins] what one of each energy gives, such as
- * kerma of one per mm2; depth: optical depths of what lies before; NULL: none */
+/* Sums a quantity over the spectrum along a direction, per photon of the spectrum, with the profile of the beam. of: [bins] the quantity of
+ * a photon of each energy, such as the kerma of one per mm2; depth: [bins] optical depth before the point; NULL: none */
 static double along(const skg_dose_beam *b, const double *of, const double way[3], const double *depth) {
     const skg_spectrum *spectrum = b->recipe->spectrum;
     const skg_beam_place place = skg_beam_profile_find(&b->profile, way);

@@ -1,4 +1,4 @@
-/* What a scene gives to people and things: the beam at places, photons through the parts, what the detector gets. Private. */
+/* Parts of a dose calculation: the beam at points, photons through the parts, exposure of the detector. Private. */
 #ifndef SKG_DOSE_FIGURES_H
 #define SKG_DOSE_FIGURES_H
 
@@ -9,7 +9,7 @@
 
 #include <skiagraph/dose.h>
 
-/* --- What was found. */
+/* --- Results */
 
 struct skg_dose {
     skg_refs refs;
@@ -87,7 +87,7 @@ typedef struct {
     int32_t reserved;
 } skg_dose_spot;
 
-/* What photons gave, each with the standard error from the spread of the batches. */
+/* Scores of all photons, each with the standard error from the spread of the batches. */
 typedef struct {
     int64_t histories;
     double *energy, *sigma;                                  /* [parts] keV */
@@ -118,7 +118,7 @@ void skg_dose_found_free(skg_dose_found *found);
 skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, skg_progress *progress,
                             double *volumes);
 
-/* --- What the detector gets. */
+/* --- Exposure of the detector */
 
 typedef struct {
     double kerma;          /* uGy, mean over the field */

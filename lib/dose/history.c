@@ -1,8 +1,8 @@
 /* A photon of the beam, from surface to surface through the parts: what it leaves in each, and where it goes.
  *
- * What a flight leaves is counted in expectation along its whole line, with the energy that stays of an interaction on average; where the
- * photon really interacts, and how, is drawn. So parts that few photons would interact in are known, too, and the first flight has
- * no noise but that of its place. The first interaction is made to happen. */
+ * Energy is scored in expectation along the whole line of a flight, with the mean energy that an interaction leaves; where the photon
+ * really interacts, and how, is drawn. So parts in which few photons would interact are known, too, and the first flight has no noise but
+ * that of its place. The first interaction is forced. */
 #include "dose/photons.h"
 
 #include "beam/spectrum.h"
@@ -61,7 +61,7 @@ static double per_mm(const skg_dose_batch *b, const skg_piece *piece, double kev
     return sum;
 }
 
-/* What the flight leaves along its line in expectation. Returns the optical depth of the line. */
+/* Scores the expected energy that the flight leaves along its line. Returns the optical depth of the line. */
 static double leave_along(skg_dose_batch *b, const skg_dose_photon *photon) {
     double depth = 0;
     for (int64_t i = 0; i < b->way.piece_count; i++) {

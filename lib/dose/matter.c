@@ -1,4 +1,4 @@
-/* What photons do in a material: what they leave, and where they go. */
+/* Interactions of photons in a material: cross sections, energy transfer, angles of scattering. */
 #include "dose/matter.h"
 
 #include "core/maths.h"

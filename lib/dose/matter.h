@@ -1,4 +1,4 @@
-/* What photons do in each material, for histories on the host. Private. */
+/* Interactions of photons in each material, for histories on the host. Private. */
 #ifndef SKG_DOSE_MATTER_H
 #define SKG_DOSE_MATTER_H
 
@@ -29,7 +29,7 @@ typedef struct {
 } skg_dose_place;
 skg_dose_place skg_dose_place_of(const skg_dose_matter *matter, double kev);
 
-/* What a photon meets there. In 1/mm, `transfer` in keV/mm; shapes normalise the distributions of angles. */
+/* Cross sections of the interactions at an energy, in 1/mm, and `transfer` in keV/mm; the shapes normalise the distributions of angles. */
 typedef struct {
     double total, compton, rayleigh, emitted, transfer;
     double compton_shape, rayleigh_shape;
@@ -47,7 +47,7 @@ void skg_dose_scattered(const skg_dose_matter *matter, const skg_dose_meeting *m
 double skg_dose_draw_compton(const skg_dose_matter *matter, double kev, uint64_t *seed);
 double skg_dose_draw_rayleigh(const skg_dose_matter *matter, double kev, uint64_t *seed);
 
-/* What a shell emits at a place of the tables, 1/mm, and one of its lines. */
+/* Emission of a shell at a place of the tables, 1/mm, and the energy of one of its lines, keV, drawn. */
 double skg_dose_emitted(const skg_dose_matter *matter, skg_dose_place place, int64_t shell);
 double skg_dose_draw_line(const skg_dose_matter *matter, int64_t shell, uint64_t *seed);
 

@@ -13,7 +13,7 @@ typedef struct {
     double radius;   /* within which the density of photons stays the same */
 } skg_dose_aim;
 
-/* What all batches read. */
+/* Data that all batches share and only read. */
 typedef struct {
     const skg_dose_walk *walk;
     skg_rules rules;
@@ -35,7 +35,7 @@ typedef struct {
     double kev, weight;
 } skg_dose_photon;
 
-/* What a batch has and gave. Energies in keV, of photons of weight 1; kerma in uGy likewise. */
+/* State and scores of a batch. Energies in keV, of photons of weight 1; kerma in uGy likewise. */
 typedef struct {
     const skg_dose_hall *hall;
     uint64_t seed;

@@ -24,7 +24,7 @@ typedef struct {
 skg_status skg_forest_make(const skg_scene *scene, skg_forest *tree);
 void skg_forest_free(skg_forest *tree);
 
-/* --- What a line crosses. */
+/* --- Pieces of a line through the parts */
 
 typedef struct {
     double at; /* mm from the beginning */
@@ -77,7 +77,8 @@ skg_status skg_way_find(const skg_forest *tree, const skg_rules *rules, const do
                         const double direction[3], double reach, skg_way *way);
 void skg_way_free(skg_way *way);
 
-/* The same, with pieces in volumes of cells that are as long as the cells are the same. Values that are linear between cells count as those of
+/* Finds the pieces likewise, those in volumes of cells as long as the cells are the same. Values that are linear between cells count as
+ * those of
  * the cells, which have the same mass. */
 skg_status skg_way_find_cells(const skg_forest *tree, const skg_rules *rules, const double from[3],
                               const double direction[3], double reach, skg_way *way);

@@ -1,4 +1,4 @@
-/* What interactions send to places where kerma is asked for. */
+/* Scores the kerma that photons of each interaction give to the points: next-event estimates. */
 #include "dose/photons.h"
 
 #include "core/maths.h"

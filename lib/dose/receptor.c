@@ -1,4 +1,4 @@
-/* What the detector gets behind the parts: air kerma, exposure index, the signal where it is least. */
+/* Exposure of the detector behind the parts: air kerma, exposure index, the smallest signal. */
 #include "dose/figures.h"
 
 #include "beam/spectrum.h"

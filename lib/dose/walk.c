@@ -12,10 +12,10 @@
 
 #include <string.h>
 
-/* So many rounds, between which progress is told. */
+/* Rounds of the histories, between which progress is reported. */
 enum { ROUNDS = 16 };
 
-/* What is met in cells has elements. */
+/* Fails unless the cells have elements: coefficients alone do not say how much energy stays. */
 static skg_status check_cells(const skg_scene_part_data *part) {
     const skg_volume *volume = part->volume;
     if (volume->values == SKG_VOLUME_MU)
@@ -189,7 +189,7 @@ static skg_status run_rounds(const skg_dose_walk *walk, skg_dose_batch *batches)
     return skg_progress_step(walk->progress, ROUNDS, ROUNDS);
 }
 
-/* What all batches gave, with the standard error from their spread. */
+/* Energy that the batches were given, to which their scores are scaled. */
 typedef struct {
     double given[SKG_DOSE_BATCHES]; /* keV of photons from the source */
     double known;                   /* all of it, as the beam says; 0: no ratios */
@@ -228,7 +228,7 @@ static void collect(const skg_dose_walk *walk, const skg_dose_batch *batches, sk
     found->around = add_up(&t, values, &sigma);
     for (int b = 0; b < SKG_DOSE_BATCHES; b++) values[b] = batches[b].escaped;
     found->escaped = add_up(&t, values, &found->escaped_sigma);
-    /* What is left over of the balance of each batch: energy is kept in expectation, not by each photon. */
+    /* Standard error of the absorbed energy, from the balance of each batch: single photons keep energy only in expectation. */
     for (int b = 0; b < SKG_DOSE_BATCHES; b++) {
         values[b] = batches[b].incident - batches[b].escaped - batches[b].around;
         for (int64_t p = 0; p < parts; p++) values[b] -= batches[b].energy[p];

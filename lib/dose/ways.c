@@ -58,7 +58,8 @@ static int is_displaced(const skg_rules *rules, const skg_way *way, int64_t part
     return 0;
 }
 
-/* The same with what the part lies inside, at any depth. */
+/* Winding number of a part at the current place of the way; 0 where it, or a part that it lies inside at any depth, is displaced or
+ * clipped. */
 static int32_t counted(const skg_rules *rules, const skg_way *way, int64_t part) {
     const skg_scene_part_data *parts = rules->scene->parts;
     for (int64_t up = part; rules->competing && up >= 0; up = parts[up].inside) {

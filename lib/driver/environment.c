@@ -1,4 +1,4 @@
-/* What drivers read from the environment. */
+/* Environment variables that drivers read, as the library reads them. */
 #include "driver/driver.h"
 
 #include <stdlib.h>

@@ -89,7 +89,7 @@ skg_status skg_waiting_draw(skg_job *job, const skg_waiting *gathered, cl_event 
 void skg_waiting_empty(skg_waiting *gathered);
 void skg_waiting_release(skg_waiting *gathered);
 
-/* --- What the parts of one pass contribute and where they lie */
+/* --- Contributions of the parts of one pass, and their places */
 
 /* Fills a pass, but for its raster. number: of the passes that samples of source and pixel need; below 0: the point source and
  * the pixels' centres. The pass borrows memory; release it with skg_pass_release, also after a failure. */
@@ -128,10 +128,10 @@ skg_status skg_frame_check_places(const skg_recipe *recipe, const skg_machine *m
 /* Computes the scatter of the frame, waits for it, and enqueues what adds it to the intensities. image: where these are. */
 skg_status skg_frame_add_scatter(skg_job *job, const skg_frame_work *work, const skg_image_place *image);
 
-/* The same of an output that shows the scatter, its standard error or a component, alone. */
+/* Computes the scatter of the frame as the output itself: the scatter, its standard error or a component, alone. */
 skg_status skg_frame_show_scatter(skg_job *job, const skg_frame_work *work);
 
-/* --- What the detector makes of a frame's intensities, of their means and of their variances */
+/* --- The detector's readout of a frame: intensities, their means and their variances */
 
 /* Whether a frame shows what photons are expected, without noise, or how much noise varies. */
 static inline int skg_frame_is_expected(const skg_recipe *recipe, const skg_frame_work *work) {

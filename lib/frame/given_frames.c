@@ -93,8 +93,8 @@ static skg_status check_overrides(const skg_recipe *recipe, const skg_frame *fra
     return status;
 }
 
-/* What the host does between steps, and where it looks for flat faces that touch, reads vertices when the caller may have moved
- * them. */
+/* Copies the vertices for readers on the host, which read them between steps and where they look for flat faces that touch, when the caller
+ * may already have moved them. */
 static skg_status own_vertices(skg_job *job, skg_mesh *mesh) {
     const int64_t count = 3 * mesh->vertices;
     if (mesh->positions_stale)

@@ -96,7 +96,7 @@ static inline int64_t skg_job_steps(const skg_job *job) {
  * Also for submissions that failed half way. */
 void skg_job_end(skg_job **job);
 
-/* The same without giving up a reference. */
+/* Ends the work of a job, but keeps its reference. */
 void skg_job_empty(skg_job *job);
 
 /* --- Frames of a job: checked and enqueued, all at once or one after another (frame/submit_frames.c) */

@@ -6,8 +6,8 @@
 #include <math.h>
 #include <string.h>
 
-/* What parts add to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. The box of cells, which are
- * added to the plane later, is listed with nothing. */
+/* Contributions of parts to the only plane of path lengths: 1 mm per mm of the part asked for, less its children. The box of cells, which
+ * are added to the plane later, is listed without a contribution. */
 static skg_status list_lengths(const skg_scene *scene, const skg_frame_work *work, skg_pass *pass) {
     SKG_TRY(skg_alloc(scene->count, sizeof *pass->own_contributions, "parts of a frame",
                       &pass->own_contributions));

@@ -1,4 +1,4 @@
-/* What runs of scans, and flat and dark fields, need of a plan beside its interface. Private. */
+/* Access to a plan for scans and for flat and dark fields, beyond its public interface. Private. */
 #ifndef SKG_QUIET_H
 #define SKG_QUIET_H
 

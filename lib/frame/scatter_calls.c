@@ -153,7 +153,7 @@ cleanup:
     return status == SKG_RANGE ? SKG_OK : status;
 }
 
-/* What the caller was told of the scene is not told again. */
+/* Predicts without a log: its warnings about the scene were given when the plan was made. */
 static skg_status predict_silently(skg_plan *plan, skg_scatter_prediction *prediction) {
     SKG_PLAIN;
     SKG_NEEDS_OF("skg_plan_scatter_predict", plan);

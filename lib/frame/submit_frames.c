@@ -92,8 +92,8 @@ static skg_status divide(skg_job *job) {
     return skg_job_divide(job, steps);
 }
 
-/* What a device was given cannot be taken back. The repair of leaky parts looks at the meshes on the host, and commands of the
- * caller may follow those for a buffer of theirs. Scatter is waited for in each frame. */
+/* Whether frames may be enqueued later, so that the job can be cancelled. Not if they write a buffer of the caller, whose commands may
+ * follow; nor with leaky parts, whose repair reads the meshes on the host; nor with scatter, which is waited for in each frame. */
 static int is_for_later(const skg_job *job) {
     for (int64_t o = 0; o < job->output_count; o++)
         if (job->outputs[o].to.buffer) return 0;

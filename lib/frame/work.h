@@ -7,7 +7,7 @@
 #include "stage/machine.h"
 #include "stage/staging.h"
 
-/* --- What a frame is to show */
+/* --- Work of a frame: its output, and how it is made */
 
 /* Beside SKG_LENGTHS_NET and SKG_LENGTHS_SURFACE: what the cells of a volume add to a plane of the model. */
 enum { SKG_LENGTHS_CELLS = 2 };
@@ -17,7 +17,7 @@ typedef struct {
     const double *const *poses; /* [parts] each NULL for the scene's; NULL: all the scene's */
     const skg_frame *frame;     /* the caller's, for its overrides; NULL: none */
     skg_noise_args noise;       /* its key */
-    /* What is shown, and where. */
+    /* The output that is shown, and its place in memory. */
     int32_t kind;  /* enum skg_output_kind */
     int32_t which; /* of lengths: SKG_LENGTHS_...; of a component of the scatter: which */
     int64_t part;  /* whose lengths are shown */

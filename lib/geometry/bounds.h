@@ -1,4 +1,4 @@
-/* What parts can reach: extents, and the scale of the sums that follows. Private. */
+/* Bounds of parts in the picture: extents, and the scale of the sums that follows. Private. */
 #ifndef SKG_BOUNDS_H
 #define SKG_BOUNDS_H
 
@@ -64,7 +64,7 @@ typedef struct {
 void skg_extent_find(const skg_camera *camera, const skg_mesh *mesh, const double *pose, double last_bit,
                      skg_extent *extent);
 
-/* The same from other bounds, mm from the mesh's origin, and as many layers. */
+/* Finds the extent from other bounds, mm from the mesh's origin, and another number of layers. */
 void skg_extent_find_within(const skg_camera *camera, const skg_mesh *mesh, const float lowest[3],
                             const float highest[3], const double *pose, double last_bit, int64_t layers,
                             skg_extent *extent);

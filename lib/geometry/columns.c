@@ -196,7 +196,7 @@ cleanup:
     return status;
 }
 
-/* What threads share: the triangles of all solids, in pieces. */
+/* Work of the threads: the triangles of all solids, in pieces. */
 enum { PIECE = 4096 };
 typedef struct {
     int64_t count;

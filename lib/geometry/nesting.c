@@ -292,7 +292,7 @@ static skg_status create_oriented(skg_context *context, const skg_mesh *mesh, sk
         corners[3 * t + 1] = corners[3 * t + 2];
         corners[3 * t + 2] = second;
     }
-    /* What is said of the given mesh was said when it was made, unless its winding was left as it was. */
+    /* Warnings about the given mesh were logged when it was made, unless its winding was left as it was. */
     status = skg_mesh_create(mesh->as_wound ? context : NULL, mesh->name,
                              &(skg_mesh_source){.size = sizeof(skg_mesh_source),
                                                 .vertices = mesh->vertices,

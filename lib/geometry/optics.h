@@ -99,7 +99,7 @@ double skg_camera_foot(const skg_camera *camera);
 /* The factors that make lengths of sums: the lengths of the rays, and 1 / scale. */
 void skg_camera_rays(const skg_camera *camera, double scale, skg_ray_double *ray);
 
-/* The same in single precision. */
+/* Rounds the factors to single precision. */
 void skg_rays_round(const skg_ray_double *from, skg_ray_float *to);
 
 /* --- How much of an absolute beam a view receives. */

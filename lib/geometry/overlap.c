@@ -66,7 +66,7 @@ typedef struct {
     int64_t count;
 } number_set;
 
-/* What a column is inside of. Only parts that overlap or have left their parents are looked at between two hits, so that
+/* State of a column: the parts that contain it. Only parts that overlap or have left their parents are looked at between two hits, so that
  * many parts within each other cost no more than their hits. Parts of no parent have the number 0 as a parent, others that of
  * their parent and 1 more. */
 typedef struct {
@@ -182,7 +182,7 @@ static skg_status sweep_cell(skg_columns *grid, sweep_state *state, int64_t cell
     return SKG_OK;
 }
 
-/* What threads share. */
+/* Data of all threads of a sweep. */
 typedef struct {
     skg_columns grid; /* of all bands, without hits */
     int64_t count;

@@ -13,8 +13,8 @@
 #include "geometry/overlaps.h"
 #include "scene/scene.h"
 
-/* What is asked for, besides priorities: children count only inside their parents; of closed parts counts the union of what they
- * enclose, where the winding number is above 0. */
+/* Rules besides priorities. CLIP: children count only inside their parents; UNITE: of closed parts counts the union of what they enclose,
+ * where the winding number is above 0. */
 enum { SKG_RULE_CLIP = 1, SKG_RULE_UNITE = 2 };
 
 static inline int32_t skg_priority_rules(int32_t clip, int32_t unite) {

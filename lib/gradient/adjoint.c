@@ -170,7 +170,7 @@ skg_status skg_adjoint_send(skg_job *job, const double *adjoint) {
     if (skg_recipe_kernel_precision(recipe) == SKG_PRECISION_DOUBLE)
         return skg_buffer_write(machine->context, &skg_gradient_of(job)->memory->adjoint,
                                 count * (int64_t)sizeof *adjoint, adjoint, "adjoint");
-    /* What was sent before was waited for: each pass ends with a read. */
+    /* The staged floats are free again: each pass ends with a read, which waits for the write before. */
     if (!*rounded) SKG_TRY(skg_staging_take(&job->staging, count, sizeof **rounded, "adjoint", rounded));
     for (int64_t i = 0; i < count; i++) (*rounded)[i] = (float)adjoint[i];
     return skg_staging_write(&job->staging, &skg_gradient_of(job)->memory->adjoint,

@@ -130,8 +130,8 @@ skg_status skg_gradient_keep_planes(skg_job *job, const skg_pass *pass) {
     return skg_gradient_read(pass, skg_gradient_of(job)->memory->weights.memory, 0, count, gradient->planes);
 }
 
-/* What a mm of a part's own material adds to the planes: the sum of what the part and all parts around it contribute. Of a volume the
- * lengths are those of a plane themselves. */
+/* Contribution of a mm of a part's own material to the planes: the sum of the contributions of the part and of all parts around it. Of a
+ * volume the lengths are those of a plane themselves. */
 static void find_own(const skg_recipe *recipe, int64_t part, int32_t plane, double *own) {
     const skg_model *model = &recipe->model;
     memset(own, 0, (size_t)model->planes * sizeof *own);

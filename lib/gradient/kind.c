@@ -142,7 +142,7 @@ static skg_status step_directions(skg_job *job, int64_t frame, int64_t step, skg
         SKG_TRY(take_first(job));
         skg_direction_results_clear(job);
     }
-    /* What path lengths need is a pass by itself, and so before this one, whose memory it shares. */
+    /* Derivatives by path lengths are a pass by itself, before this one, whose memory it shares. */
     skg_derivative_clear_rates(job);
     SKG_TRY(add_densities(job, work, number));
     return add_pass(job, work, number, skg_derivative_add_pass);

@@ -4,7 +4,7 @@
 #include <string.h>
 #include <zlib.h>
 
-/* What the file holds, read from front to back. */
+/* Reader of the file's values from front to back. */
 typedef struct {
     const char *path;
     FILE *stream;

@@ -120,7 +120,7 @@ skg_status skg_metaimage_read_grid(const char *path, skg_grid *grid);
 skg_status skg_nrrd_read_grid(const char *path, skg_grid *grid);
 skg_status skg_nifti_read_grid(const char *path, skg_grid *grid);
 
-/* The same of a folder of DICOM slices, and whether a path is a folder. */
+/* Reads a folder of DICOM slices as a grid, and says whether a path is a folder. */
 skg_status skg_dicom_read_grid(const char *path, skg_grid *grid);
 int skg_dicom_is_folder(const char *path);
 

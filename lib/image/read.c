@@ -1,4 +1,4 @@
-/* What the readers of image files share. */
+/* Functions that the readers of image files share. */
 #include "image/image.h"
 
 #include <inttypes.h>

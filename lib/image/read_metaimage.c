@@ -9,7 +9,7 @@
 
 enum { LINE = 4096, LINES = 200 };
 
-/* What the header says. */
+/* Fields of the header. */
 typedef struct {
     double size[3], spacing[3], offset[3];
     double axes[9];                                             /* a row for each axis */

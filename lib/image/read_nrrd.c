@@ -9,7 +9,7 @@
 
 enum { LINE = 4096, LINES = 1000 };
 
-/* What the header says. */
+/* Fields of the header. */
 typedef struct {
     skg_grid_file file;
     double sizes[3], unit_mm[3]; /* unit_mm: of each axis; 0: not given; below 0: of none that is known */

@@ -5,13 +5,13 @@
 
 #include <string.h>
 
-/* What a page says of its values. */
+/* Size and format of the values of a page. */
 typedef struct {
     uint32_t columns, rows;
     uint16_t bits, samples, format;
 } page_of;
 
-/* What values and places are not the plain ones. Photometric numbers from 2 on are colours. */
+/* Refuses values and orientations other than the plain ones. Photometric numbers from 2 on are colours. */
 static skg_status check_meaning(const char *path, uint16_t photometric, uint16_t orientation) {
     if (photometric > PHOTOMETRIC_MINISBLACK)
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: has colours; write it grey", path);

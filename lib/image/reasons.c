@@ -1,4 +1,4 @@
-/* What libpng and libtiff say of a failure, kept instead of printed. */
+/* Keeps the error messages of libpng and libtiff instead of printing them. */
 #include "image/reasons.h"
 
 #include <stdarg.h>

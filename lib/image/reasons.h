@@ -1,4 +1,4 @@
-/* What libpng and libtiff say of a failure, kept instead of printed. Private. */
+/* Keeps the error messages of libpng and libtiff instead of printing them. Private. */
 #ifndef SKG_REASONS_H
 #define SKG_REASONS_H
 

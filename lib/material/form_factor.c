@@ -10,7 +10,7 @@
 /* From here on the order of molecules hardly matters, 1/Angstrom: a table has to reach so far. */
 static const double FREE = 0.4;
 
-/* What the table is scaled by is taken from this last share of its momentum transfers. */
+/* Share of the table's momentum transfers, the last ones, from which its scale is found. */
 static const double LAST = 0.2;
 
 static skg_status check_rows(const char *name, int64_t count, const double *x, const double *squares) {
@@ -34,7 +34,7 @@ static skg_status check_rows(const char *name, int64_t count, const double *x, c
     return SKG_OK;
 }
 
-/* What the squares are to be multiplied by to be those of 1 g where atoms are as if free. */
+/* Factor that makes the squares those of 1 g where atoms are as if free. */
 static skg_status find_scale(const skg_material *material, int64_t count, const double *x,
                              const double *squares, double *scale) {
     double free = 0, bound = 0;

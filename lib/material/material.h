@@ -68,7 +68,7 @@ skg_status skg_check_energy(const char *name, double energy_kev);
 /* Cross sections of an element in cm2/g at an energy in that range. */
 void skg_element_sections(int32_t z, double energy_kev, double sections[SKG_PROCESSES]);
 
-/* The same of a composition: the sum weighted with its fractions by mass. */
+/* Cross sections of a composition in cm2/g: the sum weighted with its fractions by mass. */
 void skg_mixed_sections(int64_t count, const skg_mass_fraction *parts, double energy_kev,
                         double sections[SKG_PROCESSES]);
 
@@ -84,7 +84,7 @@ typedef struct {
     double (*of_element[SKG_LAST_ELEMENT + 1])[SKG_PROCESSES]; /* [count] each; NULL: not needed yet */
 } skg_section_table;
 
-/* What skg_material_attenuation_get gives for each of the energies, with its bits and its errors. per_cm: [count] */
+/* Computes skg_material_attenuation_get for each of the energies, with its bits and its errors. per_cm: [count] */
 skg_status skg_attenuation_tabulate(const skg_material *material, skg_section_table *table, double *per_cm);
 void skg_section_table_release(skg_section_table *table);
 

@@ -112,7 +112,7 @@ static const char *const plastics[][2] = {{"PB", "polybutylene"},   {"PC", "poly
                                           {"PF", "phenolic resin"}, {"PI", "polyimide"},
                                           {"PS", "polystyrene"},    {"PU", "polyurethane"}};
 
-/* What reads as a formula and is hardly ever meant so. */
+/* Refuses names that read as a formula and are hardly ever meant as one. */
 static skg_status check_meaning(const char *text) {
     const char *bracket = strrchr(text, '(');
     const size_t length = strlen(text);
@@ -198,7 +198,7 @@ skg_status skg_material_create_named(const char *text, skg_material **material) 
     return fail_unknown(text, skg_last_error());
 }
 
-/* What is dissolved: an element, a formula or a name of the tables, with a density. */
+/* Finds the solute: an element, a formula or a name of the tables, with a density. */
 static skg_status find_solute(const char *name, skg_material **solute) {
     SKG_TRY(skg_material_create_named(name, solute));
     if ((*solute)->kind == SKG_MATTER_COMPOSITION && (*solute)->density > 0) return SKG_OK;

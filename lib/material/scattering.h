@@ -27,7 +27,7 @@ void skg_atom_scattering(int32_t z, double x, double factors[SKG_SCATTERINGS]);
 skg_status skg_scattering_factors(const skg_material *material, double x, double *coherent,
                                   double *incoherent);
 
-/* The same of free atoms. */
+/* Likewise for free atoms. */
 skg_status skg_scattering_free(const skg_material *material, double x, double *coherent, double *incoherent);
 
 /* SKG_ERR_MATERIAL as above unless the material has a composition. */

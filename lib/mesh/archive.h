@@ -28,7 +28,8 @@ int skg_archive_is(FILE *stream);
  * errors   as above */
 skg_status skg_archive_read(const char *path, const char *end, int whole, char **text);
 
-/* The same for the part that the relationships of a 3MF file name as its model. name: [SKG_RELATION_MAX] result: the part's */
+/* Reads the part that the relationships of a 3MF file name as its model, as skg_archive_read does. name: [SKG_RELATION_MAX] result: the
+ * part's */
 skg_status skg_archive_read_model(const char *path, char *name, char **text);
 
 #endif

@@ -1,4 +1,4 @@
-/* What arrays of a COLLADA file announce. Private. */
+/* Checks the lengths that the arrays of a COLLADA file announce. Private. */
 #ifndef SKG_MESH_COLLADA_LENGTHS_H
 #define SKG_MESH_COLLADA_LENGTHS_H
 

@@ -1,5 +1,5 @@
-/* What a file says of its own contents, counted before Assimp opens it: Assimp takes memory for every length that a file
- * announces, and follows parts that contain themselves until the stack ends. Private. */
+/* Checks the lengths that a file announces, before Assimp opens it: Assimp allocates memory for every announced length, and follows parts
+ * that contain themselves until the stack ends. Private. */
 #ifndef SKG_MESH_COUNTS_H
 #define SKG_MESH_COUNTS_H
 

@@ -14,7 +14,7 @@ struct aiScene;
  * is_named  the caller names the unit: a length in the file that is none is passed over, and otherwise fails with SKG_ERR_FORMAT */
 skg_status skg_mesh_file_unit(const char *path, FILE *stream, int64_t size, int is_named, double *mm);
 
-/* The same of a file that Assimp has read and says the unit of (FBX); 0: it does not. */
+/* The unit of a file that Assimp has read and whose unit it reports (FBX), mm; 0: none. */
 double skg_mesh_scene_unit(const struct aiScene *scene);
 
 /* Whether a file is COLLADA's, whose unit and axes Assimp puts into its root node. */

@@ -80,7 +80,7 @@ static double value_bytes(const json_t *accessor) {
     return bytes;
 }
 
-/* What has no bytes of its own is zeros, which a file may announce up to a multiple of its length. */
+/* Accessors without bytes of their own are zeros; a file may announce a multiple of its length of them. */
 static skg_status check_accessor(gltf *g, const char *name, const json_t *accessor) {
     const json_t *view = skg_gltf_find(g->root, "bufferViews", json_object_get(accessor, "bufferView"));
     const double says = length_of(accessor, "count") * value_bytes(accessor);
@@ -93,7 +93,7 @@ static double count_of(const gltf *g, const json_t *accessor) {
     return length_of(skg_gltf_find(g->root, "accessors", accessor), "count");
 }
 
-/* What a mesh takes in Assimp's memory. */
+/* Bytes that a mesh takes in Assimp's memory. */
 static double mesh_bytes(const gltf *g, const json_t *mesh) {
     json_t *primitive, *accessor;
     const char *name;

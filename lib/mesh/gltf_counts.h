@@ -1,4 +1,4 @@
-/* What the text of a glTF file announces. Private. */
+/* Checks the lengths that the text of a glTF file announces. Private. */
 #ifndef SKG_MESH_GLTF_COUNTS_H
 #define SKG_MESH_GLTF_COUNTS_H
 

@@ -1,4 +1,4 @@
-/* What a glTF file says and Assimp passes over, though it moves vertices. Private. */
+/* Refuses glTF files with elements that move vertices and that Assimp passes over. Private. */
 #ifndef SKG_MESH_GLTF_UNREAD_H
 #define SKG_MESH_GLTF_UNREAD_H
 
@@ -6,7 +6,7 @@
 
 #include <jansson.h>
 
-/* What stands in the list `list` under `name`, in version 2 by its number, in version 1 by its name. NULL: nothing */
+/* The element of the list `list` that `name` names: by its number in version 2, by its name in version 1. NULL: none */
 json_t *skg_gltf_find(json_t *root, const char *list, const json_t *name);
 
 /* Fails with SKG_ERR_FORMAT where a file (1 or 2) requires an extension that is not applied, has positions that are not floats, or

@@ -52,8 +52,8 @@ static int64_t bits_of(uint64_t set) {
     return __builtin_popcountll(set);
 }
 
-/* The same count for few boxes: it is reached in a cell that begins some box along each axis. met: of each box, those that lie over
- * the cell in which it begins, a bit each. */
+/* The largest number of boxes over a cell, for few boxes: it is reached in a cell in which some box begins along each axis. met: a bit for
+ * each box over the cell in which a box begins */
 enum { FEW_BOXES = 64 };
 static int64_t largest_of_few(const cell_grid *grid, int64_t count, const float *boxes) {
     uint64_t met[3][FEW_BOXES] = {{0}};

@@ -63,8 +63,8 @@ typedef struct {
     int64_t not_printed; /* objects that support others */
 } skg_loaded;
 
-/* What skg_mesh_load does, in two steps: threads may share the first one for files that are shareable (STL, PLY and OBJ:
- * Assimp's errors belong to no thread), and the second one logs. The calling thread has the C locale (text.h). */
+/* skg_mesh_load in two steps: threads may share the first one for files that are shareable (STL, PLY and OBJ: Assimp's errors belong to no
+ * thread), and the second one logs. The calling thread has the C locale (text.h). */
 int skg_mesh_is_shareable(const char *path);
 skg_status skg_mesh_load_silently(const char *path, const skg_mesh_reading *reading, skg_loaded *loaded);
 void skg_mesh_load_warn(const skg_context *context, const char *path, const skg_loaded *loaded);

@@ -19,7 +19,7 @@ skg_status skg_mesh_read_stl(const skg_mesh_file *file, skg_mesh_arrays *arrays)
 skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 skg_status skg_mesh_read_ply(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 
-/* The same for a 3MF file, which is an archive. */
+/* Reads a 3MF file, which is an archive. */
 skg_status skg_mesh_read_3mf(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays);
 
 #endif

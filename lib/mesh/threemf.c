@@ -105,7 +105,7 @@ static skg_status list_object(reader *r, int64_t index, const skg_xml *xml, int6
     return skg_instances_name(&r->parts, *part, skg_instances_key((uint64_t)index, o->id));
 }
 
-/* What an object of the part holds, for the count: numbers of a vertex and of a triangle, and other objects. */
+/* Counts the contents of an object of the part: bytes of a vertex or a triangle, and other objects that it places. */
 static skg_status count_tag(reader *r, int64_t index, const skg_xml *xml, int64_t part) {
     const int is_item = index == 0 && skg_xml_is(xml, "item");
     char id[32];

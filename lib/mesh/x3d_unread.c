@@ -8,7 +8,7 @@
 /* Names of elements; each list ends in NULL. */
 static const char *const followed[] = {"X3D", "Scene", "Group", "StaticGroup", "Transform", "Switch", NULL};
 static const char *const groups[] = {"Group", "StaticGroup", "Transform", "Switch", NULL};
-/* What lies in them is placed by others, or never. */
+/* Nodes whose contents are placed by other nodes, or never. */
 static const char *const definitions[] = {"ProtoDeclare", "ExternProtoDeclare", "Script", NULL};
 static const char *const shapes[] = {"Shape", "Inline", NULL};
 static const char *const geometries[] = {"IndexedFaceSet",

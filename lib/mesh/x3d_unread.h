@@ -1,4 +1,4 @@
-/* What X3D files say and Assimp passes over. Private. */
+/* Refuses X3D files with shapes that Assimp passes over. Private. */
 #ifndef SKG_MESH_X3D_UNREAD_H
 #define SKG_MESH_X3D_UNREAD_H
 

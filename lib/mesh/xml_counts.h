@@ -1,4 +1,4 @@
-/* What the text of a file in XML places. Private. */
+/* Checks the placements in the text of a file in XML. Private. */
 #ifndef SKG_MESH_XML_COUNTS_H
 #define SKG_MESH_XML_COUNTS_H
 

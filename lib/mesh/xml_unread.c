@@ -6,7 +6,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the contents of an element must be to be read. */
+/* Contents that an element must have to be read. */
 enum contents { UNREADABLE, INDICES, ZERO };
 
 typedef struct {

@@ -1,4 +1,4 @@
-/* What files in XML say and Assimp passes over, or cannot bear. Private. */
+/* Refuses files in XML with elements that Assimp passes over, or cannot bear. Private. */
 #ifndef SKG_MESH_XML_UNREAD_H
 #define SKG_MESH_XML_UNREAD_H
 

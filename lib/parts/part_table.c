@@ -36,7 +36,7 @@ static skg_status read_volume(const skg_part *part, double surface_mm3, double *
     return SKG_OK;
 }
 
-/* What the scene says of a part, and its mesh. The share of a volume of cells is not known, and so no other part's is. */
+/* Reads the row of a part from its scene and its mesh. The share of a volume of cells is not known, and so no other part's is. */
 static skg_status read_part(const skg_scene *scene, int64_t i, skg_part_table *t) {
     skg_part part;
     skg_mesh_health health;

@@ -123,14 +123,14 @@ enum { SKG_SIDE_MAX = 4 }; /* most passes that a worker draws side by side */
  * workers at each pass. side: of these, how many a worker draws side by side. */
 int32_t skg_passes_choose(const skg_passes_request *request, int32_t *side);
 
-/* The same of frames of a job, each of one pass; request->passes is the number of frames. A multiple of the workers, or 1: frames are
- * drawn one after another, with all workers at each. */
+/* Chooses the number of frames of a job, each of one pass, that are drawn at once; request->passes is the number of frames. A multiple of
+ * the workers, or 1: frames are drawn one after another, with all workers at each. */
 int32_t skg_frames_choose(const skg_passes_request *request, int32_t *side);
 
-/* The most that it chooses. */
+/* The largest number that skg_frames_choose returns. */
 int32_t skg_frames_most(int32_t workers);
 
-/* --- What a plan says of its precision. */
+/* --- Statements of a plan about its precision */
 
 /* The bound of the relative error that the precision makes. */
 skg_status skg_plan_precision_bound(const skg_recipe *recipe, double *bound);
@@ -138,7 +138,7 @@ skg_status skg_plan_precision_bound(const skg_recipe *recipe, double *bound);
 /* Warns of half precision, with its bound, and of parts that are too thin for single precision. */
 skg_status skg_plan_precision_warn(const skg_recipe *recipe, const skg_context *context);
 
-/* --- What a recipe's frames do behind the raster: how planes become images, and what the detector does. */
+/* --- Stages of a recipe's frames behind the raster: from planes to images, and the detector */
 
 /* The shape of the attenuation of images: everything but its tables. */
 void skg_decide_attenuation(const skg_recipe *recipe, skg_attenuation *shape);
@@ -177,7 +177,8 @@ skg_status skg_plan_overlaps_take(const skg_recipe *recipe, const skg_context *c
 /* SKG_ERR_UNSUPPORTED if a beam of a view comes from infinity through a world that does not cancel in what the image shows. */
 skg_status skg_decide_world(const skg_recipe *recipe, const skg_view *view);
 
-/* The same; SKG_STALE if a view has another size than the recipe's, or with an absolute beam, a distance where the recipe's has none. */
+/* Fails likewise for a view; SKG_STALE if it has another size than the recipe's, or with an absolute beam, a distance where the recipe's
+ * has none. */
 skg_status skg_decide_view(const skg_recipe *recipe, const skg_view *view);
 
 #endif

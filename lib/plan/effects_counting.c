@@ -12,7 +12,7 @@ static const skg_counting *counting_of(const skg_plan_options *options) {
     return options->counter ? &options->counter->counting : NULL;
 }
 
-/* What a detector that counts is refused with: each is an option, and what to do instead. */
+/* Refuses options that a detector that counts excludes; each row says what to do instead. */
 static skg_status check_counting(const skg_plan_options *o) {
     if (!o->counter) return SKG_OK;
     const struct {

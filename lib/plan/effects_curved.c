@@ -31,7 +31,7 @@ static int traces_again(const skg_recipe *recipe) {
     return recipe->leaky_count > 0 && recipe->options.repair == SKG_REPAIR_EXACT;
 }
 
-/* What is made for rays to a flat detector alone. */
+/* Effects that are made for rays to a flat detector alone. */
 static const struct {
     int (*is_on)(const skg_recipe *recipe);
     const char *what, *mend;

@@ -22,7 +22,7 @@ static const char *first_volume(const skg_scene *scene) {
     return scene->parts[p].label;
 }
 
-/* What scatters has elements, and cells of the object take those of a few volumes. */
+/* Fails unless scatter can be computed: the cells have elements, and there are at most SKG_SCATTER_VOLUMES_MAX volumes. */
 static skg_status check_scatter(const skg_recipe *recipe, int64_t part) {
     const skg_scene *scene = recipe->scene;
     if (!recipe->options.scatter) return SKG_OK;

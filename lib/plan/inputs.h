@@ -32,7 +32,7 @@ skg_status skg_copies_material(skg_copies *copies, skg_material *material);
 
 void skg_copies_release(skg_copies *copies);
 
-/* --- What the channels of a plan's images are. */
+/* --- Channels of a plan's images */
 
 typedef struct {
     char text[64];

@@ -132,7 +132,7 @@ static skg_status choose_strategy(skg_recipe *recipe, const skg_device_info *dev
     return status;
 }
 
-/* What follows from the planes. */
+/* Chooses mixed sums, fine sums and the strategy, which depend on the planes. */
 static skg_status choose_layout(skg_recipe *recipe, const skg_device_info *device) {
     SKG_TRY(choose_mix(recipe));
     choose_fine(recipe);

@@ -6,7 +6,7 @@
 #include "plan/rules.h"
 #include "stage/leaks.h"
 
-/* --- What a plan reports: decisions, effects with reasons, overlaps, times, and which warnings were given already. */
+/* --- Reports of a plan: decisions, effects with reasons, overlaps, times, and which warnings were given already */
 
 /* Time of a stage in the last job. */
 typedef struct {
@@ -38,7 +38,7 @@ void skg_outcome_release(skg_outcome *outcome);
 /* Takes over what another recipe has decided differently: planes and accumulators. */
 void skg_outcome_renew(const skg_recipe *recipe, skg_outcome *outcome);
 
-/* --- What is reported of finished work: times, bad pixels, negative exponents, lengths outside the verified range. */
+/* --- Reports of finished work: times, bad pixels, negative exponents, lengths outside the verified range */
 
 /* The counts that the device leaves of work, in staged memory. */
 typedef struct {

@@ -76,8 +76,8 @@ typedef struct {
     /* Fails with skg_effect_no_gradient if derivatives cannot be computed with the effect. by_view: those by source and detector. call: the
      * public function. NULL: they can. */
     skg_status (*refuses_gradient)(const char *call, const skg_recipe *recipe, int by_view);
-    /* What goes back through the effect: a function of lib/gradient, or a file of kernels/. NULL: derivatives are refused with it, or
-     * it has nothing that they go through. */
+    /* Adjoint of the effect: a function of lib/gradient, or a file of kernels/. NULL: derivatives are refused with it, or do not go through
+     * it. */
     const char *adjoint;
     /* Leaves it out of the options. NULL: it cannot be left out, or is off by itself. */
     void (*leave_out)(skg_plan_options *options);
@@ -145,7 +145,7 @@ skg_status skg_volumes_check(const skg_recipe *recipe);
 /* Fails with SKG_ERR_UNSUPPORTED: "CALL: WHAT has no gradient; MEND". */
 skg_status skg_effect_no_gradient(const char *call, const char *what, const char *mend);
 
-/* The same of what has none under source and detector alone. */
+/* Fails likewise for an effect without derivatives by source and detector alone. */
 skg_status skg_effect_no_view_gradient(const char *call, const char *what);
 
 /* Sets whether an effect is on, and why. */

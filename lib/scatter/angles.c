@@ -23,7 +23,7 @@ static double value(const double row[SKG_SCATTER_RANK], const double mixture[SKG
     return sum > 0 ? sum : 0;
 }
 
-/* What one mixture scatters by each process at an energy, over what normalises its shape; both over the sum of processes. */
+/* Compton and Rayleigh cross sections of one mixture at an energy, each over its share of their sum and over the norm of its shape. */
 static void shares_of(const skg_scatter_physics *p, double place, const double *mixture, double shares[2]) {
     double rows[4][SKG_SCATTER_RANK];
     row_at(p->compton, p->energies, place, rows[0]);

@@ -1,4 +1,4 @@
-/* What leaves the source, and what the detector sees of it. Private. */
+/* Emission of the source, and response of the detector to scattered photons. Private. */
 #ifndef SKG_BEAMS_H
 #define SKG_BEAMS_H
 
@@ -62,8 +62,8 @@ skg_status skg_sight_strips(const skg_scatter_work *work, double across[3]);
 skg_status skg_sight_spots(const skg_scatter_work *work, const skg_cells *cells, int64_t *count,
                            float (**spots)[4]);
 
-/* What a history whose photon arrives adds to a pixel, as photons of the spectrum: the photons that the field receives over those
- * of a pixel. */
+/* Contribution to a pixel of a history whose photon arrives, in photons of the spectrum: the photons that the field receives over those of
+ * a pixel. */
 double skg_sight_photons(const skg_scatter_work *work, const skg_scatter_args *args);
 
 /* --- The open beam behind what stands in it: heel effect, bow-tie filter, world, anti-scatter grid,
@@ -77,7 +77,8 @@ typedef struct {
     double *shares; /* [rows][columns] from the first pixel to the last */
 } skg_open_beam;
 
-/* What a channel records of the open beam in a pixel over what it would without these effects. Free it also after a failure. */
+/* Makes the shares: the signal of the open beam that a channel records in a pixel, over the signal without these effects. Free it also
+ * after a failure. */
 skg_status skg_open_beam_make(const skg_scatter_work *work, int32_t channel, skg_open_beam *open);
 void skg_open_beam_free(skg_open_beam *open);
 

@@ -82,7 +82,7 @@ static int holds(const skg_brick *b, int64_t fine, uint32_t face) {
     return 0;
 }
 
-/* What is at the known place of each finer cell, from one to the next. */
+/* Finds the amounts at the known place of each finer cell, from one to the next. */
 static void find_states(skg_brick *b) {
     const int64_t n = b->n;
     double from[3], to[3];

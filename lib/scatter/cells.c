@@ -89,7 +89,7 @@ static void sum_up(const skg_cell_parts *parts, const amount *amounts, const ins
     for (int64_t i = 0; i < in->count; i++)
         if (counts(parts, in, in->part[i]))
             add(sum, amounts[in->part[i]], parts->unite ? in->times[i] > 0 : in->times[i]);
-    /* What several parts displace is away once, and outside of its box there is nothing to displace. */
+    /* Where several parts displace the same volume it is removed once; outside of its box there is nothing to remove. */
     for (int k = SKG_CELL_TIMES; k < SKG_CELL_AMOUNTS; k++)
         if (sum[k] < 0) sum[k] = 0;
 }

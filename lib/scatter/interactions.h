@@ -1,4 +1,4 @@
-/* What photons meet: shapes, cross sections, angles. Private. */
+/* Interactions of photons: shapes, cross sections, angles. Private. */
 #ifndef SKG_INTERACTIONS_H
 #define SKG_INTERACTIONS_H
 
@@ -43,7 +43,7 @@ skg_status skg_emitters_find(int64_t count, skg_material *const *materials, int3
                              double low_kev, double high_kev, skg_emitters *emitters);
 void skg_emitters_free(skg_emitters *emitters);
 
-/* --- What photons meet: attenuation and the angles of scattering, for mixtures of all materials of a scene. *
+/* --- Interactions of photons: attenuation and the angles of scattering, for mixtures of all materials of a scene. *
  * A cell of the object holds four, eight or twelve coefficients. Every function of energy or of momentum transfer is linear in them: mu of a cell
  * is the sum over k of coefficient[k] * total[energy][k]. A cell without matter has zeros. With at most as
  * many compositions each coefficient is the length of one composition, and the functions are exact. With more, they are a

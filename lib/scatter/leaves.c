@@ -273,7 +273,7 @@ static void write_face(const skg_cells *cells, const double corners[9], float to
     }
 }
 
-/* What photons meet, as soon as a cell has a face. */
+/* Writes the faces for the photons, as soon as a cell has one. */
 static skg_status write_faces(skg_planting *p) {
     skg_cells *cells = p->cells;
     if (p->has_faces || (cells->traced == 0 && cells->faces)) return SKG_OK;

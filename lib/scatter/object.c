@@ -1,4 +1,4 @@
-/* What stands in the beam: the physics of its materials, and its cells. */
+/* Builds the scattering object of a frame: the physics of its materials, and its cells. */
 #include "scatter/voxels.h"
 
 #include "beam/spectrum.h"
@@ -71,7 +71,7 @@ static skg_status make_physics(const skg_scatter_work *work, const palette *p, s
     for (int64_t i = 0; i < spectrum->count; i++)
         if (spectrum->photons[i] > 0)
             low = fmin(low, spectrum->energy_kev[i]), high = spectrum->energy_kev[i];
-    /* What the response does not know adds nothing, and photons only lose energy. */
+    /* Photons below the lowest energy of the response add no signal, and photons only lose energy. */
     if (recipe->options.response) least = fmax(least, skg_response_lowest(recipe->options.response));
     SKG_TRY(skg_emitters_find(p->count, p->materials, recipe->options.scatter->fluorescence, least, high,
                               &object->emitters));
@@ -84,8 +84,8 @@ static double coefficient(const double (*of)[SKG_SCATTER_RANK], int64_t material
     return material < 0 ? 0 : of[material][k];
 }
 
-/* What a mm of each part adds: its own material less its parent's, as in frame/overrides.c. of: what the palette's materials have per
- * mm; base: likewise of the world */
+/* Coefficients that a mm of each part adds: those of its own material less its parent's, as in frame/overrides.c. of: coefficients of the
+ * palette's materials per mm; base: those of the world */
 static void find_differences(const skg_scatter_work *work, const palette *p,
                              const double (*of)[SKG_SCATTER_RANK], const double base[SKG_SCATTER_RANK],
                              double (*differences)[SKG_SCATTER_RANK]) {
@@ -145,7 +145,7 @@ static void drop(int64_t count, placed *p) {
     }
 }
 
-/* What the cells of a volume are made of. of: what the palette's materials have per mm */
+/* Coefficients of each composition of a volume, per mm. of: those of the palette's materials */
 static skg_status fill_curves(const palette *p, const skg_cell_volume *volume,
                               const double (*of)[SKG_SCATTER_RANK], double (**to)[SKG_SCATTER_RANK]) {
     const int64_t *of_curve = p->of_curve + volume->first_curve;
@@ -190,7 +190,7 @@ static void find_typical(const skg_spectrum *spectrum, const skg_scatter_physics
     for (int k = 0; k < SKG_SCATTER_RANK; k++) mu[k] = (double)p->total[row][k];
 }
 
-/* What the parts attenuate of each line. */
+/* Attenuation of the parts and volumes for each line of the beam. */
 static skg_status find_lines(const skg_scatter_work *work, const palette *p, placed *parts,
                              skg_beam_lines *lines) {
     static const double none[SKG_SCATTER_RANK];
@@ -220,7 +220,8 @@ static skg_status plant(skg_planting *planting, skg_judging *judging, double lim
     return skg_judging_of(judging, &object->judged);
 }
 
-/* What cells where parts compete, and of volumes, are off by. What this needs is not kept: most of it photons would not meet. */
+/* Error of the cells in which parts compete or volumes lie, which no limit lowers. Its tree is not kept: photons would not meet most of
+ * it. */
 static skg_status find_settled_error(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK],
                                      skg_judging *judging, skg_scatter_object *object) {
     if (!parts->priority && parts->volume_count == 0) return SKG_OK;

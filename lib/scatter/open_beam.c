@@ -15,7 +15,7 @@ enum { SIDE = 129 };
 /* Of the table of an oblique scintillator, even from the least cosine of the detector to 1. */
 enum { COSINES = 33 };
 
-/* What is known of each bin of the spectrum. */
+/* Recorded signal and attenuation of each bin of the spectrum. */
 typedef struct {
     double recorded;          /* photons times what one adds */
     double strip, interspace; /* of the grid, 1/mm */

@@ -1,4 +1,4 @@
-/* What photons may meet in each material: cross sections and angles by energy. */
+/* Tabulates cross sections and angles of each material by energy. */
 #include "scatter/interactions.h"
 #include "scatter/voxels.h"
 
@@ -51,7 +51,7 @@ static skg_status allocate(int64_t count, double low_kev, double high_kev, skg_s
     return skg_alloc(count, sizeof *p->coefficients, "scatter", &p->coefficients);
 }
 
-/* What an error of each function costs: that of the total is multiplied by the thickness of the object in mean free paths, and
+/* Weights of the errors of each function. The error of the total is multiplied by the thickness of the object in mean free paths, and
  * Rayleigh scattering, a tenth of all, goes forward anyway. */
 static const double IMPORTANCE[SKG_SCATTER_FUNCTIONS] = {4, 2, 1, 1, 0.3};
 

@@ -1,4 +1,4 @@
-/* What becomes of the faces of parts while cells are made of them. Private. */
+/* Planting: turns the faces of parts into cells that photons can read. Private. */
 #ifndef SKG_PLANTING_H
 #define SKG_PLANTING_H
 
@@ -46,7 +46,7 @@ static inline void skg_cell_place(const skg_cells *cells, int64_t cell, double p
     place[2] = (double)(cell / cells->count[0] / cells->count[1]);
 }
 
-/* What amounts at a place in a coarse cell are, with what the volumes hold there. */
+/* Sums the amounts at a place in a coarse cell, those of its volumes included. */
 static inline void skg_cell_all(const skg_cells *cells, int64_t cell, const int64_t *amounts,
                                 skg_cell_amount all) {
     for (int k = 0; k < SKG_CELL_AMOUNTS; k++) all[k] = k < SKG_SCATTER_RANK ? amounts[k] : 0;

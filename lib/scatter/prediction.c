@@ -73,7 +73,7 @@ static void sum_up(int64_t count, const skg_scatter_rendering *r, const skg_scat
     prediction->ratio = ratio_of(scattered, primary);
 }
 
-/* What the grid passes. */
+/* Fills the grid's transmissions for primary, scatter and both. r: with the grid; bare: without */
 static void compare(int64_t count, const skg_scatter_rendering *r, const skg_scatter_rendering *bare,
                     skg_scatter_prediction *prediction) {
     double primary[2] = {0}, scatter[2] = {0};

@@ -1,5 +1,6 @@
-/* What scatters straight on through the cells against that through the surfaces, on a coarse grid of the detector: what cells that are too
- * large for thin or small parts do to photons. Batches share the cells, so their spread does not show it. */
+/* Error of the cells: photons that scatter once straight on, through the cells against through the surfaces, on a coarse grid of the
+ * detector. It shows the bias of cells that are too large for thin or small parts. Batches share the cells, so their spread does not show
+ * this bias. */
 #include "scatter/voxels.h"
 
 #include "core/maths.h"
@@ -118,7 +119,8 @@ static void add_change(void *user, double depth, const int64_t *more, int64_t fa
                    (double)(factor * more[SKG_CELL_TIMES + v]) / SKG_CELL_UNIT);
 }
 
-/* What scatters straight on once and passes, but for a factor. depth: of each line */
+/* Sum over the beam's lines of weight t exp(-t), with depth[e] the optical depth t of line e: proportional to the energy that scatters once
+ * straight on and passes. */
 static double sent_by(const judge *j, const double depth[SKG_SCATTER_RANK]) {
     double sent = 0;
     for (int64_t e = 0; e < j->lines->count; e++)

@@ -16,7 +16,7 @@ static const double MIXTURE_ERROR = 0.05;
 /* Of what scatters straight on, above which cells where parts compete are warned of. */
 static const double CELLS_ERROR = 0.05;
 
-/* What the scatter of a frame depends on. */
+/* Digest of everything that the scatter of a frame depends on: view, materials, and each part's place, mesh, density and fill. */
 static skg_digest key_of(const skg_scatter_work *work) {
     const skg_recipe *recipe = work->recipe;
     const skg_scene *scene = recipe->scene;
@@ -33,7 +33,7 @@ static skg_digest key_of(const skg_scatter_work *work) {
     return skg_digest_end(&digester);
 }
 
-/* What came so far: images of layers and channels, channels fastest. */
+/* Sums over the histories so far, as images of layers and channels, channels fastest. */
 typedef struct {
     int64_t *sums;  /* as skg_trace_read */
     double *values; /* [batches][rows][columns] workspace */
@@ -70,8 +70,8 @@ static skg_status fit(arrived *a, skg_cosines *cosines) {
     return SKG_OK;
 }
 
-/* What histories have to reach. What cells and materials are off by leaves them little or nothing of what is asked for; then they stop
- * where they add little to it. */
+/* Returns the statistical error that histories have to reach. The systematic error of cells and materials may leave little or nothing of
+ * the tolerance; then histories stop where they would add little to it. */
 static double within_reach(double tolerance, double systematic) {
     const double most = SKG_SCATTER_MOST * tolerance;
     return systematic <= most ? tolerance : hypot(systematic, sqrt(tolerance * tolerance - most * most));
@@ -279,7 +279,7 @@ skg_status skg_scatterer_run(skg_context *context, skg_scatterer *s, const skg_s
     return status;
 }
 
-/* What the scatter of a frame from a series depends on. */
+/* Digest of everything that the scatter of a frame from a series depends on. */
 static skg_digest key_in_series(const skg_scatter_work *work, const skg_scatter_series *series,
                                 double place) {
     skg_digester digester;

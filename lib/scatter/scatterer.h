@@ -37,9 +37,9 @@ skg_status skg_scatterer_component(skg_context *context, skg_scatterer *scattere
 void skg_scatterer_release(skg_scatterer *scatterer);
 int64_t skg_scatterer_bytes(const skg_scatterer *scatterer);
 
-/* --- What scatter to expect, before it is computed */
+/* --- Prediction of the scatter before it is computed */
 
-/* What a plan of its own renders of a scene. */
+/* Images of a scene that the callback of skg_scatter_predict renders with a plan of its own. */
 typedef struct {
     float *image, *scatter; /* [rows][columns] all photons, and the scattered ones */
     double open;            /* the open beam, in their unit */

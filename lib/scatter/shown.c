@@ -106,7 +106,7 @@ cleanup:
     return status;
 }
 
-/* What ratios are over in each pixel, of each channel. */
+/* Makes the denominators of ratios: the open beam in each pixel, for each channel. */
 static skg_status find_open(const skg_scatter_work *work, skg_open_beam *open) {
     if (!skg_quantity_is_ratio(&work->recipe->options)) return SKG_OK;
     for (int32_t c = 0; c < work->recipe->model.channels; c++) SKG_TRY(skg_open_beam_make(work, c, &open[c]));

@@ -123,7 +123,7 @@ static skg_status fill_beam(const skg_recipe *recipe, const skg_emitters *emitte
     return t->bins > 0 ? SKG_OK : skg_fail(SKG_ERR_BEAM, "the beam has no photons at any energy");
 }
 
-/* What layers record of photons of an energy that arrive at a cosine, over what all record of straight ones. */
+/* Signal of each layer for photons of an energy that arrive at a cosine, over the signal of all layers for photons at right angles. */
 static skg_status fill_cosine(const skg_recipe *recipe, const skg_scatter_tables *t, double kev,
                               double cosine, float *shares) {
     const skg_depth_blur *depths = recipe->options.depth_blur;

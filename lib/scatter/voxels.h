@@ -104,7 +104,7 @@ typedef void skg_cell_change(void *user, double depth, const int64_t *more, int6
 void skg_cells_walk(const skg_cell_parts *parts, const skg_cell_amount *amounts, skg_columns *grid,
                     int64_t column, int64_t *work, skg_cell_change *change, void *user);
 
-/* What each volume of cells holds in each cell, on average over the places in it that are within the volume. */
+/* Fills cells->within: the mean content of each volume in each cell, over the points of the cell that lie inside the volume. */
 skg_status skg_cells_within(const skg_cell_parts *parts, skg_cells *cells);
 
 /* Adds the integral of what a volume holds from one place of the world to another, as shares of the way: coefficients, or lines. amounts:
@@ -120,21 +120,21 @@ skg_status skg_cells_make(const skg_cell_parts *parts, double voxel_mm, skg_cell
 skg_status skg_cells_trace(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK], double limit,
                            skg_cells *cells);
 
-/* The same for one limit after another: what a cell needs at any of them is made once, and stays in the cells. What is given has to stay
- * until the end, from which on the cells are on their own. Without cells there is no planting. */
+/* Prepares cells for a sequence of limits, as skg_cells_trace does for one: data that a cell needs at any limit are made once, and stay in
+ * the cells. The arguments must stay until the end; from then on the cells are independent of them. Without cells there is no planting. */
 typedef struct skg_planting skg_planting;
 skg_status skg_planting_begin(const skg_cell_parts *parts, const double mu[SKG_SCATTER_RANK],
                               skg_cells *cells, skg_planting **planting);
 skg_status skg_planting_to(skg_planting *planting, double limit);
 
-/* So many cells would hold mixtures by choice. */
+/* Number of cells with faces that would hold a mixture at this limit, without those in which parts compete. */
 int64_t skg_planting_smears(const skg_planting *planting, double limit);
 void skg_planting_end(skg_planting **planting);
 
 /* The sum of the coefficients times mm from one place to another, in mm from the lowest corner, as photons read the cells. */
 void skg_cells_along(const skg_cells *cells, const double from[3], const double to[3],
                      double mm[SKG_SCATTER_RANK]);
-/* The same through rough cells, as photons take them. */
+/* Sum along SKG_ROUGH_STEPS steps through the rough cells, as a photon first estimates it. */
 void skg_cells_roughly(const skg_cells *cells, const double from[3], const double to[3],
                        double mm[SKG_SCATTER_RANK]);
 void skg_cells_free(skg_cells *cells);
@@ -172,7 +172,7 @@ skg_status skg_judging_begin(const skg_cell_parts *parts, const skg_scatter_phys
 skg_status skg_judging_of(skg_judging *judging, skg_judged *judged);
 void skg_judging_end(skg_judging **judging);
 
-/* --- What stands in the beam, as cells. */
+/* --- The scattering object: the parts in the beam, as cells */
 
 /* A frame's scene. */
 typedef struct {

@@ -1,4 +1,4 @@
-/* What is no place of a part. */
+/* Checks the pose of a part. */
 #include "scene/pose.h"
 
 #include "core/maths.h"

@@ -35,7 +35,7 @@ static double attenuation_of(const skg_self_test_scene *scene, int pixel) {
     return -log(shown / open);
 }
 
-/* What the loss changes by, and the sum of the magnitudes over the pixels. */
+/* Difference quotient of the loss, and the sum of the magnitudes over the pixels. */
 static double differentiate(gradient_run *run, int way, double *size) {
     const double step = 1e-5;
     double sum = 0;
@@ -130,7 +130,7 @@ skg_status skg_self_test_gradient(skg_context *context, skg_self_test number, sk
 
 /* --- by densities */
 
-/* What a pixel shows changes with the density of a part by what the part itself adds to the attenuation. */
+/* The derivative of a pixel by the density of a part is the part's own attenuation. */
 static void compare_density(const gradient_run *run, int part, double got, skg_verdict *verdict) {
     const double shares[SKG_SELF_TEST_ENERGIES_MAX] = {1, 1, 1};
     double wanted = 0, size = 0;

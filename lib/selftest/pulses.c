@@ -103,7 +103,7 @@ static void expect_variance(const trial *t, int pixel, double *wanted) {
     }
 }
 
-/* What is tried: pile_up -1: variances; moved: pulses are moved to other windows. */
+/* Variant of the test. pile_up -1: variances; moved: pulses are moved to other windows. */
 typedef struct {
     int pile_up, moved;
 } kind;

@@ -89,7 +89,7 @@ void skg_self_test_scene_release(skg_self_test_scene *scene);
  * it. */
 skg_status skg_self_test_volume(const skg_self_test_scene *scene, skg_volume **volume);
 
-/* What its cells attenuate along a way of unit length, 1/cm, without what the boxes displace. */
+/* The attenuation of its cells along a way of unit length, 1/cm, without the volume that the boxes displace. */
 double skg_self_test_cells(const skg_self_test_scene *scene, const double *source, const double *pixel);
 
 /* The path lengths in mm of the ray to a place on the detector, in pixels: of part 0 within its surface, and what each part
@@ -97,8 +97,8 @@ double skg_self_test_cells(const skg_self_test_scene *scene, const double *sourc
 void skg_self_test_lengths(const skg_self_test_scene *scene, double row, double column, double *surface,
                            double *net);
 
-/* What the image has to show, keV per pixel, without blur and noise. shares: [SKG_SELF_TEST_ENERGIES_MAX] what is left of each energy
- * of the beam before it meets a part; open: of the beam that meets nothing. */
+/* The intensity that the image has to show, keV per pixel, without blur and noise. shares: [SKG_SELF_TEST_ENERGIES_MAX] transmission of the
+ * beam before it meets a part, by energy; open: result: the intensity of the open beam */
 double skg_self_test_intensity(const skg_self_test_scene *scene, const double *shares, const double *net,
                                double *open);
 
@@ -115,14 +115,14 @@ void skg_self_test_detector_compare(const skg_view *view, const double *image, c
 /* A bow-tie filter, a grid whose focus is not at the source, and a scintillator that rays cross obliquely. */
 skg_status skg_self_test_shades_choose(skg_self_test_scene *scene);
 
-/* What these leave of the energy of a pixel, from the formulas of skg_bowtie, skg_grid_transmission_get and
- * skg_response_create_scintillator. */
+/* The transmission of filter, grid and scintillator for the energy of a pixel, from the formulas of skg_bowtie, skg_grid_transmission_get
+ * and skg_response_create_scintillator. */
 skg_status skg_self_test_shade(const skg_self_test_scene *scene, int64_t row, int64_t column, double *share);
 
 /* A tube whose anode is beside the beam, oblique to the detector's rows. */
 void skg_self_test_heel_choose(skg_self_test_scene *scene);
 
-/* What the heel effect leaves of each energy of the beam in a pixel, from the tube's spectrum at the angle at which the pixel's ray
+/* The transmission of the heel effect in a pixel by energy of the beam, from the tube's spectrum at the angle at which the pixel's ray
  * leaves the anode. shares: [SKG_SELF_TEST_ENERGIES_MAX] */
 skg_status skg_self_test_heel(const skg_self_test_scene *scene, int64_t row, int64_t column, double *shares);
 
@@ -133,7 +133,7 @@ skg_status skg_self_test_heel(const skg_self_test_scene *scene, int64_t row, int
  * an image with noise of all kinds, over a flat field that falls with the distance, and the blur of SKG_SELF_TEST_BLUR. */
 skg_status skg_self_test_blurs_choose(skg_self_test_scene *scene);
 
-/* What blurs make of an image. shown, wanted: [rows][columns] */
+/* Computes the blurred image. shown, wanted: [rows][columns] */
 skg_status skg_self_test_blur(const skg_self_test_scene *scene, const double *shown, double *wanted);
 
 /* Whether the noise of SKG_SELF_TEST_NOISE or SKG_SELF_TEST_APART has its mean, its variance, and its covariance with that of the

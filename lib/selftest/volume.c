@@ -83,8 +83,8 @@ typedef struct {
     const double *source, *pixel;
 } volume_way;
 
-/* What a piece attenuates between two fractions of the way. Linear values are polynomials of degree 3 on it, of which Simpson's rule is
- * exact. */
+/* The attenuation of a piece between two fractions of the way. Linear values are polynomials of degree 3 along it, for which Simpson's rule
+ * is exact. */
 static double integral(const volume_way *way, int number, double from, double to) {
     double sum = 0;
     if (!(to > from)) return 0;

@@ -17,7 +17,7 @@ static const double NEAREST = 0.5;
 /* With a target: what is nearer to the eye than this share of the farthest thing is not drawn, because depths are float. */
 static const double CLOSEST = 2e-3;
 
-/* What has to be in the picture, one point after the other: extents in the eye's axes. */
+/* Extents, in the eye's axes, of the points that have to be in the picture. */
 typedef struct {
     const double (*axes)[3];
     double tangent[2]; /* of half the field: across, up; 0: orthographic */

@@ -19,7 +19,7 @@ static const float BACKGROUND[3] = {0.957f, 0.961f, 0.969f};
  * strip is on the stack, and those of a group would be there together. */
 enum { GROUP = 64 };
 
-/* What is on the device for one picture. */
+/* Buffers and kernels of one picture. */
 typedef struct {
     skg_buffer positions, corners, normals, colours, faces, counts, starts, entries, image, rgba;
     cl_kernel count, fill, draw;

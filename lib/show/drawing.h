@@ -47,7 +47,7 @@ double skg_show_camera_depth(const skg_show_camera *camera, const double point[3
 void skg_show_camera_place(const skg_show_camera *camera, const skg_look *look, const double point[3],
                            double place[2]);
 
-/* --- What the 3D view shows, as triangles for the device. */
+/* --- The 3D view as triangles for the device */
 
 /* A red, green, blue and opacity from 0 to 255 in one number, red lowest. */
 #define SKG_SHOW_COLOUR(red, green, blue, opacity)                                                           \
@@ -109,7 +109,7 @@ skg_status skg_show_draw(skg_context *context, const skg_show_model *model, cons
                          const skg_look *look, int64_t image_columns, int64_t image_rows,
                          const uint8_t *image, uint8_t *rgba);
 
-/* --- What the 3D view shows besides the parts: source, beam, detector, axes, path. */
+/* --- Objects of the 3D view besides the parts: source, beam, detector, axes, path */
 
 /* Adds everything but the parts. low, high: the box of the parts, mm. The two triangles of the detector come last, as
  * the kernel wants them. */

@@ -10,7 +10,7 @@
 #include <inttypes.h>
 #include <math.h>
 
-/* What the detector shows without an image. */
+/* Grey of the detector without an image. */
 static const uint8_t PLAIN = 176;
 
 void skg_look_init_sized(void *look, int32_t size) {

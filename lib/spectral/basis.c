@@ -116,7 +116,7 @@ typedef struct {
     double *errors; /* [points] */
 } measuring;
 
-/* What threads share: points in pieces. */
+/* Points of a piece of work of skg_parallel. */
 enum { PIECE = 32 };
 static skg_status find_errors(void *user, int64_t piece) {
     const measuring *m = user;

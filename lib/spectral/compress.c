@@ -18,7 +18,7 @@ static const double SHARE_OF_PLANES = 0.125;
  * points suffice for a choice; the verification uses thousands. */
 static const skg_sampling CHOICE = {.corners = 64, .draws = 160, .rays = 96, .seed = 3};
 
-/* What a model has before its planes are rewritten. */
+/* Planes and contributions of a model before its planes are rewritten. */
 typedef struct {
     int32_t planes, reserved;
     int64_t world_plane;

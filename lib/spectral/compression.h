@@ -38,7 +38,8 @@ skg_status skg_least_squares_reduce(const skg_least_squares *system, skg_least_s
 double skg_least_squares_solve(const skg_least_squares *system, int32_t count, const int32_t *in, double *x,
                                double *spread);
 
-/* The same with x >= 0. It starts from the columns with x > 0 on entry; columns that leave may come back.
+/* Solves the least squares with x >= 0 and returns |A x - b|^2. It starts from the columns with x > 0 on entry; columns that leave may come
+ * back.
  *
  * least   columns are added only while |A x - b|^2 exceeds this */
 double skg_nnls(const skg_least_squares *system, int32_t count, const int32_t *in, double least, double *x);

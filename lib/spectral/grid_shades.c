@@ -97,7 +97,7 @@ static skg_status find_losses(const skg_shading *shading, const skg_shades *shad
                 -log(fmax(passed, 1e-30)) - interspace[b] * shades->grid_height * oblique;
         }
     }
-    /* What is left where strips stop most is of no account: errors are shares of what passes along the strips. */
+    /* Errors are judged as shares of the transmission along the strips, so the little that passes across them counts for little. */
     for (int64_t s = 0; s < d->states; s++) {
         double mean = 0;
         for (int64_t b = 0; b < d->bins; b++)

@@ -33,7 +33,7 @@ typedef struct {
     /* Curves of volumes (scene/volume.h), numbered over all volumes in the order of their parts; they stand behind the parts. A volume's own
      * part contributes with weight 0 to each plane of its curves, beside what it displaces. */
     int64_t curves;
-    /* What a mm of a part's path adds. A part without any is not seen. */
+    /* Contributions of a mm of a part's path to the planes. A part without any is invisible. */
     skg_contribution *contributions;
     /* [nodes][planes + shades.count] 1/mm per mm of a plane, then the loss for a unit of a shade */
     double *coefficients;
@@ -121,12 +121,12 @@ int skg_quantity_counts(const skg_plan_options *options);
 /* Whether the quantity is a ratio to the flat field. */
 int skg_quantity_is_ratio(const skg_plan_options *options);
 
-/* --- What one photon adds to an image, by its energy. */
+/* --- Contribution of one photon to an image, by its energy */
 
 /* To the image: the recorded energy, keV, or 1 if photons are counted, times the efficiency of the response. */
 skg_status skg_signal_get(const skg_plan_options *options, double energy_kev, double *signal);
 
-/* The same of a photon that crosses the layer of a scintillator along `oblique` times its thickness. */
+/* To the image, likewise, of a photon that crosses the layer of a scintillator along `oblique` times its thickness. */
 skg_status skg_signal_oblique_get(const skg_plan_options *options, double energy_kev, double oblique,
                                   double *signal);
 

@@ -1,4 +1,4 @@
-/* What quantities are: ratios, counts, absolute. */
+/* Classifies quantities: ratios, counts, absolute values. */
 #include "spectral/model.h"
 
 int skg_quantity_has_noise(const skg_plan_options *options) {

@@ -24,7 +24,7 @@ static const double MARGIN = SKG_TRACED_MARGIN;
  * where the range is 180 mm. */
 static const double FOLDS = 0.02;
 
-/* What was traced of one part. */
+/* Ranges found for one part by its rays. */
 typedef struct {
     double least, most; /* mm along its own rays, or 0 */
     double hits;        /* mean per ray over the detector */

@@ -1,4 +1,4 @@
-/* What rounding of planes makes of exponents. */
+/* Bounds the error of intensities by the rounding of planes and exponents. */
 #include "spectral/verification.h"
 
 #include "core/maths.h"
@@ -141,7 +141,7 @@ skg_status skg_rounding_find(const skg_scene *scene, const skg_view *view, const
         r.worst = fmax(r.worst, error_of(&r, r.exponents + ray * model->nodes, r.errors + ray * model->nodes,
                                          &r.greatest));
     found->bound = r.worst;
-    /* What intensities are off by relatively an attenuation is off by absolutely, which is a larger share of it where it is small. */
+    /* An error of -ln(I) is the relative error of I, and a larger share of the attenuation where that is small. */
     if (!(r.greatest > 0)) r.greatest = r.greatest_alone / SKG_TRACED_MARGIN;
     if (options->quantity == SKG_QUANTITY_ATTENUATION && r.greatest > 0) found->bound /= fmin(r.greatest, 1);
 cleanup:

@@ -88,7 +88,7 @@ static skg_status see_view(const skg_view *view, const double *source, int side,
     return SKG_OK;
 }
 
-/* The same from the middle of the source and from its ends. */
+/* Calls seen for the rays of a view from the middle of the source and from its ends. */
 static skg_status see_from_source(const skg_view *view, double reach, int side, skg_shade_ray *seen,
                                   void *user) {
     SKG_TRY(see_view(view, NULL, side, seen, user));

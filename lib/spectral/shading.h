@@ -76,7 +76,7 @@ typedef struct {
     double *tables; /* [rows] tangents, [rows] mm; then [SKG_GRID_TILTS][grid - 1][SKG_GRID_TERMS] */
 } skg_shades;
 
-/* What shades are made from. */
+/* Input of the search for shades. */
 typedef struct {
     const skg_view *view;
     const skg_spectrum *spectrum;
@@ -105,7 +105,7 @@ typedef skg_status skg_shade_ray(void *user, const skg_camera *camera, const dou
 /* Calls seen for rays over the detectors of all views, from the middle of the source and from its ends. */
 skg_status skg_shade_rays(const skg_shading *shading, skg_shade_ray *seen, void *user);
 
-/* The same for few rays of one view, to its corners among them. */
+/* Likewise calls seen for few rays of one view, those to its corners included. */
 skg_status skg_shade_rays_of(const skg_view *view, const skg_plan_options *options, skg_shade_ray *seen,
                              void *user);
 
@@ -175,7 +175,7 @@ skg_status skg_shades_find(const skg_view *view, const skg_spectrum *spectrum,
                            const skg_plan_options *options, skg_shades *shades);
 void skg_shades_release(skg_shades *shades);
 
-/* What the kernel needs to know of a camera. */
+/* Fills the arguments by which a kernel evaluates the shades for a camera. */
 void skg_shades_see(const skg_shades *shades, const skg_camera *camera, skg_shade_double *args);
 
 #endif

@@ -1,4 +1,4 @@
-/* What a photon is worth in a detector, and the variance of that. */
+/* Mean signal of a photon in a detector, and its variance. */
 #include "spectral/model.h"
 
 #include "core/core.h"

@@ -11,7 +11,7 @@
  * not meet shared edges exactly. */
 static const double OFF_COLUMN = 0.5732050807568877, OFF_ROW = 0.4142135623730951;
 
-/* What is known of a vertex. */
+/* Components of a vertex in skg_tracer.seen. */
 enum { X, Y, W, T, COLUMN, ROW };
 
 static void lay(skg_tracer *grid, int64_t side, const double low[2], const double high[2]) {

@@ -36,7 +36,7 @@ void skg_tracer_release(skg_tracer *tracer);
  * empty. */
 void skg_tracer_trace(skg_tracer *tracer, int64_t side, const double low[2], const double high[2]);
 
-/* The same over the whole detector. */
+/* Likewise over the whole detector. */
 void skg_tracer_trace_detector(skg_tracer *tracer, int64_t side);
 
 /* The longest ray to a pixel for a path parameter of 1, mm. */
@@ -68,7 +68,7 @@ skg_status skg_ranges_find(const skg_scene *scene, const skg_view *view, int64_t
                            const skg_model *model, skg_ranges *ranges);
 void skg_ranges_release(skg_ranges *ranges);
 
-/* What the longest path may exceed the longest that was traced by. */
+/* Margin for paths longer than the longest traced one, as a factor. */
 #define SKG_TRACED_MARGIN 1.25
 
 /* One part along the rays of a view. */
@@ -88,7 +88,7 @@ typedef void skg_take_trace(void *user, const skg_trace *trace);
 skg_status skg_ranges_trace(const skg_scene *scene, const skg_view *view, const skg_model *model,
                             const unsigned char *wanted, skg_take_trace *take, void *user);
 
-/* --- What the precision of path lengths does to intensities. */
+/* --- Error of intensities by the precision of path lengths */
 
 typedef struct {
     /* Of the relative error of intensities: relative where more than 1e-6 of the flat field arrives, else in units of 1e-6 of
@@ -111,8 +111,8 @@ typedef struct {
 skg_status skg_rounding_find(const skg_scene *scene, const skg_view *view, const skg_model *model,
                              const skg_plan_options *options, const double *seams, skg_rounding *rounding);
 
-/* The same for parts alone that may be thin, judged by their volumes: thin_count and what follows, but not the bound. Costs
- * nothing where no part may be. */
+/* Finds only thin parts, judged by their volumes: fills thin_count and the members after it, but not the bound. Costs nothing where no part
+ * may be thin. */
 skg_status skg_rounding_find_thin(const skg_scene *scene, const skg_view *view, const skg_model *model,
                                   const skg_plan_options *options, skg_rounding *rounding);
 

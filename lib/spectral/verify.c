@@ -69,7 +69,7 @@ void skg_transmit_exact(const skg_polychromatic *beam, double *lengths, double *
 
 /* --- points --- */
 
-/* What threads share: points in pieces. */
+/* Points of a piece of work of skg_parallel. */
 enum { PIECE = 64 };
 static int64_t pieces_of(int64_t points) {
     return (points + PIECE - 1) / PIECE;
@@ -279,7 +279,7 @@ static void rank_point(int64_t index, double error, int64_t *worst, double *erro
     worst[at] = index, errors[at] = error;
 }
 
-/* What threads share: the points in pieces, then the climbs. */
+/* Work of the threads of a verification: first the points in pieces, then the climbs. */
 typedef struct {
     const skg_lengths *points;
     double *errors; /* [points] */

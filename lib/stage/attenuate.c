@@ -149,8 +149,8 @@ static skg_status get_kernel(skg_attenuator *attenuator, const kernel_key *key, 
     return SKG_OK;
 }
 
-/* What |ray| is multiplied by to give the length of the ray's path through the world, behind the weight of the world's
- * plane: 1 for a point source; for a parallel beam, whose |ray| is 1 mm, what lies behind the start. */
+/* Weight of the world's plane, then the length of a ray's path through the world over |ray|: 1 for a point source; for a parallel beam,
+ * whose |ray| is 1 mm, the length behind the start, linear in column and row. */
 static void find_world(const skg_camera *camera, const skg_attenuation *attenuation, double world[4]) {
     world[0] = attenuation->world_weight;
     world[1] = camera->parallel ? 1 - camera->start[0] : 1;

@@ -17,7 +17,7 @@ typedef struct {
     int64_t offset, row_stride, channel_stride;
 } skg_image_place;
 
-/* The same for a kernel, with the size of the image. */
+/* The place in the form that kernels take, with the size of the image. */
 static inline skg_image_args skg_image_of(const skg_image_place *place, int64_t columns, int64_t rows,
                                           int64_t channels) {
     return (skg_image_args){.offset = place->offset,

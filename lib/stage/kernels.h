@@ -77,7 +77,7 @@ skg_status skg_kernel_launch(skg_context *context, cl_kernel kernel, const char 
                              const skg_work_size *work, int32_t count, const skg_argument *arguments,
                              skg_stage_log *log);
 
-/* The same with a kernel that is made for this launch alone. */
+/* SKG_LAUNCH with a kernel that is made for this launch alone. */
 #define SKG_LAUNCH_ONCE(context, program, function, stage, work, arguments, log)                             \
     skg_program_launch(context, program, function, stage, work,                                              \
                        (int32_t)(sizeof(arguments) / sizeof *(arguments)), arguments, log)

@@ -36,8 +36,8 @@ typedef struct skg_pass {
     skg_kernel_options kernels;
     int64_t planes; /* of the raster: accumulators if planes are mixed from them */
     skg_mix mix;    /* of an image's planes; mix.sums 0: accumulators are planes */
-    /* What every part adds to the planes, leaky parts included: part p has contributions[first[p]] to
-     * contributions[first[p + 1] - 1]. */
+    /* Contributions of every part to the planes, leaky parts included: part p has contributions[first[p]] to contributions[first[p + 1] -
+     * 1]. */
     const skg_contribution *contributions;
     const int64_t *first;                /* [parts + 1] */
     skg_contribution *own_contributions; /* those of this pass alone, to be freed; NULL: borrowed */

@@ -8,7 +8,7 @@ static skg_status get_bad_kernels(skg_raster *raster) {
     static const char *const files[] = {"counts.cl"};
     cl_program program = NULL;
     if (raster->bad) return SKG_OK;
-    /* What sums are: other options change no word of these kernels, so that scenes share the program. */
+    /* Options that define the type of sums. Others change no word of these kernels; without them scenes share the program. */
     const skg_kernel_options *all = &raster->options.kernels,
                              sums = {.precision = all->precision, .bits = all->bits, .half = all->half};
     SKG_TRY(skg_kernels_get(raster->context, &sums, 1, files, NULL, &program));

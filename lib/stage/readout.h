@@ -114,7 +114,7 @@ typedef struct {
     cl_kernel kernels[2];
 } skg_scattered;
 
-/* What is added: [channels][rows][columns] floats. variance: NULL: no noise. */
+/* Scatter that is added to an image: [channels][rows][columns] floats. variance: NULL: no noise. */
 typedef struct {
     cl_mem mean, variance;
     int32_t channels;

@@ -1,4 +1,4 @@
-/* What belongs to work under way: host memory that the device reads or writes, and the log of the stages. */
+/* Staging for work under way: host memory that the device reads or writes, and the log of the stages. */
 #include "stage/staging.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What belongs to work under way: host memory that the device reads or writes, and the log of the stages. Private. */
+/* Staging for work under way: host memory that the device reads or writes, and the log of the stages. Private. */
 #ifndef SKG_STAGING_H
 #define SKG_STAGING_H
 

@@ -252,7 +252,7 @@ skg_status skg_volume_program(const skg_placed_volume *placed, const skg_pass *p
                                   {"SKG_VOLUME_WIDE", placed->volume->wide},
                                   {"SKG_VOLUME_LINEAR", placed->volume->linear},
                                   {"SKG_SLOTS", skg_priority_slots(&pass->priority)}};
-    /* What triangles alone have changes no word of these kernels, so that scenes share the program. */
+    /* Options for triangles alone change no word of these kernels; without them scenes share the program. */
     skg_kernel_options options = pass->kernels;
     options.seams = options.source_plane = options.listed = 0;
     return skg_kernels_get(context, &options, count, files, SKG_DEFINES(defines), program);

@@ -102,7 +102,7 @@ def output(out: Any, shape: tuple[int, ...], what: str = "out") -> NDArray[Any]:
 
 
 def _writable(array: NDArray[Any]) -> NDArray[Any]:
-    """The same memory of the caller, who offers it as an output; NumPy marks what it has from DLPack as read-only."""
+    """A view of the caller's memory that can be written, as the caller offers it; NumPy marks arrays from DLPack as read-only."""
     if not array.size:
         return array
     if min(array.strides, default=0) < 0:

@@ -44,7 +44,7 @@ def cost(source: Source, quick: bool, within: float, frames: int, sensitivity: b
 
 
 def run(*words: str, also: int = 0) -> str:
-    """What the command prints. Raises OutputError with its sentence if it fails; also: an exit status that is no failure."""
+    """Output of the command for these words. Raises OutputError with its sentence if it fails; also: an exit status that is no failure."""
     done = subprocess.run([path(), *words], capture_output=True, text=True, check=False, env=_pocl.environment())
     if done.returncode not in (0, also):
         raise OutputError(done.stderr.strip() or done.stdout.strip() or f"skiagraph {words[0]} ended with {done.returncode}")

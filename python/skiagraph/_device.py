@@ -99,7 +99,7 @@ class Device:
 
     @property
     def info(self) -> dict[str, Any]:
-        """What OpenCL says of the device: name, compute units, memory and so on."""
+        """Properties of the device that OpenCL reports: name, compute units, memory and so on."""
         with self.calls():
             return filled("skg_device_info", "skg_context_device_get", self.handle)
 
@@ -236,7 +236,7 @@ def device_of(device: Device | str | None) -> Device:
 
 
 def devices() -> list[dict[str, Any]]:
-    """What OpenCL offers, a dictionary a device.
+    """All devices of OpenCL, a dictionary a device.
 
     >>> all("name" in device for device in devices())
     True

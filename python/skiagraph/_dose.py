@@ -1,4 +1,4 @@
-"""What an exposure gives to people and things. Private."""
+"""Doses of people and things by an exposure. Private."""
 from __future__ import annotations
 
 import math
@@ -19,7 +19,7 @@ def _known(value: float) -> float | None:
 
 
 def _report(state: State, handle: Any) -> dict[str, Any]:
-    """What `skiagraph dose --json` prints, with what there is besides."""
+    """Contents of `skiagraph dose --json`, and values that Python has besides."""
     report = filled("skg_dose_report", "skg_dose_report_get", handle)
     parts = [(part.label, filled("skg_dose_part", "skg_dose_part_get", handle, i)) for i, part in enumerate(state.parts())]
     found = {

@@ -42,7 +42,7 @@ def remove(state: State, number: int) -> None:
         parts.append(struct("skg_part"))
         call("skg_scene_part_get", state.handle, old, parts[-1])
     above = parts[number].inside
-    # Those inside come after what they lie in, which the library wants to find.
+    # Inner parts come after the parts that they lie in, which the library wants to find.
     order = _outward(parts, number)
     numbers: dict[int, int] = {}
     for new, old in enumerate(order):

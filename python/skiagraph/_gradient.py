@@ -20,7 +20,7 @@ NAMES = ("poses", "source", "detector", "vertices", "density", "mu")
 
 
 class Differentiable:
-    """What scenes can be differentiated by."""
+    """Derivatives of the images of a scene."""
 
     _state: State
 

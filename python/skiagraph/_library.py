@@ -83,7 +83,7 @@ def owned(kind: str, handle: Any) -> Any:
 
 
 def retained(kind: str, handle: Any) -> Any:
-    """The same for a handle that belongs to somebody else."""
+    """A handle that belongs to somebody else, retained and released as one of `owned`."""
     call(kind + "_retain", handle)
     return owned(kind, handle)
 
@@ -131,7 +131,7 @@ def filled(kind: str, name: str, *arguments: Any) -> dict[str, Any]:
 
 
 def listed(kind: str, name: str, handle: Any) -> list[dict[str, Any]]:
-    """What name_count and name_get give."""
+    """All structs of a list of the library, by name_count and name_get."""
     return [filled(kind, name + "_get", handle, i) for i in range(integer(name + "_count", handle))]
 
 

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
 
 def picture(state: State, pixels: Sequence[int], direction: Any, up: Any, orthographic: bool, image: Any,
             colours: Mapping[str, Any]) -> NDArray[np.uint8]:
-    """What Scene.picture gives."""
+    """Renders Scene.picture."""
     keep: list[Any] = []
     look = struct("skg_look")
     look.collimation = state.plans.options(state.options_setup, {}, keep).collimation
@@ -47,7 +47,7 @@ def _grey(image: Any, shape: tuple[int, int], keep: list[Any]) -> Any:
 
 
 def _colours(state: State, colours: Mapping[str, Any], keep: list[Any]) -> Any:
-    """Those of the library, and those that are given by label: red, green, blue and opacity, 0 to 1."""
+    """Colours of all parts, the library's or those given by label: red, green, blue and opacity, 0 to 1."""
     made = np.empty((state.count(), 4), np.uint8)
     pointer = ffi.cast("uint8_t *", ffi.from_buffer(made))
     call("skg_look_colours_get", state.handle, pointer)

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
 
 
 def content(state: State) -> dict[str, Any]:
-    """What the scene was read from, with all its files, and what was changed since."""
+    """Contents of a pickled scene: the text it was read from, with all its files, and the changes since."""
     parts = state.parts()
     old, new = parts[:state.file_parts], parts[state.file_parts:]
     arrays = [part.label for part in new if part.volume]

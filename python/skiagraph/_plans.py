@@ -43,7 +43,7 @@ class Plans:
         self._device.drop("skg_plan", plan)
 
     def pace(self, plan: Any) -> Pace:
-        """That of a plan that is kept."""
+        """The pace of a plan that is kept."""
         return self._paces.setdefault(plan, Pace())
 
     def of_file(self, setup: Any) -> Any:

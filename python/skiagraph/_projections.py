@@ -35,7 +35,7 @@ _BATCH, _MAX = 1 << 20, 32
 
 @dataclass
 class Wanted:
-    """What of a scan is computed, and how."""
+    """Projections of a scan that are wanted, and options of their computation."""
 
     only: Sequence[int] | None
     breathing: bool
@@ -173,7 +173,7 @@ class _ToFile(_Job):
 
 
 def _hash(state: State, scan: Scan, wanted: Wanted) -> str:
-    """What identifies the scan; the command's if nothing was changed since the scene was read."""
+    """Hash that identifies the scan; the command's if nothing was changed since the scene was read."""
     keep: list[Any] = []
     options = state.plans.options(state.options_setup, wanted.options, keep)
     run, found = struct("skg_scan_run_options"), ffi.new("char[65]")

@@ -52,7 +52,7 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
 
 
 def settings_text(state: State, placed: bool = False) -> dict[str, Any]:
-    """What is read of the scene, with its source, detector and beam as they are now. placed: also where the file has them fitted."""
+    """Text of the scene as it is read, with its source, detector and beam as they are now. placed: also where the file has them fitted."""
     text: dict[str, Any] = json.loads(string("skg_setup_text_get", state.setup))
     if state.tuned != ffi.NULL:
         for key, value in json.loads(string("skg_setup_text_get", state.tuned)).items():

@@ -40,7 +40,7 @@ def _outputs(components: bool) -> list[tuple[str, int]]:
 
 
 def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
-    """What skg_plan_scatter_predict finds."""
+    """The prediction of skg_plan_scatter_predict as a dictionary."""
     with state.calls():
         found = filled("skg_scatter_prediction", "skg_plan_scatter_predict", state.plan(options))
     return {"ratio": found["ratio"], "called_for": bool(found["called_for"]), "rms": found["rms"], "max": found["max"],

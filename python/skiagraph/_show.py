@@ -1,4 +1,4 @@
-"""What a cell of a notebook shows of a scene: its picture and its parts, or its view page. Private."""
+"""Output of a scene in a cell of a notebook: its picture and its parts, or its view page. Private."""
 from __future__ import annotations
 
 import base64

@@ -1,4 +1,4 @@
-"""What a scene is made of, and what changes it. Private."""
+"""State of a scene, and the functions that change it. Private."""
 from __future__ import annotations
 
 import copy
@@ -89,7 +89,7 @@ class State:
         return image
 
     def shows(self, image: Any) -> str | None:
-        """What an image of the scene holds, or the batch that it was taken from; None: it is another array."""
+        """Quantity of an image of the scene, or of the batch that it was taken from; None: it is another array."""
         for array in (image, getattr(image, "base", None)):
             known = self.shown.get(id(array))
             if known is not None and known[0]() is array:
@@ -97,7 +97,7 @@ class State:
         return None
 
     def calls(self) -> ContextManager[None]:
-        """What calls of the library stand in."""
+        """Context manager for calls of the library: they take turns, and warnings are passed on."""
         if self.setup == ffi.NULL:
             raise ArgumentError("the scene was closed")
         return self.device.calls(self.said)

@@ -102,7 +102,7 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
 
 
 def _remarks(volume: Any, count: int) -> list[str]:
-    """What the file of a volume leaves open."""
+    """Remarks about the file of a volume: values that it leaves open."""
     level, sentence, remarks = ffi.new("int32_t *"), ffi.new("char **"), []
     for index in range(count):
         call("skg_volume_remark_get", volume, index, level, sentence)
@@ -123,7 +123,7 @@ def warn_of(label: str, volume: Any, named: bool) -> None:
 
 
 def describe(volume: Any) -> dict[str, Any]:
-    """What a volume is, and the shares of its cells by composition."""
+    """Contents of a volume, and the shares of its cells by composition."""
     found = filled("skg_volume_contents", "skg_volume_contents_get", volume)
     found["values"] = next(name for name, value in _VALUES.items() if value == found["values"])
     found["remarks"] = _remarks(volume, found["remarks"])

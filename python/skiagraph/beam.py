@@ -170,7 +170,7 @@ def _filters(layers: Layers, keep: list[Any]) -> Any:
 
 
 class Response:
-    """What a detector records of a photon: mean recorded energy in keV, and the fraction that is recorded.
+    """Response of a detector to a photon: mean recorded energy in keV, and the fraction that is recorded.
 
     >>> round(Response.scintillator("CsI", 0.6).at(60)[0])
     52

@@ -45,7 +45,7 @@ class Lag:
         self._shape: tuple[int, ...] = ()
 
     def __call__(self, image: Any) -> NDArray[Any]:
-        """What the detector shows of the next frame, whose pixels are energies or photons; float32 stays float32."""
+        """Applies lag and ghosting to the next frame, whose pixels are energies or photons; float32 stays float32."""
         given = _arrays.numbers(image, "image")
         frame = np.ascontiguousarray(given, dtype=np.float32 if given.dtype == np.float32 else np.float64)
         if self._handle is None:

@@ -104,7 +104,7 @@ class Material:
         return made
 
     def at_density(self, density: float) -> Material:
-        """The same matter with another density, g/cm3."""
+        """This material with another density, g/cm3."""
         made = Material.__new__(Material)
         made._handle = owned("skg_material", make("skg_material_create_at_density", "skg_material", self._handle,
                                                   float(density)))
@@ -113,7 +113,7 @@ class Material:
         return made
 
     def with_form_factor(self, per_angstrom: Any, squares: Any) -> Material:
-        """The same matter with the form factors of its molecules: F^2, in any unit, at rising momentum transfers sin(theta/2) / wavelength
+        """This material with the form factors of its molecules: F^2, in any unit, at rising momentum transfers sin(theta/2) / wavelength
         in 1/Angstrom, up to 0.4 at least. They change where Rayleigh scattering sends photons."""
         momenta, values = np.atleast_1d(per_angstrom), np.atleast_1d(squares)
         if momenta.shape != values.shape or momenta.ndim != 1:
@@ -143,7 +143,7 @@ class Material:
 
     @property
     def note(self) -> str:
-        """What a user should know of it: the source of its composition, or that fractions were scaled."""
+        """Remarks about the material: the source of its composition, or that fractions were scaled."""
         return string("skg_material_note_get", self._handle)
 
     @property

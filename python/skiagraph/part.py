@@ -32,7 +32,7 @@ class Part:
 
     @property
     def number(self) -> int:
-        """Its number, which grows smaller when a part before it is removed."""
+        """Number of the part, which grows smaller when a part before it is removed."""
         try:
             return self._state.names.index(self._name)
         except ValueError:
@@ -45,7 +45,7 @@ class Part:
 
     @property
     def volume(self) -> dict[str, Any] | None:
-        """What a volume of cells is (Scene.add_volume): size, spacing, range, shares of compositions; None: the part is a mesh. The
+        """Contents of a volume of cells (Scene.add_volume): size, spacing, range, shares of compositions; None: the part is a mesh. The
         mesh of a volume is the box of all cells."""
         with self._state.calls():
             volume = self._get().volume
@@ -74,13 +74,13 @@ class Part:
 
     @property
     def mesh(self) -> Mesh:
-        """Its mesh, which other parts may share."""
+        """Mesh of the part, which other parts may share."""
         with self._state.calls():
             return self._state.mesh(self._get().mesh)
 
     @property
     def material(self) -> Material:
-        """What it is made of. Assign a Material or a name."""
+        """Material of the part. Assign a Material or a name."""
         with self._state.calls():
             return self._state.material(self.number, self._get().material)
 

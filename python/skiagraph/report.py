@@ -1,4 +1,4 @@
-"""What a plan decided, and why."""
+"""Decisions of a plan, and their reasons."""
 from __future__ import annotations
 
 import html
@@ -79,7 +79,7 @@ class Report(Mapping[str, Any]):
 
 
 def _scatter_lines(scatter: Mapping[str, Any] | None) -> list[tuple[str, str]]:
-    """What the last image's scatter is, if it has any."""
+    """Lines about the scatter of the last image, if it has any."""
     if scatter is None:
         return []
     once, twice, more = (100 * share for share in scatter["orders"])
@@ -90,7 +90,7 @@ def _scatter_lines(scatter: Mapping[str, Any] | None) -> list[tuple[str, str]]:
 
 
 def scatter_report(plan: Any) -> dict[str, Any] | None:
-    """What the scatter of the last image was; None: the plan has none, or has made no image."""
+    """Report of the scatter of the last image; None: the plan has none, or has made no image."""
     try:
         return filled("skg_scatter_report", "skg_plan_scatter_report_get", plan)
     except ArgumentError:

@@ -226,7 +226,7 @@ class Scene(_gradient.Differentiable):
     def noise(self, quantity: str | None = None, *, poses: Mapping[str, Any] | None = None, views: Sequence[View] | None = None,
               precision: str | None = None, tolerance: float | None = None, progress: Progress = False,
               **options: Any) -> dict[str, NDArray[Any]]:
-        """What noise makes of an image, without drawing it: "mean", the image that is expected, and "variance", that of each pixel.
+        """Mean and variance of noisy images, without drawing noise: "mean", the image that is expected, and "variance", that of each pixel.
 
         Both are [row, column] as of image(), or [n, row, column] with poses or views as of images(), with bands= before the
         rows; the variance is in the square of the image's unit. The scene or the options need noise=True, electronic_kev= or
@@ -277,7 +277,7 @@ class Scene(_gradient.Differentiable):
         return _scatter.planes(self._state, quantity, components, {**options, "scatter": _scatter.accuracy(tolerance, histories)})
 
     def scatter_predicted(self, **options: Any) -> dict[str, Any]:
-        """What scatter would add to images, from some 8,000 histories, in about 0.2 s; options as of image().
+        """Predicts the scatter in images, from some 8,000 histories, in about 0.2 s; options as of image().
 
         "ratio": scatter over primary in the shadow of the parts, right to about 15 %; "called_for": whether it is above the
         tolerance; "rms" and "max" of the scatter, as fractions of the open beam; "grid": what a grid passes of "primary",
@@ -287,7 +287,7 @@ class Scene(_gradient.Differentiable):
 
     def dose(self, at: Any = None, *, scan: Scan | None = None, times: float = 1, histories: int | None = None, seed: int = 0,
              progress: Progress = False, **options: Any) -> dict[str, Any]:
-        """What one exposure gives to people and things.
+        """Doses of people and things by one exposure.
 
         at: a place [x, y, z] in mm, or several; without it, where the middle ray of the field enters the first part. scan: all its
         projections together, such as those of scene.trajectory. times: how many such exposures or scans together, such as the frames
@@ -368,7 +368,7 @@ class Scene(_gradient.Differentiable):
             return _projections.compute(self._state, self.trajectory, wanted, out)
 
     def plan(self, **options: Any) -> Report:
-        """What is simulated, what is not, and why; options as of image()."""
+        """Report of the effects that images have and lack, and why; options as of image()."""
         with self._state.calls():
             return Report(self._state.plan(options), [part.label for part in self])
 
@@ -451,7 +451,7 @@ class Scene(_gradient.Differentiable):
     # Costs
 
     def cost(self, *, quick: bool = False, within: float = 60, frames: int = 1, sensitivity: bool = False) -> dict[str, Any]:
-        """What accuracy costs: errors and times of the scene's settings, as the command `skiagraph cost` measures them.
+        """Errors and times of the scene's settings, as the command `skiagraph cost` measures them.
 
         within: the time for measuring, in seconds; frames: the length of the batches that are timed. Of the result, "summary"
         says it in a sentence, and "sources" lists each source of error and what halving it costs. sensitivity: "sensitivity" lists
@@ -520,5 +520,5 @@ class Scene(_gradient.Differentiable):
 
 
 def state_of(scene: Scene) -> State:
-    """What functions beside the class work on."""
+    """State of a scene, for functions outside of the class."""
     return scene._state

@@ -157,7 +157,7 @@ static int jaws_stop(const double *from, const double *to) {
     return 0;
 }
 
-/* What a ray meets, mm. */
+/* Lengths along the rays, mm. */
 typedef struct {
     double lengths[PARTS][PIXELS];
     double all[PIXELS], distance; /* rays from end to end; from the source to the plane of the detector */

@@ -212,7 +212,7 @@ START_TEST(dead_time_is_that_of_single_pulses) {
 }
 END_TEST
 
-/* What the windows of a plan's open beam record. */
+/* Counts of the open beam in the windows of a plan. */
 static void open_beam(const skg_plan *plan, double recorded[WINDOWS]) {
     for (int w = 0; w < WINDOWS; w++) {
         skg_channel channel;

@@ -133,7 +133,7 @@ static void check(const skg_view *v, const double *toward, const skg_plan_option
                       pixels[p], truth);
         low = fmin(low, pixels[p]), high = fmax(high, pixels[p]);
     }
-    /* It is an effect: from side to side the beam changes by more than a twentieth. */
+    /* The effect is large: from side to side the beam changes by more than a twentieth. */
     if (options->quantity <= SKG_QUANTITY_PHOTONS) ck_assert_double_gt(high / low, 1.05);
     free(pixels);
 }

@@ -1,4 +1,4 @@
-/* What tests of the beam's way share: a slab of water behind a detector of 24 x 24 pixels, and sums over the energies ray by ray. */
+/* Shared code of tests of objects in the beam: a slab of water before a detector of 24 x 24 pixels, and sums over the energies ray by ray. */
 #ifndef SKG_TESTS_IN_BEAM_H
 #define SKG_TESTS_IN_BEAM_H
 

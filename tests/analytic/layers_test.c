@@ -105,7 +105,8 @@ START_TEST(gaussian_transfer_function) {
         double sum = 0;
         for (int64_t n = 0; n < samples; n++)
             sum += line[n] * cos(2 * PI * cycles * (double)(n - samples / 2));
-        /* What the header states, and the curve between 26 rows: its fourth derivative, 12 (2 pi sigma)^4 / 16, times the fourth
+        /* The error that the header states, and that of the curve between 26 rows: its fourth derivative, 12 (2 pi sigma)^4 / 16, times the
+         * fourth
          * power of the step over 384 is 2e-6; a slope of two secants is 1e-3 off. */
         ck_assert_double_eq_tol(sum, gaussian_at(cycles), 5e-3 + 1e-3);
     }
@@ -194,7 +195,7 @@ START_TEST(each_energy_by_its_depths) {
         /* As above, twice: of two energies, and of the ratio's weights. */
         ck_assert_double_eq_tol(both[p], by_depths[0][p] + by_depths[1][p], 4e-6 * flat);
         ck_assert_double_eq_tol(ratio[p], both[p] / flat, 4e-6);
-        /* The same. */
+        /* Likewise. */
         ck_assert_double_eq_tol(exp(-logarithm[p]), ratio[p], 4e-6);
     }
     free(both), free(ratio), free(logarithm);

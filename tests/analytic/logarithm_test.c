@@ -1,4 +1,4 @@
-/* What a tolerance means for -ln(I/I0): the plan states an absolute error, which is compared with that of the image. */
+/* Tolerance of -ln(I/I0): the plan states an absolute error, which is compared with that of the image. */
 #include "support/named.h"
 #include "support/run.h"
 

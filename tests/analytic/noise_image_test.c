@@ -138,7 +138,7 @@ START_TEST(quantities) {
     take(spectrum, &options, 5, 1, energy);
     options.quantity = SKG_QUANTITY_TRANSMISSION;
     take(spectrum, &options, 5, 1, other);
-    /* The same draws: what differs are 16 roundings of single precision, 1e-6, here and below. */
+    /* Equal draws: the images differ by 16 roundings of single precision, 1e-6, here and below. */
     for (int i = 0; i < PIXELS; i++) ck_assert_double_eq_tol(other[i] * open / energy[i], 1, 1e-6);
     options.quantity = SKG_QUANTITY_ATTENUATION;
     take(spectrum, &options, 5, 1, other);

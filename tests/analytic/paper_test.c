@@ -100,7 +100,7 @@ static double expected(int equation, double bone_cm, double soft_cm) {
     return sum;
 }
 
-/* What the printed coefficients give: 29.788626 and 4352.8505 keV. (The first is quoted elsewhere
+/* Energies from the printed coefficients: 29.788626 and 4352.8505 keV. (The first is quoted elsewhere
  * as 29.78857, 2e-6 lower, which four digits of mu do not give.) The paper has 29.789 and 4353.175, from mu
  * before rounding. The whole profile too.
  * 1e-6: sixteen roundings of single precision; 1e-12: thousands of double. */

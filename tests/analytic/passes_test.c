@@ -97,7 +97,7 @@ static void take(skg_plan *plan, float *images) {
     ck_skg(skg_job_wait(&job));
 }
 
-/* The same by both strategies; the second time after vertices have moved. */
+/* Compares the images of both strategies; the second time after vertices have moved. */
 static void compare(skg_plan_options *options, int samples) {
     static float images[2][2][FRAMES * PIXELS];
     static const int32_t strategies[2] = {SKG_STRATEGY_COPIES, SKG_STRATEGY_TILES};

@@ -26,7 +26,7 @@ static void close_context(void) {
     skg_context_release(&context);
 }
 
-/* What the oracle knows of a part: planes n . x <= d, in the world (mm). */
+/* A part of the oracle: planes n . x <= d, in the world (mm). */
 typedef struct {
     int64_t inside;
     int32_t priority, matter;

@@ -122,7 +122,7 @@ static double beyond_of_disc(double u) {
     return 0.5 - (at * sqrt(1 - at * at) + asin(at)) / pi;
 }
 
-/* What a disc, a ball and a bell let pass, through the share of each beyond a line: closed forms. */
+/* Penumbra of a disc, a ball and a bell, through the share of each beyond a line: closed forms. */
 START_TEST(shapes_have_their_penumbra) {
     static double image[SIDE * SIDE];
     static const int32_t shapes[3] = {SKG_SPOT_DISC, SKG_SPOT_SPHERE, SKG_SPOT_GAUSSIAN};

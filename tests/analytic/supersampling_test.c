@@ -79,7 +79,7 @@ static void take(const skg_plan_options *options, const skg_view *view, double *
     skg_plan_release(&plan);
 }
 
-/* What the plan says of supersampling. */
+/* Gets the plan's reason for its supersampling. */
 static void explain(const skg_plan_options *options, const skg_view *view, char reason[256]) {
     skg_plan *plan = NULL;
     skg_effect effect;

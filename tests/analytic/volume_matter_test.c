@@ -1,4 +1,4 @@
-/* What the cells of volumes are made of: beside meshes of the same matter. What is refused. */
+/* Matter of the cells of volumes, beside meshes of the same matter; and volumes that are refused. */
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>

@@ -28,7 +28,7 @@ expect 1 "10 passed, 1 failed, 2 skipped" yes "${listed}page_test: no chromium
 "
 expect 1 "10 passed, 1 failed, 2 skipped" yes "organs_test: another reason
 "
-# What fails outside of a test counts as one failure.
+# A failure outside of a test counts as one failure.
 status=0
 last=$(sh -euc '. cmake/report.sh; trap skg_report EXIT; skg_stage build; false' | tail -n 1) || status=$?
 [ "$last" = "0 passed, 1 failed, 0 skipped" ]

@@ -1,5 +1,5 @@
-/* What a detector that counts makes of photons, against photons that are followed one by one through the pixels of the sensor: all
- * scattering, and fluorescence until it ends. */
+/* A counting detector against photons that are followed one by one through the pixels of the sensor: all scattering, and fluorescence until
+ * it ends. */
 #include "counter_photons.h"
 #include "suite.h"
 #include "support/named.h"
@@ -27,7 +27,7 @@ static void count_pixels(history *h, int *windows) {
         windows[k] = h->charge[k] > 0 ? window_of(h->s, h->charge[k] + h->s->noise_kev * normal(h)) : -1;
 }
 
-/* The same of sums: the largest pixel, with the best square about it, before the eight around it are silenced. */
+/* Counts sums: the largest pixel, with the best square about it, before the eight around it are silenced. */
 static void count_sums(history *h, int *windows) {
     for (int k = 0; k < PIXELS; k++) windows[k] = -1;
     for (;;) {

@@ -1,4 +1,4 @@
-/* What a detector that counts makes of single photons, in closed form. */
+/* Counts of single photons in a counting detector, in closed form. */
 #include "suite.h"
 #include "support/named.h"
 
@@ -47,7 +47,7 @@ START_TEST(without_sharing_a_photon_counts_once) {
     ck_assert_double_eq_tol(counts[1], interacting(26), 0.011);
     ck_assert_double_ge(interacting(26), counts[1]);
     ck_skg(skg_counter_spread_get(counter, 26, 1, spread));
-    /* Others are absorbed on the way. */
+    /* Other photons are absorbed on the way. */
     ck_assert_double_eq_tol(spread[MIDDLE], counts[1], 5e-3);
     ck_skg(skg_counter_pairs_get(counter, 26, 1, 1, pairs));
     ck_assert_double_eq_tol(pairs[MIDDLE], counts[1], 1e-12); /* sums of the same numbers */

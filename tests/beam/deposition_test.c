@@ -37,7 +37,7 @@ static skg_response *response_of(const layer *l, int transports) {
     return transports ? transporting : all;
 }
 
-/* What a photon leaves that interacts first at a depth. */
+/* Energy that a photon leaves which first interacts at a depth, keV. */
 static double follow(const matter *m, double mm, double kev, double depth, double way[3], uint64_t *seed) {
     double left = 0;
     for (;;) {

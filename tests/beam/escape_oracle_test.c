@@ -56,7 +56,7 @@ static double follow(const layer *l, const double *fractions, double kev, double
     return 0;
 }
 
-/* What is left in the layer of a photon that interacts. */
+/* Energy that a photon which interacts leaves in the layer, keV. */
 static double deposit(const layer *l, const double *fractions, double energy, double oblique, double cm2_g) {
     double kev = energy;
     const double mu = cm2_g * l->g_cm3 / 10 * oblique;

@@ -83,7 +83,7 @@ START_TEST(iso_qualities) {
         if (getenv("SKG_LIST"))
             printf("%s: HVL1 %+.1f %%, HVL2 %+.1f %%, mean %.2f keV\n", name, 100 * (q.hvl1_mm_cu / hvl1 - 1),
                    100 * (q.hvl2_mm_cu / hvl2 - 1), q.mean_kev);
-        /* What the calibration is asked to reach for HVL1 in aluminium; mean energies are nominal to 0.5 keV. */
+        /* The aim of the calibration for HVL1 in aluminium; mean energies are nominal to 0.5 keV. */
         ck_assert_msg(fabs(q.hvl1_mm_cu / hvl1 - 1) <= 0.03, "%s: HVL1 %.4f mm Cu", name, q.hvl1_mm_cu);
         ck_assert_msg(fabs(q.hvl2_mm_cu / hvl2 - 1) <= 0.03, "%s: HVL2 %.4f mm Cu", name, q.hvl2_mm_cu);
         for (size_t i = 0; i < sizeof nominal / sizeof *nominal; i++)

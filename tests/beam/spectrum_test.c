@@ -151,7 +151,7 @@ START_TEST(filters_harden) {
 }
 END_TEST
 
-/* The same numbers of print, as gVXR's users have them. */
+/* Numbers in print, as gVXR's users have them. */
 START_TEST(response_of_cesium_iodide_in_print) {
     static const double rows[][2] = {{30, 27.4}, {33, 28.1},  {35, 34.8}, {60, 53.0},
                                      {80, 50.4}, {100, 42.3}, {160, 24.9}};

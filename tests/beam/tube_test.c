@@ -56,7 +56,7 @@ START_TEST(output_per_mas) {
             if (getenv("SKG_LIST"))
                 printf("model %d, %g kV: %.1f and %.1f uGy/mAs, HVL1 %.3f mm Al\n", model, rows[i].kv, v, a,
                        q.hvl1_mm_al);
-            /* What the calibration is asked to reach; the programs have cross sections of their own. */
+            /* The aim of the calibration; the programs have cross sections of their own. */
             ck_assert_msg(fabs(v / rows[i].vacuum - 1) <= 0.02, "%g kV: %.1f uGy/mAs", rows[i].kv, v);
             ck_assert_msg(fabs(a / rows[i].air - 1) <= 0.02, "%g kV, air: %.1f uGy/mAs", rows[i].kv, a);
             /* as above */
@@ -90,7 +90,7 @@ START_TEST(industrial_beams) {
             const skg_quality q = quality(model, rows[i].kv, rows[i].angle, layers);
             const double kerma = q.air_kerma_ugy / rows[i].kerma - 1, al = q.hvl1_mm_al / rows[i].hvl_al - 1,
                          cu = q.hvl1_mm_cu / rows[i].hvl_cu - 1;
-            /* What the calibration is asked to reach; at 20 degrees its output is 2 to 3 % high, also at 150 kV. */
+            /* The aim of the calibration; at 20 degrees its output is 2 to 3 % high, also at 150 kV. */
             ck_assert_msg(
                 fabs(kerma) <= (rows[i].angle > 12 ? 0.035 : 0.02) && fabs(al) <= 0.015 && fabs(cu) <= 0.016,
                 "model %d, %g kV, %g degrees, %g mm %s: kerma %+.1f %%, HVL1 %+.1f %% Al, %+.1f %% Cu",
@@ -132,7 +132,7 @@ START_TEST(soft_beams) {
         if (getenv("SKG_LIST"))
             printf("model %d, Z %d, %g mm %s, %g kV: kerma %+.1f %%, HVL1 %+.1f %%\n", model, rows[i].anode,
                    rows[i].mm, rows[i].filter, rows[i].kv, 100 * kerma, 100 * hvl);
-        /* What the calibration reaches, and half as much again: L lines pass 0.5 mm Al, and are attenuated by cross
+        /* The accuracy of the calibration, and half as much again: L lines pass 0.5 mm Al, and are attenuated by cross
          * sections of which the programs differ. */
         ck_assert_msg(fabs(hvl) <= (is_thin ? 0.05 : 0.02), "%g kV, %s: HVL1 %+.1f %%", rows[i].kv,
                       rows[i].filter, 100 * hvl);
@@ -215,7 +215,7 @@ START_TEST(output_scales) {
     ck_skg(skg_spectrum_create_tube(&t, &s));
     ck_skg(skg_spectrum_quality_get(s, &other));
     skg_spectrum_release(&s);
-    /* The same spectrum in bins half as wide: the sums differ by 1.3e-4. */
+    /* One spectrum in bins half as wide: the sums differ by 1.3e-4. */
     ck_assert_double_eq_tol(other.air_kerma_ugy / one.air_kerma_ugy, 1, 5e-3);
     skg_material_release(&al);
 }
@@ -235,7 +235,7 @@ START_TEST(heel_of_a_tube) {
         const double hvl = q.hvl1_mm_al / rows[i][2] - 1;
         if (getenv("SKG_LIST"))
             printf("%g cm: kerma %+.1f %%, HVL1 %+.1f %%\n", rows[i][0], 100 * kerma, 100 * hvl);
-        /* What the calibration reaches at 3.5 to 20.5 degrees, and half as much again. */
+        /* The accuracy of the calibration at 3.5 to 20.5 degrees, and half as much again. */
         ck_assert_msg(fabs(kerma) <= 0.02 && fabs(hvl) <= 0.02, "%g cm: kerma %+.1f %%, HVL1 %+.1f %%",
                       rows[i][0], 100 * kerma, 100 * hvl);
     }
@@ -249,7 +249,7 @@ static void keep(int32_t level, const char *sentence, void *user) {
     if (level == SKG_LOG_WARNING) strncat(warned, sentence, sizeof warned - strlen(warned) - 1);
 }
 
-/* What is outside the range of the validation is warned of, and what is inside is not. */
+/* Tubes outside the range of the validation are warned of, and others are not. */
 START_TEST(limits_are_warned_of) {
     static const struct {
         int32_t anode;

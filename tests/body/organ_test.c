@@ -1,5 +1,4 @@
-/* What a caller may say of an organ: kinds, axes, links; boxes that turn; drivers that contradict each other.
- */
+/* Options of an organ that a caller may set: kinds, axes, links; boxes that turn; drivers that contradict each other. */
 #include "body/bones.h"
 #include "body/links.h"
 #include "body/types.h"

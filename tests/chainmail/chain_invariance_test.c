@@ -1,4 +1,4 @@
-/* What must not change the answer of Chain Mail, or must change it alike: P3, P7 to P13 of docs/breathing.md#properties. */
+/* Changes that must not change the answer of Chain Mail, or must change it alike: P3, P7 to P13 of docs/breathing.md#properties. */
 #include "chainmail/graph.h"
 #include "suite.h"
 

@@ -109,7 +109,7 @@ static inline int run(const char *format, ...) {
         ck_assert_str_eq(said, "");                                                                          \
     } while (0)
 
-/* What was said, as JSON; the caller releases it. */
+/* Standard output of the last run as JSON; the caller releases it. */
 static inline json_t *said_json(void) {
     json_error_t error;
     json_t *object = json_loads(said, JSON_REJECT_DUPLICATES, &error);

@@ -259,7 +259,7 @@ START_TEST(bad_meshes_are_status_3) {
     ck_run_fails(3, "infinite.ply", "mesh infinite.ply");
     ck_run_fails(3, "index.obj", "mesh index.obj");
     ck_run_fails(3, ".: holds no DICOM slice", "mesh .");
-    /* What can be read is still reported. */
+    /* Files that can be read are still reported. */
     write_text("good.obj", tetrahedron);
     ck_run(3, "mesh missing.stl good.obj --json");
     ck_assert_ptr_nonnull(strstr(complained, "missing.stl"));

@@ -56,7 +56,7 @@ static int is_state(json_t *source, const char *state) {
     return strcmp(text_of(source, "state"), state) == 0;
 }
 
-/* What no setting has, which has a sentence of its own. */
+/* Scatter, which no setting has and which has a sentence of its own. */
 static int is_scatter(json_t *source) {
     return strcmp(text_of(source, "name"), "scatter") == 0;
 }
@@ -136,7 +136,7 @@ static void check_prices_said(json_t *study) {
     ck_assert_double_eq_tol(said_ms, price_of(here), 0.05 * price_of(here));
 }
 
-/* The same setting of another study; NULL: it was not measured there. */
+/* The measured setting of another study that equals this one; NULL: it was not measured there. */
 static json_t *same_setting(json_t *study, json_t *setting) {
     json_t *other;
     size_t i;

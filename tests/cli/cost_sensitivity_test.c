@@ -60,7 +60,7 @@ START_TEST(changes_are_those_of_formulas) {
 }
 END_TEST
 
-/* Who does not ask gets none; the table and the page have it for those who do. */
+/* Only with --sensitivity do the study, the table and the page have it. */
 START_TEST(it_is_told_where_it_is_asked_for) {
     write_text("rods.json", rods);
     json_t *found = sensitivity_of("");

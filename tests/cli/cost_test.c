@@ -107,7 +107,7 @@ static int is_dial(json_t *point, const char *dial, const char *precision) {
            strcmp(json_string_value(member(member(point, "setting"), "precision")), precision) == 0;
 }
 
-/* What is known of the dials: 16 bits lose to 32 and those to 64; a tolerance bounds the error it makes (and
+/* Known relations of the dials: 16 bits lose to 32 and those to 64; a tolerance bounds the error it makes (and
  * single precision adds less than 1e-6 of the open beam); the best setting differs from itself by nothing. */
 static void check_errors(json_t *study) {
     json_t *point;

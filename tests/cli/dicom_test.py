@@ -121,7 +121,7 @@ def written(folder, name, of, stored=None, **attributes):
 
 
 def check_register(folder):
-    """The same values in another file are the same search, but for the rounding of 16 bits."""
+    """Equal values in another file are the same search, but for the rounding of 16 bits."""
     (folder / "truth.json").write_text(json.dumps(BODY))
     BODY["Samples"][0]["Transform"][0][1] = 0.2
     (folder / "scene.json").write_text(json.dumps(BODY))
@@ -150,7 +150,7 @@ def check_register(folder):
 
 
 def check_refusals(folder):
-    """What no number can be made of is said."""
+    """Refusals of files that give no numbers."""
     def refused(file, *words):
         return run(folder, "register", "scene.json", "--image", file, "--part", "body", "-o", "f.json", *words, code=3)
 

@@ -1,4 +1,4 @@
-/* What ffmpeg writes, read by ffmpeg again: needs ffmpeg. */
+/* Films written by ffmpeg, read by ffmpeg again: needs ffmpeg. */
 #include "cli/command.h"
 
 #include "film/film.h"

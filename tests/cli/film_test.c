@@ -331,7 +331,7 @@ START_TEST(ffmpeg_that_fails_is_heard) {
 }
 END_TEST
 
-/* It dies before it has read all: no SIGPIPE, its reason is said. 400 frames are more than a socket holds. */
+/* An ffmpeg that dies before it has read all: no SIGPIPE, its reason is said. 400 frames are more than a socket holds. */
 START_TEST(ffmpeg_that_dies_is_heard) {
     static const char *const scripts[] = {"#!/bin/sh\nexec 0<&-\nprintf 'no\\nspace\\n' >&2\nexit 3\n",
                                           "#!/bin/sh\nkill -9 $$\n"};

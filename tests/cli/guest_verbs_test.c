@@ -12,7 +12,7 @@ static void tear_down_both(void) {
     remove_guest_folder();
 }
 
-/* What the guest does, and what the command says of it. */
+/* Misdeeds of the guest, and the sentence of the command about each. */
 static const struct {
     const char *guest, *said;
 } misdeeds[] = {

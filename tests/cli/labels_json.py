@@ -74,11 +74,11 @@ class Command:
         return done.stdout.decode('utf-8')
 
     def run(self, *words, status=0):
-        """What the command prints, parsed."""
+        """Output of the command with --json, parsed."""
         return parse(self.start([*words, '--json'], status))
 
     def table(self, *words):
-        """What it prints for people."""
+        """Output of the command for people."""
         commands_nothing(words, self.start(words, 0))
 
 

@@ -247,7 +247,7 @@ def lag(path):
 
 
 def doses(path):
-    """What a frame gives is what the verb dose has of the scene as it stands; a tube without mAs has no number of photons."""
+    """A frame has the dose of the verb `dose` for the scene as it stands; a tube without mAs has no number of photons."""
     def verb(*words):
         run = subprocess.run([command, "dose", path, "--histories", "0", "--json", "--quiet", *words], check=True, stdout=subprocess.PIPE)
         found = json.loads(run.stdout)
@@ -366,7 +366,7 @@ def long_frames(path):
 
 
 def errors(path):
-    """What fails keeps the last image, and the sentence says what it is."""
+    """A wish that fails keeps the last image, and the sentence says why."""
     with Server(command, path) as server:
         page = Page(server)
         page.frame()
@@ -568,7 +568,7 @@ def write_blocks(folder):
 
 
 class Radiograph(Frame):
-    """What pages get of --fixed."""
+    """An image of --fixed as pages get it."""
 
     def __init__(self, data):
         assert data[:4] == b"SKLR"
@@ -576,7 +576,7 @@ class Radiograph(Frame):
 
 
 def registered(page, part, seconds=LIMIT):
-    """What comes of a registration, and the images that came meanwhile."""
+    """The result of a registration, and the images that came meanwhile."""
     page.send({"register": part})
     images = []
     while True:

@@ -1,4 +1,4 @@
-"""What the tests of the page of `skiagraph live` share."""
+"""Shared code of the tests of the page of `skiagraph live`."""
 import json
 from types import SimpleNamespace
 
@@ -27,7 +27,7 @@ def check(name, is_right, what=""):
 
 
 class Tried:
-    """What a control does to a page."""
+    """A page, and the effects of its controls."""
 
     def __init__(self, browser):
         self.browser = browser

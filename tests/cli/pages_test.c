@@ -73,7 +73,7 @@ START_TEST(man_pages_hold_every_verb_and_flag) {
 }
 END_TEST
 
-/* What bash completes after the words, one a line, in `said`. The last word is the one that is completed. */
+/* Reads bash's completions of the words, one a line, into `said`. The last word is the one that is completed. */
 static void complete(const char *words, int last) {
     char line[2048];
     snprintf(line, sizeof line,

@@ -353,7 +353,7 @@ START_TEST(of_many_overlaps_the_worst_three_are_printed) {
 }
 END_TEST
 
-/* What the plan has to say reaches standard error, and the picture is made all the same. */
+/* Warnings of the plan reach standard error, and the picture is made all the same. */
 START_TEST(warnings_are_printed_unless_quiet) {
     write_text("open.obj",
                "v 0 0 0\nv 9 0 0\nv 0 9 0\nv 0 0 9\nf 1 3 2\nf 1 4 3\nf 2 3 4\n"); /* without y = 0 */
@@ -414,7 +414,7 @@ START_TEST(noise_is_said_to_be_missing_only_where_it_is) {
     ck_assert_msg(strstr(complained, "there is no noise"), "%s", complained);
     ck_run(0, "image %s -o a.png --set Noise=true", with);
     ck_assert_msg(!strstr(complained, "noise"), "%s", complained);
-    /* It stands where pixels are the result and in the table of the plan, and not before every command. */
+    /* The warning stands where pixels are the result and in the table of the plan, and not before every command. */
     ck_run(0,
            "plan %s --tolerance 0 --set 'Samples.bone.Material=H2O' --set Samples.bone.Density=1 --set "
            "Samples.skin.Material=H2O --set Samples.skin.Density=1",
@@ -480,7 +480,7 @@ START_TEST(times_are_printed) {
 }
 END_TEST
 
-/* The same bytes as through files, and nothing else on standard output. */
+/* Bytes through standard input and output are those through files, and nothing else is on standard output. */
 START_TEST(dashes_are_standard_input_and_output) {
     char line[1024];
     snprintf(

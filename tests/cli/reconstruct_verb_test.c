@@ -126,7 +126,7 @@ START_TEST(what_a_folder_lacks_is_named) {
 }
 END_TEST
 
-/* The same scan as a Nikon scanner writes it, in CIL's frame: InitialAngle 10, a step of 6 degrees, 16 bits with a white level. */
+/* A Nikon scanner's file of this scan, in CIL's frame: InitialAngle 10, a step of 6 degrees, 16 bits with a white level. */
 static const char nikon[] =
     "\xef\xbb\xbf[XTekCT]\r\nName=body\r\nProjections=60\r\nInitialAngle=10\r\nANGULARSTEP=6.0\r\n"
     "SrcToObject=400\r\nSrcToDetector=600\r\nDetectorPixelsX=80\r\nDetectorPixelsY=48\r\n"

@@ -13,7 +13,7 @@ START_TEST(examples_are_images) {
 }
 END_TEST
 
-/* Its meshes are made by ./demo. */
+/* Meshes of the thorax are made by ./demo. */
 START_TEST(the_thorax_takes_the_files_of_the_demo) {
     char line[1024];
     ck_run(0, "thorax -o . --triangles 10000 --quiet");

@@ -1,4 +1,4 @@
-/* What the command shows on a terminal while it works. */
+/* Progress on a terminal while the command works. */
 #include "cli/command.h"
 
 #include <pty.h>

@@ -10,7 +10,7 @@ static const char scene[] =
     "\"Samples\": [{\"Label\": \"tissue\", \"Cube\": [80, \"mm\"], \"Material\": [\"mu\", 0.2], \"Type\": \"outer\"},"
     "{\"Label\": \"bone\", \"Cylinder\": [32, 60, 12, \"mm\"], \"Material\": [\"mu\", 0.5]}]}";
 
-/* What both scripts begin and end with: the verdict becomes an attribute of the body. */
+/* First and last lines of both scripts: the verdict becomes an attribute of the body. */
 static const char begin_script[] =
     "<script>\n"
     "const verdict = [], check = (name, is) => { if (!is) verdict.push(name); };\n"
@@ -193,7 +193,7 @@ START_TEST(a_curved_detector_is_drawn_curved) {
 }
 END_TEST
 
-/* Who does not ask has no legend, and the list in the order of the scene. */
+/* A page without --sensitivity has no legend, and the list in the order of the scene. */
 START_TEST(a_page_without_sensitivity) {
     need_browser();
     write_text("s.json", scene);

@@ -1,4 +1,4 @@
-/* What the command says to users who come from elsewhere. */
+/* Messages of the command to users who come from other programs. */
 #include "cli/command.h"
 
 static const char scene[] =

@@ -40,7 +40,7 @@ typedef struct {
     int value;
 } outcome;
 
-/* What a process does: makes the program and runs it. caches: as drivers do that keep kernels themselves. */
+/* Work of a process: makes the program and runs it. caches: as drivers do that keep kernels themselves. */
 static outcome run(const char *options, int caches) {
     const char *names[] = {"set.cl"};
     char config[96];
@@ -100,7 +100,7 @@ START_TEST(none_keeps_nothing) {
 }
 END_TEST
 
-/* What cannot be kept is compiled, and nothing fails. */
+/* Programs that cannot be kept are compiled, and nothing fails. */
 START_TEST(a_folder_that_cannot_be_written_does_no_harm) {
     setenv("SKG_CACHE_DIR", "/dev/null/cache", 1);
     ck_outcome(run("", 0), 1, 0, 7);

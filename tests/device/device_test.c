@@ -55,7 +55,7 @@ START_TEST(environment_variable_stands_for_config) {
 }
 END_TEST
 
-/* What PoCL 3.0 of the Python registry says of itself on a Zen 4, and others that must not be refused. */
+/* Names and versions: of PoCL 3.0 of the Python registry on a Zen 4, and of others that must not be refused. */
 START_TEST(a_pocl_that_ends_the_process_is_known) {
     static const struct {
         const char *driver, *version;
@@ -230,7 +230,7 @@ START_TEST(a_callers_queue_is_checked_and_retained) {
 }
 END_TEST
 
-/* What a driver says in a thread of its own, and a log that notes which thread called it. */
+/* Calls the driver's callback from a thread of its own; the log notes which thread called it. */
 static void *call_back(void *address) {
     skg_driver_says("device lost", NULL, 0, address);
     return NULL;

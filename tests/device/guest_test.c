@@ -8,7 +8,7 @@
 
 #include <skiagraph/opencl.h>
 
-/* What the guest does, and whether it does so in a call that any program causes which opens a device of its. */
+/* Misdeeds of the guest in calls that any program causes which opens a device of the guest. */
 static const char *const misdeeds[] = {
     "exit:clGetDeviceInfo", "abort:clGetDeviceInfo", "crash:clGetDeviceInfo",
     "hang:clGetDeviceInfo", "fail:clGetDeviceInfo",  "leak:clGetDeviceInfo",

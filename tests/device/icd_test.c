@@ -19,7 +19,7 @@ extern char **environ;
 
 enum { SIDE = 32 };
 
-/* What a process that uses the loader hands to another one. */
+/* Results that a process which uses the loader hands to another one. */
 typedef struct {
     char library[1024]; /* of the loader's first driver */
     int64_t devices;
@@ -47,7 +47,7 @@ static void find_library(char *path, size_t size) {
     snprintf(path, size, "%s", info.dli_fname);
 }
 
-/* What the loader gives, found by a child; this process has not called OpenCL then. */
+/* Results of the loader, found by a child; this process has not called OpenCL then. */
 static seen *see(void) {
     seen *s = mmap(NULL, sizeof *s, PROT_READ | PROT_WRITE, MAP_SHARED | MAP_ANONYMOUS, -1, 0);
     int result = -1;

@@ -1,4 +1,4 @@
-/* What photons leave in a box, one by one: no expectation, no weights, no surfaces but the box's. */
+/* Dose in a box by analogue photons, one by one: no expectation, no weights, no surfaces but the box's. */
 #ifndef SKG_TESTS_DOSE_ANALOGUE_BOX_H
 #define SKG_TESTS_DOSE_ANALOGUE_BOX_H
 

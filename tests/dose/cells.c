@@ -1,4 +1,4 @@
-/* What stays in volumes of cells, beside the same bodies as meshes. */
+/* Dose in volumes of cells, beside the same bodies as meshes. */
 #include "dose/exposed.h"
 
 #include <skiagraph/volume.h>

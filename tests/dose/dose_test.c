@@ -244,7 +244,7 @@ START_TEST(the_beam_in_the_room_is_that_of_images) {
     for (int i = 0; i < SIDE * SIDE; i++) mean += point_of(dose, i).air_kerma_ugy / (SIDE * SIDE);
     /* Rays of the heel effect and the filter are fitted to 1e-4 in images, and of kerma there is a table with steps of .2 %. */
     ck_assert_double_eq_tol(report_of(dose).detector_air_kerma_ugy / mean, 1, 5e-4);
-    /* They matter: without them there is more towards the cathode. */
+    /* Heel effect and filter matter: without them there is more towards the cathode. */
     ck_assert_double_gt(point_of(dose, SIDE / 2).air_kerma_ugy,
                         1.1 * point_of(dose, SIDE * SIDE - 1 - SIDE / 2).air_kerma_ugy);
     skg_dose_release(&dose);

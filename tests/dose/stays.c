@@ -1,4 +1,4 @@
-/* What stays in parts, and what comes back from them, against closed forms, published figures and photons that are followed one by one. */
+/* Dose in parts and backscatter from them, against closed forms, published figures and photons that are followed one by one. */
 #include "analogue_box.h"
 
 #include "beam/spectrum.h"
@@ -155,7 +155,7 @@ START_TEST(parts_share_what_a_block_keeps) {
     ck_assert_double_eq_tol(mass[1], 320, 1e-9);
     /* Lines 1/384 of the box apart. */
     ck_assert_double_eq_tol(mass[2], 320 + 0.2 * 10, 1);
-    /* The same photons, but for roundings that send some elsewhere. */
+    /* Equal photons, but for roundings that send some elsewhere. */
     ck_assert_double_eq_tol(energy[1] / energy[0], 1, 2e-3);
     ck_assert_double_gt(energy[2], energy[0]);
     ck_assert_double_lt(energy[2], 1.05 * energy[0]); /* the piece outside is 1/160 of the block */

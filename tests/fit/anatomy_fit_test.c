@@ -6,7 +6,7 @@
 
 static const char *const organs[] = {"diaphragm", "liver"};
 
-/* What a scene says of the anatomical coupling. */
+/* Settings of a scene for the anatomical coupling. */
 enum { SETTINGS = 6, FITTED = 11 };
 typedef struct {
     char text[SETTINGS][128];
@@ -172,7 +172,7 @@ START_TEST(values_leave_nothing_behind) {
 }
 END_TEST
 
-/* What a breath without ribs says of their angle, and what tissues say where no link is taut: nothing. */
+/* A breath without ribs does not determine their angle; the tendon's motion it does. */
 START_TEST(what_is_not_determined) {
     static const char *const still[] = {"Breathing.Thoracic=0"};
     skg_setup *setup = load(1, still);

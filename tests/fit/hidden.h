@@ -57,7 +57,7 @@ static inline int64_t part_of(const skg_setup *setup, const char *label) {
     ck_abort_msg("no part %s", label);
 }
 
-/* What a surface is made of. */
+/* A target surface: scene, organ, phase, settings, noise. */
 typedef struct {
     const char *scene; /* NULL: the thorax */
     const char *label;

@@ -1,4 +1,4 @@
-/* What costs nothing in a frame is an argument of a program and not a program: jaws, whether they stop rays or not. */
+/* Effects without a cost in a frame are arguments of a program and not programs: jaws, whether they stop rays or not. */
 #include "core/context.h"
 #include "device/device.h"
 #include "suite.h"

@@ -117,7 +117,7 @@ START_TEST(cancelled_after_the_end) {
 }
 END_TEST
 
-/* What a window's thread does while another one waits: it holds a reference, so that the job outlives the wait. */
+/* Thread of a window while another one waits: it holds a reference, so that the job outlives the wait. */
 static void *cancel_often(void *user) {
     skg_job *held = user;
     for (int k = 0; k < 2000; k++)

@@ -1,4 +1,4 @@
-/* What gradients do not depend on, and what has none. */
+/* Independence of gradients from strategy and order, and scenes without a gradient. */
 #include "gradients.h"
 
 #include <math.h>
@@ -154,7 +154,7 @@ END_TEST
 
 /* --- sums that stand */
 
-/* What happens between an image and the gradient of the plan's scene. */
+/* Changes between an image and the gradient of the plan's scene. */
 enum { NOTHING, A_POSE, VERTICES, LENGTHS, A_VIEW, DENSITIES, CHANGES };
 
 static void submit_and_wait(skg_plan *plan, const skg_frame *frame, const skg_output *output) {

@@ -21,7 +21,7 @@ static const setting settings[] = {
 };
 enum { SETTINGS = sizeof settings / sizeof *settings };
 
-/* What the directions have. */
+/* Arrays to which the directions point. */
 static double poses[DIRECTIONS][PARTS][6], coefficients[PARTS * NODES_MAX], changes[PARTS];
 static double source[3] = {0.3, -0.2, 1}, detector[6] = {0, 0, 1, 1e-3, 0, 2e-3};
 static double moves[3 * VERTICES_MAX];

@@ -17,7 +17,7 @@ typedef struct {
     int32_t priority;
 } box;
 
-/* What a case moves: the part, and the change of the sum of the right half of the image, in mm of depth times mm of height, times 1/mm. */
+/* A case: the part that it moves, and the change of the sum of the right half of the image, in mm of depth times mm of height, times 1/mm. */
 typedef struct {
     const char *name;
     box boxes[BOXES];

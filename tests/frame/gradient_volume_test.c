@@ -200,7 +200,7 @@ static double shared_area(const int at[3], int axis) {
     return area;
 }
 
-/* What the integral of the attenuation gains when the box moves along an axis: the cells behind it, less those before it. all: of both */
+/* Gain of the integral of the attenuation when the box moves along an axis: the cells behind it, less those before it. all: of both */
 static double gain_along(const double *cells, int axis, double *all) {
     double gain = 0;
     *all = 0;

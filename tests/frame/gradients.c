@@ -1,4 +1,4 @@
-/* What tests of gradients share: a scene of a few parts, directions in which it moves, and its gradient. */
+/* Shared code of tests of gradients: a scene of a few parts, directions in which it moves, and its gradient. */
 #include "gradients.h"
 #include "support/doubles.h"
 

@@ -1,4 +1,4 @@
-/* What tests of gradients share: a scene of a few parts, directions in which it moves, and its gradient. */
+/* Shared code of tests of gradients: a scene of a few parts, directions in which it moves, and its gradient. */
 #ifndef SKG_TESTS_GRADIENT_H
 #define SKG_TESTS_GRADIENT_H
 
@@ -8,7 +8,7 @@
 
 enum { SIDE = 24, PIXELS = SIDE * SIDE, CHANNELS_MAX = 2, PARTS = 9, WAYS = 6 * PARTS + 9 + 2 * PARTS };
 
-/* What a case sets; 0: not used. */
+/* Settings of a case; 0: not used. */
 typedef struct {
     const char *name;
     int32_t quantity, colours, parallel, infinity, nested, priority, hole, world, falloff, supersampling,

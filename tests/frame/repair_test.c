@@ -145,7 +145,7 @@ static void fill_windowed(soup *s, int windows) {
     }
 }
 
-/* What counting cannot see: "neighbours" and "none" leave the hole black, "exact" has the full box. */
+/* Counts of hits cannot detect such rays: "neighbours" and "none" leave the hole black, "exact" has the full box. */
 START_TEST(in_through_one_hole_and_out_through_another) {
     static soup closed, broken;
     static picture truth, left_out, neighbours, exact;

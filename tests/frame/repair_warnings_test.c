@@ -1,4 +1,4 @@
-/* What is warned of open meshes, and when. */
+/* Warnings about open meshes, and when they come. */
 #include "frame/soup.h"
 
 #include <math.h>

@@ -25,7 +25,7 @@ typedef struct {
     skg_plan_report report;
 } picture;
 
-/* What is asked for but the mesh. */
+/* Options of a picture besides its mesh. */
 typedef struct {
     int32_t repair, strategy, precision, images;
     double z[2]; /* of the two parts */

@@ -167,7 +167,7 @@ START_TEST(negative_exponents) {
 }
 END_TEST
 
-/* What a plan keeps between jobs is as many pieces of memory whatever jobs there were, waited for or cancelled. */
+/* A plan keeps as many pieces of memory between jobs whatever the jobs were, waited for or cancelled. */
 START_TEST(memory_between_jobs) {
     int64_t one = 0, many = 0;
     skg_plan_options options;

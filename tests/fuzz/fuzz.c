@@ -1,4 +1,4 @@
-/* What the fuzz targets share: a folder of their own, and files in it. */
+/* Shared code of the fuzz targets: a folder of their own, and files in it. */
 #include "fuzz/fuzz.h"
 
 #include <skiagraph/error.h>

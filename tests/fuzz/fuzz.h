@@ -1,4 +1,4 @@
-/* What the fuzz targets share: a folder of their own, and files in it. Each target defines
+/* Shared code of the fuzz targets: a folder of their own, and files in it. Each target defines
  * LLVMFuzzerTestOneInput; libFuzzer drives it (SKG_FUZZ), or replay.c over the corpus. */
 #ifndef SKG_TESTS_FUZZ_H
 #define SKG_TESTS_FUZZ_H

@@ -1,4 +1,4 @@
-/* What the targets of scene files share. */
+/* Shared code of the fuzz targets of scene files. */
 #include "fuzz/read_scene.h"
 
 #include "fuzz/fuzz.h"

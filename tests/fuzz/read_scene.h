@@ -1,4 +1,4 @@
-/* What the targets of scene files share. */
+/* Shared code of the fuzz targets of scene files. */
 #ifndef SKG_TESTS_READ_SCENE_H
 #define SKG_TESTS_READ_SCENE_H
 

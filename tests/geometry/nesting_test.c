@@ -129,7 +129,7 @@ START_TEST(an_outward_box_inside_another_is_inverted) {
 END_TEST
 
 /* All triangles the other way: the mesh is turned as a whole, and the same component contradicts. */
-/* Neither lies in the other: 2 of the 8 mm of the smaller one. */
+/* Two boxes of which neither lies in the other: 2 of the 8 mm of the smaller one. */
 START_TEST(boxes_that_overlap_are_named) {
     char text[512];
     add_box(0, 0, 5, 1);

@@ -162,7 +162,7 @@ START_TEST(thousands_of_nested_boxes_are_swept) {
 }
 END_TEST
 
-/* What the sweep lists, against all pairs at each stretch, in random boxes that overlap, are nested and leave their parents. */
+/* Pairs of the sweep, against all pairs at each stretch, in random boxes that overlap, are nested and leave their parents. */
 START_TEST(pairs_are_those_of_all_against_all) {
     enum { BOXES = 24 };
     box store[BOXES];

@@ -1,5 +1,4 @@
-/* The same bits whatever the way: strategies, tiles, order of triangles, welded or not, alone or in a batch.
- */
+/* Equal bits by all ways: strategies, tiles, order of triangles, welded or not, alone or in a batch. */
 #include "hard/scenes.h"
 #include "suite.h"
 

@@ -9,7 +9,7 @@
 
 enum { SIDE = 64, PIXELS = SIDE * SIDE };
 
-/* What an image is held against: |got - truth| / max(truth, least) at pixels where truth is no NAN. */
+/* Truth of an image, and its bar: |got - truth| / max(truth, least) at pixels where truth is no NAN. */
 typedef struct {
     int32_t quantity;
     double truth[PIXELS], least, bar[2];

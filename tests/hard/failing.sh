@@ -35,7 +35,7 @@ if [ "$known" -lt 40 ]; then
     exit 77
 fi
 
-# Those that give back, retain or report do not fail.
+# Calls that give back, retain or report do not fail.
 "$nm" -u "$program" | sed -n 's/^ *U \(cl[A-Z][A-Za-z]*\).*/\1/p' | sort -u >failing_imports.txt
 "$nm" "$program" | sed -n 's/.* [Tt] __wrap_\(cl[A-Z][A-Za-z]*\)$/\1/p' | sort -u >failing_wrapped.txt
 comm -23 failing_imports.txt failing_wrapped.txt |

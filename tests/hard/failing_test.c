@@ -86,7 +86,7 @@ static void tear_down(void) {
     rmdir(folder);
 }
 
-/* What a run makes. */
+/* Objects that a run makes. */
 typedef struct {
     const effects *with;
     shared_objects shared;
@@ -183,7 +183,7 @@ static skg_status place_and_draw(const run *r) {
     return status == SKG_RANGE ? SKG_OK : status;
 }
 
-/* The same; the next frames have the positions of the host again. */
+/* Places and draws, then undoes the placing: the next frames have the positions of the host again. */
 static skg_status draw_placed(const run *r) {
     const skg_status status = place_and_draw(r);
     for (int n = 0; n < 2; n++) {
@@ -365,7 +365,7 @@ static skg_status run_once(int kind, const effects *with, int64_t at, float *ima
 static int64_t fail_everywhere(int kind, const effects *with) {
     static float image[VALUES], lengths[PIXELS], got[VALUES], got_lengths[PIXELS];
     int64_t calls = 0, tried = 0, unused = 0, survived = 0;
-    /* What is kept for good is made in the first ones: tests, then programs that were used twice. */
+    /* Objects that are kept for good are made in the first runs: tests, then programs that were used twice. */
     for (int k = 0; k < 4; k++) {
         ck_skg(run_once(kind, with, -1, image, lengths, &calls));
         ck_assert_int_eq(clear(0), 0); /* a scan that is there would be continued */

@@ -179,7 +179,7 @@ static int is_line(const setting *set, const skg_view *view, double at[3][3], do
     return fabs(area) <= 1e-3 * longest || fabs(dot(normal, from)) <= near * sqrt(dot(normal, normal));
 }
 
-/* Its pixels, and those that rays of its ends, a blur, or a step of the differences may reach. */
+/* Marks the pixels of a triangle, and those that rays of its ends, a blur, or a step of the differences may reach. */
 static void mark_box(double seen[3][2], uint8_t *marked) {
     enum { RIM = 2 };
     double low[2] = {SIDE, SIDE}, high[2] = {0, 0};

@@ -247,7 +247,7 @@ START_TEST(objects_are_counted_before_they_are_opened) {
 }
 END_TEST
 
-/* The same of the formats that Assimp reads, which follows circles until the stack ends. */
+/* Circles in the formats that Assimp reads, which follows them until the stack ends. */
 START_TEST(circles_of_nodes_are_refused) {
     static const struct {
         const char *name, *text, *sentence;

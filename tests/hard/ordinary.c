@@ -1,4 +1,4 @@
-/* What a frame of a hard case may cost: three times an ordinary scene of that size. */
+/* Bound on the time of a frame of a hard case: three times that of an ordinary scene of that size. */
 #include "hard/catalogue.h"
 #include "suite.h"
 #include "support/angles.h"

@@ -13,7 +13,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What one picture came to, in units of L. */
+/* Errors of one picture, in units of L. */
 typedef struct {
     /* pixels anywhere where the length hardly changes under the shifts; beyond 3e-6 L */
     int64_t sound, beyond;

@@ -23,7 +23,7 @@ for room in $rooms; do
         ;;
     esac
 done
-# What is gone must not be named any more.
+# Rooms that are gone must not be named any more.
 # shellcheck disable=SC2013,SC2016 # a word a line; a pattern
 for room in $(sed -n '/^### Each room/,/^Which room/s/^| `\([a-z/]*\)` | .*/\1/p' "$root/docs/architecture.md"); do
     echo "$rooms" | grep -qxF "$room" || { echo "docs/architecture.md names $room, which is no room"; status=1; }
@@ -58,6 +58,12 @@ named=$(echo "$sources" | awk 'FILENAME == "-" { for (name = $0; ; sub(/^[^\/]*\
         if (!(name in there) && name !~ /^skiagraph\//) print FILENAME ":" FNR " " name
     } }' - $(echo "$sources" | grep -E '^(lib|host|kernels|tests|bench)/.*\.(c|h|cl|clh)$'))
 [ -z "$named" ] || { echo "These files are named and are not there:"; echo "$named"; status=1; }
+# A comment begins with the thing that it is about. The rooms of `live` are left out.
+# shellcheck disable=SC2046 # a word a file
+pronouns=$(awk -f tests/house/openings.awk $(find lib host kernels tests bench materials examples python docs cmake -type f \
+    \( -name '*.[ch]' -o -name '*.cl' -o -name '*.clh' -o -name '*.hpp' -o -name '*.py' -o -name '*.js' -o -name '*.sh' -o -name '*.awk' -o \
+    -name '*.cmake' -o -name CMakeLists.txt \) | grep -v '/build/\|/venv/\|^host/cli/live/\|^python/skiagraph/_live/'))
+[ -z "$pronouns" ] || { echo "These comments begin with a word that names nothing; say what they are about:"; echo "$pronouns"; status=1; }
 # Structs of at most 40 members; more have a reason in structs.txt.
 # shellcheck disable=SC2013,SC2046 # a word a file and a line
 for struct in $(awk -v most=40 -f tests/house/structs.awk $(find lib host kernels bench tests -name '*.[ch]') | awk '{ print $2 }'); do

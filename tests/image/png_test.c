@@ -68,7 +68,7 @@ START_TEST(png_knows_what_the_data_are) {
     char texts[2048];
     double low, high;
     skg_picture picture = picture_of(SKG_TYPE_FLOAT64);
-    /* The same picture from transmissions and from attenuations. */
+    /* One picture from transmissions and from attenuations. */
     picture.quantity = SKG_QUANTITY_ATTENUATION;
     for (int i = 0; i < PIXELS; i++) doubles[i] = 0.125 * i;
     ck_skg(skg_picture_save(&picture, at("a.png")));

@@ -87,7 +87,7 @@ static int64_t count_blocks(void) {
     return count;
 }
 
-/* What a program makes. Everything stays NULL that was not made. */
+/* Objects of a program. Each stays NULL until it is made. */
 typedef struct {
     skg_context *context;
     skg_setup *setup;

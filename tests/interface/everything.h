@@ -1,5 +1,4 @@
-/* What a program does with the library, from a thorax to files and an image: numbers that nothing of the caller may
- * change. */
+/* Uses the whole library, from a thorax to files and an image: numbers that no state of the caller may change. */
 #ifndef SKG_TESTS_EVERYTHING_H
 #define SKG_TESTS_EVERYTHING_H
 

@@ -1,5 +1,5 @@
-/* What frame.h promises of jobs: asked without waiting, waited for in any order, and alive after their plan, scene and
- * context were released. And the calls that count and tell the version. */
+/* Promises of frame.h about jobs: asked without waiting, waited for in any order, and alive after their plan, scene and context were
+ * released. And the calls that count and tell the version. */
 #include "suite.h"
 
 #include <skiagraph/skiagraph.h>

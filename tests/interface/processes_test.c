@@ -54,7 +54,7 @@ START_TEST(threads_that_start_at_once) {
 }
 END_TEST
 
-/* What runs on a context: compiles and launches. */
+/* Renders on a context, which compiles and launches. */
 static void render(skg_context *context) {
     const skg_view view = run_view(32, 4);
     solid sphere = solid_sphere(40, 20, 10);

@@ -10,7 +10,7 @@
 
 enum { SIDE = 16, PROJECTIONS = 40, NEVER = 1 << 30 };
 
-/* What a callback heard, and when it cancels. */
+/* Calls that a callback received, and the one at which it cancels. */
 typedef struct {
     int64_t calls, done, total;
     int64_t cancel_at; /* the number of the call, from 0 */

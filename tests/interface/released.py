@@ -26,7 +26,7 @@ def named(items):
 
 
 def signature(function):
-    """What a caller was compiled with; names of parameters are not."""
+    """Types with which a caller was compiled; names of parameters do not count."""
     return [function["returns"], [kind for _, kind in function["parameters"]]]
 
 
@@ -96,7 +96,7 @@ def ages(released, new, version):
 
 
 def check(new, released, version, soversion):
-    """What is wrong, a sentence each."""
+    """Violations of the released interface, a sentence each."""
     found = list(ages(released, new, version))
     if soversion == released["soversion"]:
         mend = ("a program of {0} would not run: raise SKG_SOVERSION in CMakeLists.txt" if released["version"] != version else

@@ -1,5 +1,5 @@
-/* What belongs to the caller is set to something unusual before the first call. The results have the bits of an ordinary
- * process, and the state is as it was. */
+/* Sets the caller's state to something unusual before the first call. The results have the bits of an ordinary process, and the state is as
+ * it was. */
 #define _GNU_SOURCE /* feenableexcept, sched_getaffinity */
 #include "everything.h"
 #include "suite.h"

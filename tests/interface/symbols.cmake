@@ -39,7 +39,7 @@ string(JSON macros GET "${list}" macros)
 string(REGEX MATCHALL "SKG_[A-Z0-9_]+" known "${macros}")
 string(JSON enums GET "${list}" enums)
 string(REGEX MATCHALL "SKG_[A-Z0-9_]+" values "${enums}")
-# What comments mention beside names: environment variables, a beginning of names, the name of no status.
+# Words in comments that are no names of the interface: environment variables, a beginning of names, the name of no status.
 list(APPEND known ${values} SKG_CACHE_DIR SKG_DEVICE SKG_KERNEL_DIR SKG_ERR_ SKG_UNKNOWN)
 string(REPLACE "|" ";" headers "${HEADERS}")
 foreach(header IN LISTS headers)

@@ -174,7 +174,7 @@ START_TEST(breaths_are_held) {
 END_TEST
 
 #ifdef SKG_NEWER
-/* What this library does not know may be there, as long as it is 0. */
+/* Fields that this library does not know may be there, as long as they are 0. */
 START_TEST(unknown_fields_are_refused) {
     static float pixels[SIDE * SIDE];
     skg_frame frame;

@@ -17,7 +17,7 @@ static void close_context(void) {
 
 enum { BUFFERS = 7, PLACES = 16 };
 
-/* What the device's compiler makes of skg_shared.h: sizes, and places of the last fields. */
+/* Layout of skg_shared.h by the device's compiler: sizes, and places of the last fields. */
 static const char layout_kernel[] =
     "__kernel void layout(__global int *out, __global const skg_part_entry *p, __global const skg_contribution *w,\n"
     "                     __global const skg_ray_args *r, __global const skg_raster_layout *f,\n"

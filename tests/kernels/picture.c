@@ -1,4 +1,4 @@
-/* What tests of the kernels share: meshes as plain arrays, one frame from them, and a slow referee. */
+/* Shared code of tests of the kernels: meshes as plain arrays, one frame from them, and a slow referee. */
 #include "kernels/picture.h"
 
 #include "core/maths.h"

@@ -21,7 +21,7 @@ enum { COLUMNS = 20, ROWS = 12, PIXELS = COLUMNS * ROWS };
         }                                                                                                    \
     } while (0)
 
-/* What a group sets; 0 or NULL: not used. */
+/* Settings of a group; 0 or NULL: not used. */
 typedef struct {
     const char *name;
     int32_t precision, strategy, quantity, repair, falloff, supersampling;
@@ -206,7 +206,7 @@ static skg_view make_view(const group *g) {
     return view;
 }
 
-/* What options point to while a plan is made. */
+/* Structs to which options point while a plan is made. */
 typedef struct {
     skg_heel heel;
     skg_bowtie bowtie;
@@ -363,7 +363,7 @@ static int makes_gradient(skg_plan *plan) {
     direction.poses = twists;
     TRY(skg_plan_derivatives(plan, NULL, 1, &direction, DOUBLES(along), NULL));
     for (int p = 0; p < PIXELS; p++) sum += along[p];
-    /* The same hits, added up in another order in single precision. */
+    /* Hits are those of the gradient, added up in another order in single precision. */
     const double error = 1e-4 * (fabs(sum) + fabs(source[0]));
     if (!(fabs(sum - poses[0]) <= error)) return 0;
     for (int k = 0; k < 3; k++) {

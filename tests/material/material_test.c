@@ -10,7 +10,7 @@
 #include <string.h>
 #include <unistd.h>
 
-/* What rounding compositions to six digits changes. */
+/* Error by rounding compositions to six digits. */
 static const double six_digits = 1e-4;
 
 static double mu_of(skg_material *material, double kev) {
@@ -251,7 +251,7 @@ START_TEST(materials_of_practice) {
         ck_assert_double_eq(density_of(m), rows[i].density);
         skg_material_release(&m);
     }
-    /* Those that are formulas agree with them, to the rounding of six digits. */
+    /* Names that have a formula agree with it, to the rounding of six digits. */
     ck_assert_double_eq_tol(mu_rho("PLA", 60) / mu_rho("C3H4O2", 60), 1, six_digits);
     ck_assert_double_eq_tol(mu_rho("PA12", 60) / mu_rho("C12H23NO", 60), 1, six_digits);
     ck_assert_double_eq_tol(mu_rho("PETG", 60) / mu_rho("C1186H1110O400", 60), 1, six_digits);

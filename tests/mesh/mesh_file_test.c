@@ -326,7 +326,7 @@ START_TEST(ply_of_every_kind) {
     ck_assert_mem_eq(mesh->corners, corners, sizeof corners);
     ck_assert_ptr_nonnull(strstr(last_warning, "1 points or lines"));
     skg_mesh_release(&mesh);
-    /* The same as big-endian bytes; 0.5 is 3F000000, 1 is 3F800000. */
+    /* This mesh as big-endian bytes; 0.5 is 3F000000, 1 is 3F800000. */
     static const char header[] = HEADER("binary_big_endian", "float", "2");
     static const char body[] = "\3\1\2\3\1\xF4"
                                "\0\0\0\0\0\0\0\0\0\x3F\0\0\0"

@@ -1,4 +1,4 @@
-/* What mesh files say and their reader passes over is refused by name; what is read right is not. */
+/* Elements of mesh files that their reader passes over are refused by name; others are not. */
 #include "mesh/mesh.h"
 #include "mesh/mesh_files.h"
 #include "mesh/xml_unread.h"
@@ -23,7 +23,7 @@ static const char *gltf_of(const char *file, const char *node, const char *mesh,
     return file_of("a.gltf", text);
 }
 
-/* What concerns looks alone, what is applied, and targets that move nothing are read. */
+/* Extensions of looks alone, applied ones, and targets that move nothing are read. */
 START_TEST(gltf_that_moves_nothing) {
     static const char *const files[][3] = {
         {"\"extensionsRequired\":[\"KHR_materials_unlit\",\"KHR_texture_transform\",\"KHR_draco_mesh_compression\","

@@ -69,7 +69,7 @@ mpi)
     sed 's/"NumberOfPixels": *\[[^]]*\]/"NumberOfPixels": [64, 64]/' "$source/examples/scenes/phantom.json" >small.json
     # Open MPI shall run as root as well, and look for no other machine.
     export OMPI_ALLOW_RUN_AS_ROOT=1 OMPI_ALLOW_RUN_AS_ROOT_CONFIRM=1 OMPI_MCA_plm=isolated
-    # The same numbers, whatever the number of processes.
+    # Equal numbers, whatever the number of processes.
     for processes in 1 2; do
         mpirun --oversubscribe -n $processes ./mpi_scan small.json >projections-$processes.txt
     done

@@ -61,7 +61,7 @@ END
     cmake --build components/build >>components.log
     for program in ./first_image_static components/build/first_image; do
         if ldd $program | grep libskiagraph; then exit 1; fi
-        # It has the self-tests of the device, which no call of it names.
+        # The static program has the self-tests of the device, which no call of it names.
         rm -rf tested
         SKG_CACHE_DIR=$PWD/tested $program
         find tested -name '*.verdict' | grep -q . || { echo "$program did not test its device"; exit 1; }

@@ -56,7 +56,7 @@ for file in live.html _live/widget.js; do # scene.live()
     unzip -l "$given" | grep -q "skiagraph/$file" || { echo "$name has no $file"; exit 1; }
 done
 
-# What pip installs beside it, for Debian 12's Python.
+# Wheels that pip installs beside it, for Debian 12's Python.
 mkdir -p "$stage/wheels"
 run download.log pip download -q -d "$stage/wheels" --only-binary=:all: --python-version 3.11 --implementation cp --abi cp311 \
     --abi abi3 --abi none --platform manylinux2014_x86_64 --platform manylinux_2_28_x86_64 --platform manylinux_2_27_x86_64 \

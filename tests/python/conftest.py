@@ -1,4 +1,5 @@
-"""What the tests of Python share. Those marked `full` run where SKG_FULL is set, as ./check --full does: each says what else proves it."""
+"""Shared code of the tests of Python. Those marked `full` run where SKG_FULL is set, as ./check --full does: each says what else proves
+it."""
 import os
 
 import numpy as np

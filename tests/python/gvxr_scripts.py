@@ -80,7 +80,7 @@ def project_of(path, folder):
 
 
 def scripts_of(folder):
-    """Those that use gVXR and are no modules of others."""
+    """Scripts of a folder that use gVXR and are no modules of others."""
     texts = {path: source_of(path) for path in sorted(folder.rglob("*")) if path.suffix in (".py", ".ipynb") and path.is_file()}
     trees = {path: parsed(text) for path, text in texts.items()}
     modules = {(project_of(path, folder), name) for path, tree in trees.items() if tree for name in imported(tree)}

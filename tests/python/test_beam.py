@@ -18,7 +18,7 @@ def described(distance, spacing, **more):
 
 
 def made(scene):
-    """The same scene, without a file but for its view."""
+    """An equal scene, without a file but for its view."""
     own = sk.Scene()
     own.add("block", sk.Mesh.cube(20), material="H2O")
     own.view = scene.view

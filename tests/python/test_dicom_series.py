@@ -85,7 +85,7 @@ def by_pydicom(folder):
 
 
 def same(folder, reading=scene_of_file):
-    """The same cells in the same place as pydicom has them."""
+    """Our cells of a folder are pydicom's, and in their place."""
     ours, theirs = reading(folder), scene_of(*by_pydicom(folder))
     for key in ("columns", "rows", "slices", "bits", "low", "high", "beyond", "classes"):
         assert ours["ct"].volume[key] == theirs["ct"].volume[key], key

@@ -1,4 +1,4 @@
-"""What an exposure gives: scene.dose()."""
+"""Doses of an exposure: scene.dose()."""
 import numpy as np
 import pytest
 

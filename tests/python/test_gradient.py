@@ -69,7 +69,7 @@ def test_coefficients_make_up_the_density(scene):
 
 @pytest.mark.parametrize("precision", ["double", "single"])
 def test_a_part_of_the_material_around_it_has_a_density(scene, precision):
-    """It adds nothing to the image, but more of it would; a third part inside it, and its own child, count as well."""
+    """Such a part adds nothing to the image, but more of it would; a third part inside it, and its own child, count as well."""
     scene["inner"].material = "water"
     scene.add("core", sk.Mesh.sphere(4, 12), material="Al", inside="inner", pose=sk.translate(5, -3, 2))
     given = weights((24, 32))
@@ -160,7 +160,7 @@ def test_what_is_wrong_is_said(scene):
 
 
 class Tensor:
-    """What image() asks of a tensor, for a machine without PyTorch."""
+    """A tensor as image() asks for it, for a machine without PyTorch."""
 
     def __init__(self, array):
         self.array = array

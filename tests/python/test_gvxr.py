@@ -140,7 +140,7 @@ def test_bounds_of_a_turned_mesh():
 
 
 def test_a_mesh_that_is_loaded_anew(tmp_path):
-    """The same file gives the mesh that is there; one that changed is read."""
+    """An unchanged file gives the mesh that is there; one that changed is read."""
     path = tmp_path / "t.stl"
     sk.Mesh.cube(10).save(path)
     gvxr.loadMeshFile("t", str(path), "mm")  # new: it may change within the clock's step
@@ -332,7 +332,7 @@ def test_the_load_of_a_file(tmp_path):
 
 
 def test_arguments_that_gvxr_takes(tmp_path):
-    """What gVXR 2.1.0 gave for these calls."""
+    """Results of gVXR 2.1.0 for these calls."""
     set_up()
     cube()
     array = np.zeros((24, 32))

@@ -226,7 +226,7 @@ def test_a_data_loader_of_pytorch():
 
 
 def test_a_data_set_opens_its_scene_where_it_is_used():
-    """What a worker of a DataLoader receives: a data set whose scene was not opened yet, and one whose scene was."""
+    """A worker of a DataLoader receives a data set whose scene was not opened yet, and one whose scene was."""
     turned = Turned(2)
     fresh = pickle.dumps(turned)
     expected = [turned[k] for k in range(2)]
@@ -277,7 +277,7 @@ def test_an_interrupt_ends_the_making_of_a_plan(scene):
 
 
 def test_an_interrupt_while_the_thread_of_a_plan_starts(scene, monkeypatch):
-    """It comes before the thread counts as alive; nothing goes on afterwards."""
+    """The interrupt comes before the thread counts as alive; nothing goes on afterwards."""
     wait, pending, log = threading.Event.wait, [True], []
 
     def interrupt(event, timeout=None):

@@ -49,7 +49,7 @@ FILE = {"Source": {"Position": [0, -500, 0, "mm"], "Beam": [{"Energy": 60, "Unit
 
 @pytest.mark.parametrize("key", ["FlipNormals", "InvertNormalVectors", "invert normal"])
 def test_a_changed_mesh_is_not_turned_again(key, tmp_path):
-    """Whatever the key is called: the schema knows the spellings."""
+    """The schema knows all spellings of the key."""
     scene = sk.Scene({**FILE, "Samples": [{"Label": "nut", "Cube": [3, "mm"], "Material": "Fe", key: True, "MoveToCenter": True}]})
     scene["nut"].mesh.vertices = 2 * scene["nut"].mesh.vertices
     again(scene, tmp_path / "scene.json")

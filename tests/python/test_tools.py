@@ -57,7 +57,7 @@ def test_a_fit(command, tmp_path):
 
 
 def test_a_thorax_is_a_scene_in_one_call():
-    """Its files stay for the methods that run the command, until Python ends."""
+    """Files of the thorax stay for the methods that run the command, until Python ends."""
     with sk.thorax(triangles=10000, simple=True) as scene:
         assert "liver" in scene
         image = scene.image(quantity="transmission")

@@ -1,4 +1,4 @@
-"""What is tabulated for the rays or pixels of a plan's view is made anew for another view, or the view is refused."""
+"""Tables for the rays or pixels of a plan's view are made anew for another view, or the view is refused."""
 import numpy as np
 import pytest
 

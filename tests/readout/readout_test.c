@@ -183,7 +183,7 @@ START_TEST(test_signals_come_later) {
         ck_assert_double_eq(frame[1], 0);
         sum += frame[0];
     }
-    /* What is still held is the rest. */
+    /* The rest is the signal that is still held. */
     ck_assert_double_eq_tol(sum, 60 * UNTIL, 60 * (0.01 / (1 - exp(-1.0 / 12))) * exp(-19.0 / 12));
     /* After a long exposure the first frame shows the sum of the shares; a steady one is shown as it is. */
     for (int n = 0; n < 400; n++) ck_skg(skg_lag_apply(lag, SKG_TYPE_FLOAT64, light, 1, frame));

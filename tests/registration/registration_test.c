@@ -131,7 +131,7 @@ static void add_image(skg_registration *r, const skg_view *view, const double *v
 /* A square of pixels near the body that attenuates more in the first radiograph than the scene does. */
 enum { LUMP = 7, LUMP_ROW = 62, LUMP_COLUMN = 66 };
 
-/* What each test changes of the usual run: two views, from a start some mm and degrees off. */
+/* Changes of a test to the usual run: two views, from a start some mm and degrees off. */
 typedef struct {
     int views, noise, of_cells, other;
     double shift, turn, lump;
@@ -250,7 +250,7 @@ START_TEST(a_body_in_a_volume_of_cells_is_found) {
 }
 END_TEST
 
-/* What holds the body, what is light, and the body's own contrast have gains. */
+/* The parts around the body, light parts, and the body's own contrast have gains. */
 START_TEST(other_densities_are_found) {
     run_of one = usual();
     one.other = 1;
@@ -268,7 +268,7 @@ START_TEST(other_densities_are_found) {
 }
 END_TEST
 
-/* What the scene lacks is shown where it is, and noise is not. */
+/* Structure that the scene lacks is shown where it is, and noise is not. */
 START_TEST(structure_is_shown_where_it_is) {
     static double picture[PIXELS];
     for (int lumps = 0; lumps < 2; lumps++) {

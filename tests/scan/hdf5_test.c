@@ -1,4 +1,4 @@
-/* What an .h5 holds, as HDF5's own library reads it: Data Exchange, geometry, progress. */
+/* Contents of an .h5, as HDF5's own library reads it: Data Exchange, geometry, progress. */
 #include "suite.h"
 #include "support/run.h"
 

@@ -247,7 +247,7 @@ START_TEST(one_writer_within_a_process) {
 }
 END_TEST
 
-/* What a killed writer left goes when the next one has the lock; files of other names stay. */
+/* Files that a killed writer left go when the next one has the lock; files of other names stay. */
 START_TEST(leftovers_are_removed) {
     static const struct {
         const char *scan, *left;

@@ -1,4 +1,4 @@
-/* What scatter refuses or warns of, and what it says. */
+/* Errors and warnings of scatter, and their sentences. */
 #include "subject.h"
 #include "suite.h"
 

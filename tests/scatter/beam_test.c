@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* What changes the beam. */
+/* Objects that change the beam. */
 typedef struct {
     skg_heel heel;
     skg_bowtie bowtie;
@@ -23,7 +23,7 @@ enum { COMBINATIONS = sizeof combinations / sizeof *combinations };
 /* mm. Shares change by less than 0.3 % over the sphere. */
 static const double RADIUS = 0.2, WORLD_RADIUS = 2;
 
-/* The same photons are emitted with an effect and without, but not the same are given up for their low weight: noise of .1 % at most. */
+/* Photons are emitted alike with an effect and without, but others are given up for their low weight: noise of .1 % at most. */
 enum { HISTORIES = 1 << 16 };
 static const double NOISE = 4e-3;
 
@@ -105,7 +105,7 @@ static double share_of_primary(const effects *e, int which, double kev, const do
     return values[1] / values[0];
 }
 
-/* The same histories with and without an effect: those of a small sphere differ by the share of its direction. */
+/* Equal histories with and without an effect: those of a small sphere differ by the share of its direction. */
 START_TEST(emitted_photons_have_the_share_of_their_direction) {
     static const double places[][2] = {{2.5, 2.5}, {-92.5, 12.5}, {87.5, -62.5}, {12.5, 67.5}};
     static const double energies[] = {60, 30, 95};

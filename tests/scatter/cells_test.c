@@ -260,7 +260,7 @@ START_TEST(columns_are_path_lengths_of_images) {
                                     x * SKG_CELL_COLUMNS + c % SKG_CELL_COLUMNS];
             worst = fmax(worst, fabs(sum - expected / (SKG_CELL_COLUMNS * SKG_CELL_COLUMNS)));
         }
-    /* What docs/numerics.md gives for single precision: 3e-5 of the longest path of 40 mm, more at silhouettes. */
+    /* The bar of docs/numerics.md for single precision: 3e-5 of the longest path of 40 mm, more at silhouettes. */
     ck_assert_double_le(worst, 10 * 3e-5 * 40);
     free(lengths);
     skg_cells_free(&cells);
@@ -317,7 +317,7 @@ START_TEST(thin_parts_in_a_room_have_their_lengths) {
     const double from[3] = {100, 0, 30}, to[3] = {100 + 60, 0, 30 + 80};
     double mm[SKG_SCATTER_RANK];
     along(&cells, from, to, mm);
-    /* The same floats */
+    /* Faces are floats, as above: 6e-5 mm in a metre, here of half the foil. */
     ck_assert_double_eq_tol(mm[0] / (10 * 0.025), 1, 5e-3);
     skg_cells_free(&cells);
     drop(&s);

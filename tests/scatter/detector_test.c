@@ -1,4 +1,4 @@
-/* What detectors make of scattered photons, whose energy and slope are known behind a small sphere: oblique scintillators, bands of
+/* Response of detectors to scattered photons, whose energy and slope are known behind a small sphere: oblique scintillators, bands of
  * energy, blur by depths, a DQE. */
 #include "subject.h"
 #include "suite.h"
@@ -76,7 +76,7 @@ static skg_response *scintillator(int escapes) {
     return response;
 }
 
-/* What is recorded of a photon on an oblique way over that of a straight one, on average over the detector. */
+/* Recorded signal of photons that cross the layer obliquely over that of straight ones, on average over the detector. */
 static double oblique_gain(const skg_response *response, double aside, int changed) {
     double gain = 0;
     for (int i = 0; i < PIXELS; i++) {
@@ -186,7 +186,7 @@ START_TEST(bands_add_up) {
             take_bands(&s, 4, edges, image);
             for (int64_t i = 0; i < 4 * count; i++) sums[1] += (double)image[i];
             const skg_scatter_report report = subject_report(&s);
-            /* The same histories; a cosine may swing below 0 where little arrives, and is cut there: 1e-4. */
+            /* Equal histories; a cosine may swing below 0 where little arrives, and is cut there: 1e-4. */
             ck_assert_double_eq_tol(sums[1] / sums[0], 1, 1e-4);
             ck_assert_double_eq_tol(4 * report.mean / whole.mean, 1, 1e-4);
             ck_assert_double_eq_tol(report.orders[0], whole.orders[0],

@@ -27,7 +27,7 @@ static double per_mm(skg_material *material, double kev) {
     return per_cm / 10;
 }
 
-/* What the order of invented molecules leaves of the F^2 of free atoms: little straight on, and more than all on a ring at .15/Angstrom. */
+/* Ratio of F^2 of invented molecules to that of free atoms, by their order: little straight on, and more than 1 on a ring at .15/Angstrom. */
 static double order_of(double x) {
     return 1 - exp(-pow(x / 0.08, 2)) + 2 * exp(-pow((x - 0.15) / 0.02, 2));
 }
@@ -232,7 +232,7 @@ START_TEST(a_small_sphere_scatters_aside) {
 }
 END_TEST
 
-/* The same with form factors of molecules; photons of .15/Angstrom arrive 7 mm beside those that go straight on. */
+/* Likewise with form factors of molecules; photons of .15/Angstrom arrive 7 mm beside those that go straight on. */
 START_TEST(molecules_scatter_as_their_form_factors_say) {
     compare(0, 1 << 17, 1e-2, 1);
 }

@@ -38,7 +38,7 @@ static double arriving_at(double cosine, double mu, double left) {
     return exp(-mu * left / cosine) * meeting((GAP + left) * sqrt(1 - cosine * cosine) / cosine);
 }
 
-/* That of photons in all directions. */
+/* The mean over photons in all directions. */
 static double arriving(double mu, double left) {
     enum { POLAR = 200 };
     double sum = 0;
@@ -94,7 +94,7 @@ static subject open_sheet(const char *name, double mm, double kev) {
     return s;
 }
 
-/* What one interaction sends through the sheet, keV per photon of the beam. */
+/* Energy that first interactions send through the sheet, keV per photon of the beam. */
 static double found(const char *name, double mm, double kev, int32_t fluorescence) {
     subject s = open_sheet(name, mm, kev);
     s.scatter.fluorescence = fluorescence;

@@ -151,7 +151,7 @@ static double emit(hall *h, double from[3], double way[3], double *stands) {
     return r->kev[bin];
 }
 
-/* What an interaction sends to a random place of the detector, in expectation. */
+/* Scores the expected contribution of an interaction to a random place of the detector. */
 static void expect(hall *h, const double at[3], const double way[3], const matter *m, double kev,
                    double weight) {
     const room *r = h->room;

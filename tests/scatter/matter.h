@@ -1,4 +1,4 @@
-/* What a material does to photons, in tables that are even in energy and in the root of the momentum transfer. */
+/* Interactions of photons in a material, in tables that are even in energy and in the root of the momentum transfer. */
 #ifndef SKG_TESTS_SCATTER_MATTER_H
 #define SKG_TESTS_SCATTER_MATTER_H
 

@@ -1,4 +1,4 @@
-/* What photons meet: attenuation, angles and mixtures against the materials themselves. */
+/* Physics of interactions: attenuation, angles and mixtures against the materials themselves. */
 #include "scatter/interactions.h"
 
 #include "material/scattering.h"
@@ -91,7 +91,7 @@ static void compare_with_materials(int64_t count, const char *const *names) {
             const double expected[] = {exact, density * c.compton, density * c.rayleigh};
             for (int f = 0; f < 3 && !near_edge(kev); f++) {
                 const double found = at_energy(&s, m, table[f], kev);
-                /* What interactions.h promises of interpolation. */
+                /* Error of the interpolation that interactions.h promises. */
                 ck_assert_msg(fabs(found / expected[f] - 1) <= 2e-4, "%s, function %d at %g keV: %.2e",
                               names[m], f, kev, found / expected[f] - 1);
             }
@@ -329,7 +329,7 @@ START_TEST(without_materials_there_are_zeros) {
 }
 END_TEST
 
-/* What annihilation emits is two photons for each pair, whatever the materials beside it. */
+/* Annihilation emits two photons for each pair, whatever the materials beside it. */
 START_TEST(pairs_emit_two_photons_each) {
     static const char *const names[] = {"Water, Liquid", "Pb", "Al", "Bone, Cortical (ICRU-44)", "Fe"};
     skg_material *list[5];

@@ -4,7 +4,7 @@
 
 #include <math.h>
 
-/* What is promised: 15 %. */
+/* Promised error of a prediction: 15 %. */
 static const double PROMISED = 0.15;
 
 static skg_scatter_prediction predict(subject *s) {

@@ -72,7 +72,7 @@ START_TEST(components_add_up) {
 }
 END_TEST
 
-/* What frames of an option are, with and without scatter. */
+/* Checks that the image of a quantity is primary plus scatter. */
 static void subtract(int32_t quantity, int32_t falloff) {
     subject s;
     subject_open(&s);
@@ -322,7 +322,7 @@ START_TEST(overrides_are_other_materials) {
         ck_skg(skg_material_create_at_density(full, 0.5, &material));
         ck_skg(skg_scene_part_material_set(thin.scene, 0, material));
         pictures q = take(&thin);
-        /* The same cells in other roundings. A history ends up elsewhere where a rounding decides: one of 4,096 in 2 million. */
+        /* Equal cells in other roundings. A history ends up elsewhere where a rounding decides: one of 4,096 in 2 million. */
         ck_assert_double_eq_tol(subject_sum(&s, p.scatter) / subject_sum(&s, q.scatter), 1, 1e-3);
         pictures_free(&p);
         pictures_free(&q);

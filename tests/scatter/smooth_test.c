@@ -146,7 +146,7 @@ START_TEST(a_noisy_cosine_is_left_out) {
             skg_cosines_free(&c);
             drop(&s);
         }
-    /* Its noise is a square of .25 / 32 times a quarter of 480 places. */
+    /* Noise that is kept is a square of .25 / 32 times a quarter of 480 places. */
     ck_assert_double_le(kept, 0.01 * 0.25 / 32 * 120);
     ck_assert_double_le(with, 1.05 * without);
 }

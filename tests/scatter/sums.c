@@ -1,4 +1,4 @@
-/* What arrived in the last frame before it is smoothed: sums by batch, kind and place. */
+/* Reads the sums of the last frame before they are smoothed: by batch, kind and place. */
 #include "sums.h"
 
 #include "frame/plans.h"

@@ -1,4 +1,4 @@
-/* What arrived in the last frame before it is smoothed: sums by batch, kind and place. */
+/* Reads the sums of the last frame before they are smoothed: by batch, kind and place. */
 #ifndef SKG_TESTS_SCATTER_SUMS_H
 #define SKG_TESTS_SCATTER_SUMS_H
 
@@ -11,7 +11,7 @@ enum { SUMS_BATCHES = 32, SUMS_KINDS = 6, SUMS_PLANES = 7 };
 /* sums: [SUMS_BATCHES][SUMS_PLANES][places] of a plan of one channel */
 skg_status sums_read(skg_context *context, const skg_plan *plan, int64_t *sums);
 
-/* What the layers and channels of the last image got. means: [layers][channels][rows][columns], count in all */
+/* Reads the images of the layers and channels of the last image. means: [layers][channels][rows][columns], count in all */
 skg_status staged_read(skg_context *context, const skg_plan *plan, int64_t count, float *means);
 
 #endif

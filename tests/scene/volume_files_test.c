@@ -19,7 +19,7 @@ static void source_of(skg_volume_source *source, const void *cells, int32_t type
     source->cells = cells, source->type = type, source->values = values;
 }
 
-/* What noise leaves below 0 in a reconstruction counts as 0, and a sentence says of how many cells. values: those of the source */
+/* Values below 0 by the noise of a reconstruction count as 0, and a sentence says of how many cells. values: those of the source */
 static void noise_below_zero(const skg_volume_source *source, double *values) {
     skg_volume *noisy = NULL, *clean = NULL;
     skg_volume_contents of_noisy, of_clean;
@@ -138,7 +138,7 @@ START_TEST(files_say_where_cells_are) {
 }
 END_TEST
 
-/* The same cells and place in NRRD, raw and, as another program has written it, by gzip. */
+/* One volume in NRRD, raw and, as another program has written it, by gzip. */
 START_TEST(nrrd_files_are_read) {
     static const unsigned char zipped[] = {
         31,  139, 8,   0,   0,   0,   0,   0,   2,   3,   1,  48, 0,   207, 255, 24,  252, 44,

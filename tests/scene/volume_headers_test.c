@@ -125,7 +125,7 @@ START_TEST(headers_are_not_passed_over) {
 }
 END_TEST
 
-/* What the caller names wins over the file, and whatever is taken for what the file does not say is told. */
+/* The caller's words win over the file, and each assumption for a value that the file lacks is told. */
 START_TEST(what_was_taken_is_told) {
     static const struct {
         const char *name, *header;

@@ -405,7 +405,7 @@ START_TEST(a_device_that_failed_is_refused) {
 END_TEST
 
 #ifdef SKG_COMMAND
-/* What the command prints about devices, if the only one that it may choose is refused. */
+/* Output of the command about devices, if the only one that it may choose is refused. */
 static void list_devices(const char *flags, char *said, size_t size) {
     char line[512];
     snprintf(line, sizeof line, "%s devices --device 0:0 %s 2>/dev/null", SKG_COMMAND, flags);
@@ -476,7 +476,8 @@ START_TEST(wrong_kernels_are_refused_when_they_are_needed) {
 }
 END_TEST
 
-/* What is linear between cells has a program of its own, and so have derivatives beside cells: plans without do not wait for their tests. */
+/* Linear values between cells have a program of their own, and so have derivatives beside cells: plans without do not wait for their
+ * tests. */
 START_TEST(kernels_of_volumes_are_refused_when_they_are_needed) {
     skg_context *context = NULL;
     ck_skg(skg_context_create("device=0:0", &context));

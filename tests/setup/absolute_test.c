@@ -172,7 +172,7 @@ START_TEST(photons_follow_the_view) {
 }
 END_TEST
 
-/* The same deviates on means and variances that are rounded otherwise. Tens of photons to thousands arrive in a pixel, so that
+/* Equal deviates on means and variances that are rounded otherwise. Tens of photons to thousands arrive in a pixel, so that
  * both ways of drawing them are taken; a photon more where a deviate lies on the edge of a count would be 1 in some tens. */
 START_TEST(noise_follows_the_view) {
     check_move(SKG_QUANTITY_ENERGY, 1, SKG_FALLOFF_AUTO, 1e-4);

@@ -1,4 +1,4 @@
-/* What scene files in use have, and is forgiven with a warning: always, or where a file is read leniently. */
+/* Faults of scene files in use that are forgiven with a warning: always, or where a file is read leniently. */
 #include "core/maths.h"
 #include "scene/scene.h"
 #include "setup/setup_files.h"
@@ -223,7 +223,7 @@ START_TEST(a_scene_graph_of_one_file) {
 }
 END_TEST
 
-/* What is an error becomes a warning. What stays an error: wrong types, missing files, geometry. */
+/* Errors that become warnings. Wrong types, missing files and geometry stay errors. */
 START_TEST(lenient_reading) {
     static const struct {
         const char *from, *to, *says;

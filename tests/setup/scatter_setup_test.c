@@ -104,7 +104,7 @@ START_TEST(refused) {
 }
 END_TEST
 
-/* It is kept without the key Scatter, too: flags and programs may ask for scatter later. */
+/* WorldScatter is kept without the key Scatter, too: flags and programs may ask for scatter later. */
 START_TEST(the_world_may_be_left_out) {
     static const char *const settings[] = {"Tolerance=0", "WorldScatter=true", "WorldScatter=false"};
     for (int i = 0; i < 3; i++) {

@@ -56,7 +56,7 @@ START_TEST(settings_apply_to_a_text) {
 }
 END_TEST
 
-/* What a program writes of a scene it changed: the text, steps of the detector and bins as they are. */
+/* A text that a program changed is read again, with steps of the detector and bins as they are. */
 START_TEST(a_text_goes_around) {
     const char *const settings[] = {
         ("Detector={\"Position\": [1, 2, 30, \"cm\"], \"NumberOfPixels\": [8, 4], \"ColumnStep\": [0.1, 0.30000000000000004, "

@@ -12,7 +12,7 @@ static const skg_contribution writes[] = {{0, 2, 0},  {1, 1, 0},    {0, -2, 0}, 
                                           {0, -2, 0}, {2, 0.25, 0}, {0, -1, 0}};
 static const int64_t firsts[PARTS + 1] = {0, 1, 3, 5, 7, 9, 11, 11};
 
-/* What the contributions add is what their lists say. */
+/* Mixed contributions add up to those of their lists. */
 static void ck_same(const skg_mix *mix) {
     for (int64_t p = 0; p < PARTS; p++) {
         double given[PLANES] = {0}, mixed[PLANES] = {0};

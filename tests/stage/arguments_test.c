@@ -31,7 +31,7 @@ enum { KERNELS = sizeof lists / sizeof *lists };
 
 #define NAMES "-cl-kernel-arg-info"
 
-/* What has to be compiled for them to be there, with all arguments. */
+/* Sources and flags that are compiled to have these kernels, with all arguments. */
 static const struct {
     const char *files[FILES_MAX];
     const char *flags;

@@ -76,7 +76,7 @@ static void order_around(polygon *f, const double *out) {
         }
 }
 
-/* What lies before the plane (way 1) or behind it (-1). 0: too many faces. */
+/* Cuts a body at the plane and keeps the side before it (way 1) or behind it (-1). 0: too many faces. */
 static int keep(const convex *from, const plane *p, double way, convex *to) {
     polygon cap = {0};
     to->count = 0;
@@ -370,7 +370,7 @@ static double off(const cut_scene *s, caster **casters, double column, double ro
     enum { RAYS = 40 };
     double low = exponent(s, casters, column, row), high = low;
     for (int k = 0; k < RAYS; k++) {
-        /* Those beside the rows and columns are for cuts that are nearly rows or columns. */
+        /* Angles beside the rows and columns are for cuts that are nearly rows or columns. */
         const double angle = k < 32 ? k * 0.19635 : 1.5708 * (k % 4) + (k < 36 ? 0.004 : -0.004);
         const double sum = exponent(s, casters, column + shift * cos(angle), row + shift * sin(angle));
         low = fmin(low, sum), high = fmax(high, sum);

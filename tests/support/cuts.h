@@ -40,7 +40,7 @@ typedef struct {
 cut_scene *cut_make(uint64_t number, int64_t size, int most);
 void cut_free(cut_scene *s);
 
-/* Its parts as those of a scene, to be released. */
+/* Makes a scene of the parts of the cut scene, to be released. */
 skg_status cut_scene_create(skg_context *context, const cut_scene *s, skg_scene **scene);
 
 /* Pixels of an image of exponents that are wrong: further than `bar` of the largest exponent from those of rays shifted by up

@@ -1,4 +1,4 @@
-/* What tests of the public interface share: a device, plans of a few lines, images and their bits. */
+/* Shared code of tests of the public interface: a device, plans of a few lines, images and their bits. */
 #include "support/run.h"
 
 #include "suite.h"

@@ -1,5 +1,4 @@
-/* What tests of the public interface share: a device, plans of a few lines, images and their bits. A failing
- * call ends the test. */
+/* Shared code of tests of the public interface: a device, plans of a few lines, images and their bits. A failing call ends the test. */
 #ifndef SKG_TESTS_RUN_H
 #define SKG_TESTS_RUN_H
 
@@ -25,7 +24,7 @@ int64_t run_part(skg_scene *scene, const char *label, skg_mesh *mesh, double mu,
 /* A scene of one part with 1 per cm. */
 skg_scene *run_scene(const solid *s, const double *pose);
 
-/* What tests choose; all zero: single precision, everything else as the plan thinks. */
+/* Choices of tests; all zero: single precision, everything else as the plan thinks. */
 typedef struct {
     int32_t precision, strategy, tile, quantity;
 } run_choice;
@@ -37,7 +36,7 @@ skg_plan *run_plan(skg_scene *scene, const skg_view *view, run_choice choice);
  * for double, handed out as doubles [rows][columns]; to be freed. */
 double *run_lengths(skg_plan *plan, const skg_view *view);
 
-/* The same by a plan of its own for a solid. */
+/* Path lengths of a solid by a plan of its own. */
 double *run_solid(const solid *s, const double *pose, const skg_view *view, run_choice choice);
 
 /* The image as it stands, in doubles [rows][columns]; to be freed. */

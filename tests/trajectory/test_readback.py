@@ -1,4 +1,4 @@
-"""What `scan --geometry` writes, read by RTK (itk-rtk) and ASTRA (astra-toolbox), and run for TIGRE and CIL. Skipped without
+"""Files of `scan --geometry`, read by RTK (itk-rtk) and ASTRA (astra-toolbox), and run for TIGRE and CIL. Skipped without
 both of the former.
 
 Usage: test_readback.py SKIAGRAPH

@@ -6,7 +6,7 @@ A mesh from a file, a material, a tube, and the picture. The mesh is a gyroid la
 import skiagraph as sk
 from figure import pixel_at, row, show
 
-# It stands for the file that you have.
+# A lattice stands for the file that you have.
 sk.Mesh.gyroid((30, 30, 30), 10, level=0.45).save("lattice.stl")
 
 # %%

@@ -20,7 +20,7 @@ scene.add("needle", sk.Mesh.cylinder(0.8, 80, 32), material="Fe", inside="liver"
 scene.view = sk.View(source=(0, 0, -900), detector=(0, 0, 300),
                      column_step=(0.7, 0, 0), row_step=(0, 0.7, 0), pixels=(240, 240))
 scene.beam = sk.Beam.tube(90, filters={"Al": 3})
-# Its axis in the image is 55 degrees from y.
+# The needle's axis in the image is 55 degrees from y.
 across = np.r_[np.sin(np.radians(35)), np.cos(np.radians(35)), 0]
 change = scene.derivative({"poses": {"needle": np.r_[across, 0, 0, 0]}},
                           quantity="attenuation", supersampling=4)

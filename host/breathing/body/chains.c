@@ -39,8 +39,7 @@ static void point_on(const skg_body *body, const skg_link *link, double p[3]) {
         skg_add_scaled(p, link->weight[c], body->organ[link->organ].rest + 3 * (int64_t)link->corner[c], p);
 }
 
-/* What a chain is made of. A vertex that hangs has one more link, to a node of its own at the other organ, which is
- * driven. */
+/* Nodes and links of a chain to be made. A vertex that hangs has one more link, to a node of its own at the other organ, which is driven. */
 typedef struct {
     int64_t nodes, links;
     double *rest;

@@ -37,7 +37,7 @@ static void across(const double along[3], double first[3], double second[3]) {
     skg_scale_vector(1 / skg_length(second), second, second);
 }
 
-/* What the fit is made of: along the tendon's motion, and two directions across it. */
+/* Axes of the fit of the liver's shear: along the tendon's motion, and two directions across it. */
 typedef struct {
     double along[3], axis[2][3], top, mean[3];
 } liver_frame;

@@ -18,7 +18,7 @@ int skg_corotates(const skg_body *body, const skg_body_organ *organ);
 /* The rigid motion nearest to that of the drivers; 0: no driver moves. */
 int skg_corotate_motion(const skg_body_organ *organ, skg_rigid *motion);
 
-/* What a displacement u of the point `rest` has beyond the rigid motion, in axes that turn with it; and back. */
+/* Takes the rigid motion off a displacement u of the point `rest`, in axes that turn with it; and adds it again. */
 void skg_corotate_remove(const skg_rigid *motion, const double rest[3], const double u[3], double v[3]);
 void skg_corotate_restore(const skg_rigid *motion, const double rest[3], const double v[3], double u[3]);
 

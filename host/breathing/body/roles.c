@@ -1,4 +1,4 @@
-/* What an organ does in the breath, by its label and tissue. */
+/* Roles of organs in the breath, by label and tissue. */
 #include "body/types.h"
 
 #include "core/text.h"

@@ -82,8 +82,8 @@ static skg_status find_base(const skg_body *body, skg_body_organ *o) {
     return SKG_OK;
 }
 
-/* What lies on the diaphragm goes with it: the less the higher, and at the top of the lungs not at all. Lungs, their
- * vessels and the heart do so alike, so that they stay beside each other. */
+/* Organs on the diaphragm move with it: their share falls with the height above it, and is 0 at the top of the lungs. Lungs, their vessels
+ * and the heart do so alike, so that they stay beside each other. */
 static void share_over_diaphragm(const skg_body *body, skg_body_organ *o) {
     const skg_body_organ *d = diaphragm_of(body);
     const double touching = 8; /* mm; the base goes with the diaphragm as a whole */

@@ -1,4 +1,4 @@
-/* What a body holds, and the roles that labels give to organs. Private. */
+/* State of a body, and the roles that labels give to organs. Private. */
 #ifndef SKG_BODY_TYPES_H
 #define SKG_BODY_TYPES_H
 
@@ -31,7 +31,7 @@ skg_role skg_role_of(const char *label, int *number, int *side);
 /* The tissue of a deformable organ with this label. */
 skg_tissue skg_tissue_of(const char *label);
 
-/* The same of an organ that follows ribs and dome together. */
+/* The tissue of a deformable organ that follows ribs and dome together. */
 skg_tissue skg_coupled_tissue_of(const char *label);
 
 /* Whether a label begins with a word, without regard to case, and no letter follows. */
@@ -73,8 +73,8 @@ typedef struct {
     int32_t corner[3], reserved;
 } skg_base;
 
-/* What organs of single kinds need beside the common part. A struct each and no union: an organ may be of two kinds, as the vessels of
- * the liver, which are carried and follow ribs and dome. */
+/* --- Members that organs of single kinds need beside the common part. A struct each and no union: an organ may be of two kinds, as the
+ * vessels of the liver, which are carried and follow ribs and dome. */
 
 /* Rigid organs: how they turn. */
 typedef struct {
@@ -110,8 +110,8 @@ typedef struct {
     double *course;  /* per vertex: displacement with the tendon at weight 1, mm */
     int32_t *bone;   /* per vertex: BONES bones; NULL: none */
     double *bone_weight; /* their weights */
-    /* What share, course and bone_weight are made of, as the meshes lie: options that change find only these three again. Of the
-     * diaphragm, way is the distance of each vertex from the rim, mm, or its share where the plane is given. */
+    /* Distances and weights from which share, course and bone_weight are found, as the meshes lie: options that change find only these
+     * three again. Of the diaphragm, way is the distance of each vertex from the rim, mm, or its share where the plane is given. */
     double *way;
     double farthest;   /* the greatest of them */
     skg_base *base;    /* per vertex of what lies over the diaphragm */

@@ -15,13 +15,13 @@ enum { PURPOSE_STEP = 1, PURPOSE_RESTART };
 /* The first standard deviation, as a share of the box; Hansen advises 0.3. */
 static const double FIRST_SIGMA = 0.3;
 
-/* The same of a restart near the best point: a few degrees of a plane (a choice). */
+/* The standard deviation after a restart near the best point, likewise: a few degrees of a plane (a choice). */
 static const double NEAR_SIGMA = 0.05;
 
 /* Values of the last generations that tell whether the search still gains. */
 enum { HISTORY = 64 };
 
-/* What `own` holds. memory: of the model. */
+/* Layout of the numbers of skg_search.own. memory: of the model. */
 typedef struct {
     double *mean, *path_c, *path_sigma, *covariance, *axes, *lengths, *history, *record, *sigma, *memory;
 } state;

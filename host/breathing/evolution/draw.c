@@ -5,7 +5,7 @@
 
 #include <math.h>
 
-/* What random.clh takes from OpenCL C. */
+/* Names of OpenCL C that random.clh uses. */
 #define uint uint32_t
 
 static uint32_t upper_half(uint32_t a, uint32_t b) {

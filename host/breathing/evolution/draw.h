@@ -4,7 +4,7 @@
 
 #include <stdint.h>
 
-/* What a number is for. The same five values always give the same number, whatever was drawn before and by whichever
+/* Key of a random number. The same five values always give the same number, whatever was drawn before and by whichever
  * thread. */
 typedef struct {
     int64_t seed, generation;

@@ -20,7 +20,7 @@ static skg_status add_mesh(const skg_mesh *mesh, skg_digester *sum) {
     return status;
 }
 
-/* What a checkpoint belongs to: scene, targets, parameters with their ranges, method and seed. */
+/* Digest of the problem of a checkpoint: scene, targets, parameters with their ranges, method and seed. */
 static skg_status identify(const skg_fit *fit, char text[SKG_DIGEST_TEXT]) {
     skg_digester sum;
     skg_digest_start(&sum);

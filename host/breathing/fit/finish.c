@@ -1,4 +1,4 @@
-/* What is known after the search: distances before and after, and how well the targets determine the parameters. */
+/* Results after the search: distances before and after, and how well the targets determine the parameters. */
 #include "core/maths.h"
 #include "core/text.h"
 #include "fit/types.h"

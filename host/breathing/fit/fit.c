@@ -52,7 +52,7 @@ static skg_status take_choice(skg_fit *fit, const int32_t *chosen) {
     return SKG_OK;
 }
 
-/* What the scene's key Fit says. */
+/* Applies the scene's key Fit: the chosen parameters and their ranges. */
 static skg_status take_section(skg_fit *fit) {
     const skg_body_fit_section *said = &fit->setup->breathing.fit;
     for (int p = 0; p < BODY_PARAMETERS; p++) {

@@ -1,4 +1,4 @@
-/* What a fit holds: parameters of a body, bodies posed with them and compared with the targets. Private. */
+/* State of a fit: parameters of a body, bodies posed with them and compared with the targets. Private. */
 #ifndef SKG_FIT_TYPES_H
 #define SKG_FIT_TYPES_H
 

@@ -88,7 +88,7 @@ double skg_vessel_distance(const skg_vessel vessels[VESSELS], const double point
 /* Distance in mm to the walls of trachea and main bronchi; < 0 inside. simple: as in the plan. */
 double skg_airway_distance(int simple, const double point[3]);
 
-/* What all parts are made from. */
+/* Common data from which all parts are made. */
 typedef struct {
     int simple;                 /* 1: the simple thorax */
     double resolution;          /* lengths of edges go with 1/resolution */

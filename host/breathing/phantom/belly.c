@@ -41,7 +41,7 @@ static double to_kidneys(const double p[3], double larger) {
                 skg_ellipsoid_inside(kidneys + 1, p, perirenal + larger));
 }
 
-/* The same with room for organs that go down with the diaphragm by more, or by less, than the kidneys do. */
+/* Distance to the kidneys with a margin for organs that go down with the diaphragm by more, or by less, than the kidneys do. */
 static double clear_of_kidneys(const double p[3], double larger) {
     const double way = 6; /* mm; 0.35 of 15 mm, and a little */
     const double lower[3] = {p[0], p[1], p[2] - way}, upper[3] = {p[0], p[1], p[2] + way};

@@ -51,7 +51,7 @@ skg_status skg_thorax_ducts(const skg_thorax_plan *plan, int64_t liver, int64_t 
 skg_status skg_thorax_skin(const skg_thorax_plan *plan, skg_thorax *thorax);
 skg_status skg_thorax_needle(skg_thorax *thorax);
 
-/* What makes the organs under the diaphragm. */
+/* --- Organs under the diaphragm. */
 
 /* <= 0 in the region of all organs of the belly: a gap under the diaphragm, within its rim, and clear of the spine; by
  * `wall` mm more than the gap. No distance. */

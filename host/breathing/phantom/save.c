@@ -98,7 +98,7 @@ static skg_status save_file(const skg_thorax *thorax, int64_t part, const char *
     return SKG_OK;
 }
 
-/* What cannot be written whole leaves none of its files, but for those that took the place of older ones. */
+/* A save that fails removes its files, except those that replaced older ones. */
 skg_status skg_thorax_save(const skg_thorax *thorax, const char *folder) {
     SKG_PLAIN;
     SKG_NEEDS(thorax);

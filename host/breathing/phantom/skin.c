@@ -13,7 +13,7 @@ static const outline_row simple_outline[] = {
     {60, 168, -156, 78},   {110, 178, -140, 74},  {145, 186, -126, 64},  {168, 178, -112, 50},
     {184, 140, -104, 36},  {198, 84, -98, 26},    {212, 64, -94, 20},    {240, 60, -92, 18}};
 
-/* The same with the shoulders' slope, and deep enough for the shoulder blades. */
+/* Outline of the full thorax, with the shoulders' slope, and deep enough for the shoulder blades. */
 static const outline_row full_outline[] = {
     {-300, 158, -150, 62}, {-200, 158, -157, 66}, {-100, 159, -163, 70}, {-50, 161, -163, 73},
     {0, 165, -160, 77},    {60, 174, -143, 81},   {110, 191, -133, 81},  {145, 201, -131, 73},

@@ -1,5 +1,5 @@
-/* What is made of a scene that moves: outlines, meshes, a table, a contact sheet, a film.
- * Functions that return int return an exit status and print the error. */
+/* Outputs of a scene that moves: outlines, meshes, a table, a contact sheet, a film. Functions that return int return an exit status and
+ * print the error. */
 #ifndef CLI_BREATHE_OUTPUTS_H
 #define CLI_BREATHE_OUTPUTS_H
 

@@ -3,7 +3,7 @@
 
 #include <string.h>
 
-/* What a cell of a formula begins with, and what spreadsheets pass over before it. */
+/* Whether a spreadsheet would take the text for a formula: it skips blanks before the first character. */
 static int is_formula(const char *text) {
     text += strspn(text, " \t\r\n");
     return *text && strchr("=+-@|", *text);

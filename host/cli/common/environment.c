@@ -1,4 +1,4 @@
-/* What PoCL reads from the environment. */
+/* Sets the environment variables that PoCL reads. */
 #define _XOPEN_SOURCE 700 /* nftw */
 #include "common/environment.h"
 

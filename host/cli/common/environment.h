@@ -1,4 +1,4 @@
-/* What PoCL reads from the environment. The library never changes the environment; the command is a process
+/* Sets the environment variables that PoCL reads. The library never changes the environment; the command is a process
  * of its own and may. */
 #ifndef SKG_CLI_ENVIRONMENT_H
 #define SKG_CLI_ENVIRONMENT_H

@@ -25,7 +25,7 @@ int cli_stop_asked(void);
 /* Ends the process by the signal that asked the computation to stop, so that its parent learns of it. */
 void cli_end_by_signal(void);
 
-/* What the handler says after "skiagraph: interrupted; ": the files that are kept. Until the first call: "no output was
+/* Sets the text that the handler prints after "skiagraph: interrupted; ": the files that are kept. Until the first call: "no output was
  * written". */
 void cli_keep(const char *format, ...) __attribute__((format(printf, 1, 2)));
 

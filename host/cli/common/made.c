@@ -1,4 +1,4 @@
-/* What a command has made of an output that it could not finish: files and folders that were not there before. */
+/* Removes the files and folders of an output that the command could not finish, if they were not there before. */
 #include "common/made.h"
 
 #include <stdlib.h>

@@ -1,4 +1,4 @@
-/* What a command has made of an output that it could not finish. */
+/* Removes an output that the command could not finish. */
 #ifndef SKG_CLI_MADE_H
 #define SKG_CLI_MADE_H
 

@@ -10,7 +10,7 @@
 /* First word of the child's command line. Not for users, and in no manual. */
 #define CLI_PROBE_WORD "(probe)"
 
-/* What the child says. */
+/* Kinds of messages from the child. */
 enum { CLI_PROBE_FOUND = 1, CLI_PROBE_RESULT, CLI_PROBE_OPENED, CLI_PROBE_REFUSED };
 
 typedef struct {
@@ -53,7 +53,7 @@ enum { CLI_REFUSED = 1200 };
  * Returns the exit status. */
 int cli_probe_device(const char *config, const char *words, char refused[CLI_REFUSED]);
 
-/* What the child does. words: those after CLI_PROBE_WORD. Returns the exit status of the process. */
+/* Runs in the child. words: those after CLI_PROBE_WORD. Returns the exit status of the process. */
 int cli_probe_child(int count, char **words);
 
 #endif

@@ -1,4 +1,4 @@
-/* What a child process does that tests a driver. */
+/* The child process that tests a driver. */
 #include "common/probe.h"
 
 #include "common/say.h"

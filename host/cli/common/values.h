@@ -1,4 +1,4 @@
-/* What the values of flags stand for: files, a device, a filter, a unit. Functions that return int return an exit status
+/* Reads the values of flags: files, a device, a filter, a unit. Functions that return int return an exit status
  * and print the error. */
 #ifndef CLI_COMMON_VALUES_H
 #define CLI_COMMON_VALUES_H
@@ -21,7 +21,7 @@ int cli_check_overwrites(const cli_arguments *arguments);
 /* Refuses an output that is a file which the scene reads: a mesh, a volume, a table. */
 int cli_check_file_kept(const skg_setup *setup, const char *output);
 
-/* The same of every file that flags name as an output. */
+/* Checks every file that flags name as an output with cli_check_file_kept. */
 int cli_check_files_kept(const cli_arguments *arguments, const skg_setup *setup);
 
 /* Opens the device of --device. The caller releases the context, which is nevertheless held until the process ends. */

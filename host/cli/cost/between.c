@@ -1,4 +1,4 @@
-/* What linear values between the cells of the scene's volumes change, and what they take. */
+/* Measures linear values between the cells of the scene's volumes: their change of the image, and their price. */
 #include "cost/measuring.h"
 #include "cost/output.h"
 

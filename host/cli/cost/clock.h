@@ -1,4 +1,4 @@
-/* What a run takes: on the wall, where other processes take their share of it, and on the processors, where they do not. */
+/* Clocks of a run: wall time, in which other processes take their share, and processor time, in which they do not. */
 #ifndef CLI_COST_CLOCK_H
 #define CLI_COST_CLOCK_H
 
@@ -25,8 +25,8 @@ void cost_choose_clock(cost_study *study);
 /* "cpu" where they are; otherwise "wall". */
 const char *cost_clock_name(const cost_study *study);
 
-/* What the run from `begun` to `ended` would take on an idle machine, in ms: the processor time of the calling thread, which hands work
- * over, and that of the busiest of the other threads, and never more than the wall shows; by the clock "wall", what that shows. */
+/* Price of the run from `begun` to `ended`, ms on an idle machine: the processor time of the calling thread, which hands work over, and of
+ * the busiest of the other threads, and never more than the wall time; by the clock "wall" the wall time. */
 double cost_price_ms(const cost_study *study, const cost_instant *begun, const cost_instant *ended);
 
 #endif

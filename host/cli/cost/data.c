@@ -23,7 +23,7 @@ static json_t *setting_json(const cost_study *study, const cost_setting *setting
     return object;
 }
 
-/* What an image takes on an idle machine, by which clock, and what one waits for it now. */
+/* Adds the price of an image on an idle machine, its clock, and the time that one waits for it now. */
 static void add_price(const cost_study *study, const cost_shot *shot, json_t *object) {
     json_t *price = json_object();
     json_object_set_new(price, "ms", cli_json_number(shot->price_ms));
@@ -135,7 +135,7 @@ static json_t *references_json(const cost_study *study) {
     return references;
 }
 
-/* What was measured on, and how well. */
+/* Adds the conditions of the run: scene, version, date, device, and how well times could be measured. */
 static void add_run(const cost_study *study, json_t *object) {
     char date[32];
     const time_t now = time(NULL);

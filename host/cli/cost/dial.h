@@ -53,7 +53,7 @@ int cost_cheapest(const cost_study *study, int count, cost_look look, const void
 /* Whether no other one is both cheaper and nearer. */
 int cost_is_on_frontier(const cost_study *study, int count, cost_look look, const void *user, int index);
 
-/* What an image takes on an idle machine, of a point. */
+/* Price of an image of a point, ms on an idle machine. */
 double cost_price_of(const cost_study *study, const cost_point *point);
 
 #endif

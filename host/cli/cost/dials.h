@@ -1,4 +1,4 @@
-/* What the scene is like, which dials it has, and which of their settings are worth measuring. */
+/* Facts of the scene, its dials, and the settings of them that are worth measuring. */
 #ifndef CLI_COST_DIALS_H
 #define CLI_COST_DIALS_H
 

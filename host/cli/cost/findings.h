@@ -1,10 +1,10 @@
-/* What the measured points say: sources of error, a summary, advice. */
+/* Findings from the measured points: sources of error, a summary, advice. */
 #ifndef CLI_COST_FINDINGS_H
 #define CLI_COST_FINDINGS_H
 
 #include "cost/study.h"
 
-/* How much each source of error contributes, what halving it costs, and how sure the numbers are. */
+/* --- Sources of error: their size, the price of halving them, and the uncertainty of the numbers. */
 
 /* Fills in study->judged.sources and .largest from the measured points. */
 int cost_find_sources(cost_study *study);
@@ -12,7 +12,7 @@ int cost_find_sources(cost_study *study);
 /* The scene's value of the source's dial, "43250 triangles"; empty: the source has no dial. */
 void cost_describe_source(const cost_study *study, int number, char *text, size_t size);
 
-/* What was found of scatter, as a source of error. */
+/* Fills the source of error that scatter is, from its prediction or its histories. */
 void cost_take_scatter(const cost_study *study, cost_source *source);
 
 /* The dial of a source that has one. */
@@ -42,7 +42,7 @@ const char *cost_percent(double share, char *text, size_t size);
 /* "8.1 ms", with "+-" and the uncertainty where it matters. */
 const char *cost_ms(double ms, double uncertainty_ms, char *text, size_t size);
 
-/* What a change adds to a time: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "in the same time". */
+/* Words for a difference of times: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "in the same time". */
 const char *cost_more(double ms, double uncertainty_ms, char *text, size_t size);
 
 /* Which setting to use: marks the frontier and fills study->judged.advice; measures the combinations that were not measured

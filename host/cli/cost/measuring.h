@@ -38,7 +38,7 @@ double cost_first_ms(const cost_study *study);
 /* Visits every still shot again, as long as the share of the given time allows: the wanted ones first. */
 skg_status cost_visit_again(cost_study *study, double share);
 
-/* What was planned. */
+/* Stores the decisions of a plan in a shot. */
 skg_status cost_report_plan(const skg_plan *plan, cost_shot *shot);
 
 /* The type of the images of a precision. */

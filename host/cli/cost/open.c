@@ -20,7 +20,7 @@ static int has_volume(const skg_scene *scene) {
     return 0;
 }
 
-/* What the plan of the scene finds: leaky meshes, samples of the source, the flat field. */
+/* Finds the facts that the plan of the scene reports: leaky meshes, samples of the source, the flat field. */
 static int look_at_scene(cost_study *study) {
     const skg_plan_options *options = &study->session.options;
     skg_plan *plan = NULL;

@@ -100,7 +100,7 @@ static int add_shot_pictures(const cost_study *study, json_t *shots) {
     return exit_status;
 }
 
-/* What today's value of each dial does by itself. */
+/* Adds the difference pictures of each dial at today's value. */
 static int add_source_pictures(const cost_study *study, json_t *sources) {
     int exit_status = CLI_DONE;
     for (int i = 0; exit_status == CLI_DONE && i < COST_SOURCES; i++) {

@@ -21,8 +21,8 @@ int cost_make_reference(cost_study *study, int number) {
     return SKG_FAILED(status) ? cli_fail(status) : CLI_DONE;
 }
 
-/* What a status of the library means for the sweep: *keep 1: go on with the image; 0: the setting is left out, because the
- * scene does not allow it (half with a leaky mesh) or memory lacks. */
+/* Decides by a status of the library whether the sweep keeps a setting: *keep 1: it continues with the image; 0: the setting is left out,
+ * because the scene does not allow it (half with a leaky mesh) or memory is short. */
 static int judge(cost_study *study, const cost_setting *setting, skg_status status, int *keep) {
     char text[160];
     *keep = !SKG_FAILED(status);
@@ -67,7 +67,7 @@ int cost_measure(cost_study *study, cost_point *point, double *image) {
     if (exit_status == CLI_DONE && keep)
         exit_status = cost_compare_shot(study, image, &study->measured.shots[number]);
     if (exit_status == CLI_DONE && keep) exit_status = compare(study, point, number, image);
-    /* Others that are waiting for the same image. */
+    /* Other points that are waiting for the same image. */
     for (int i = 0; i < study->measured.count && exit_status == CLI_DONE && keep; i++) {
         cost_point *other = &study->measured.points[i];
         if (other->state == COST_PLANNED && study->measured.references[other->reference].image &&

@@ -1,4 +1,4 @@
-/* What scatter adds to the study's scene, and what it costs. */
+/* Measures the scatter of the study's scene, and its price. */
 #include "cost/findings.h"
 #include "cost/measuring.h"
 #include "cost/output.h"
@@ -43,7 +43,7 @@ static skg_status render(const cost_study *study, const skg_scatter *scatter, fl
     return status;
 }
 
-/* What an image without this scatter lacks. */
+/* Finds the error of an image without this scatter. */
 static int take_error(cost_study *study, const float *data) {
     cost_coarse *coarse = &study->measured.coarse[COST_SOURCE_SCATTER];
     double *scatter = calloc((size_t)study->pixels, sizeof *scatter);

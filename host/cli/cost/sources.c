@@ -53,8 +53,8 @@ static cost_offer look_at_family(const cost_study *study, int index, const void 
     return (cost_offer){is_of_it ? point->rms_flat : (double)NAN, cost_price_of(study, point)};
 }
 
-/* What the halving adds to the time of today's image. Where today's value was measured with other settings of the remaining
- * dials, their ratio counts. */
+/* Price of the halving: change of the time of today's image, ms. Where today's value was measured with other settings of the remaining
+ * dials, the times are scaled by their ratio. */
 static void price(const cost_study *study, cost_source *source) {
     const cost_shot *here = &study->measured.shots[study->measured.here];
     const cost_shot *from = &study->measured.shots[study->measured.points[source->own].shot];
@@ -161,7 +161,7 @@ static int measure_source(cost_study *study, int number) {
     return CLI_DONE;
 }
 
-/* What no setting of the scene changes, and which therefore no run can measure. */
+/* Names the parts whose true surface, behind their triangles, no setting changes and no run can measure. */
 static void name_unknown(const cost_study *study, cost_source *source) {
     const char *label = "";
     const int64_t parts = cost_count_unknown(study, &label);

@@ -1,4 +1,4 @@
-/* What accuracy costs: the dials of a scene, swept against the best reference that the device can give. */
+/* Study of accuracy and time: the dials of a scene, swept against the best reference that the device can give. */
 #include "cost/study.h"
 
 #include "common/interrupt.h"

@@ -1,4 +1,4 @@
-/* What accuracy costs: the dials of a scene, swept against the best reference that the device can give. In
+/* Study of accuracy and time: the dials of a scene, swept against the best reference that the device can give. In
  * this folder a function that returns int returns an exit status and prints the error. */
 #ifndef SKG_CLI_COST_STUDY_H
 #define SKG_CLI_COST_STUDY_H
@@ -121,7 +121,7 @@ typedef struct {
     float *difference; /* as of a shot, from the point's own reference */
 } cost_point;
 
-/* What makes today's image differ from the true one. */
+/* Sources of the difference between today's image and the true one. */
 enum {
     COST_SOURCE_TRIANGLES,
     COST_SOURCE_PRECISION,
@@ -188,7 +188,7 @@ typedef struct {
     int is_measured;
 } cost_scatter_price;
 
-/* What images without scatter lack, and what scatter costs. */
+/* Error of images without scatter, and prices of images with it. */
 typedef struct {
     cli_prediction prediction;
     cost_scatter_price prices[COST_SCATTER_PRICES];
@@ -202,7 +202,7 @@ typedef struct {
     double max, rms, ms[2], uncertainty_ms[2]; /* of cells, of linear values */
 } cost_between;
 
-/* What the scene is like, which dials it has, and its own setting. */
+/* Facts of the scene, its dials, and its own setting. */
 typedef struct {
     int noisy;         /* 1: images have the scene's noise */
     double noise;      /* its root mean square, as a fraction of the flat field; 0: the scene has none */
@@ -240,7 +240,7 @@ typedef struct {
     int64_t pulse_count, pulse_capacity;
 } cost_measured;
 
-/* What follows from it: sources of error, advice, and how far the numbers are to be trusted. */
+/* Findings: sources of error, advice, and how far the numbers are to be trusted. */
 typedef struct {
     double unrest; /* interquartile range of the pulses over their median; NaN: fewer than 4 */
     /* Of the reference COST_OF_ALL, root mean square, estimated from its neighbours; NaN: not known. */
@@ -296,7 +296,7 @@ const char *cost_precision_name(const cost_setting *setting);
 /* Milliseconds until the share of the given time has passed; 0 or less: it has, or a signal asked to stop. */
 double cost_left_ms(const cost_study *study, double share);
 
-/* The same for the coarse pass, which must leave time for the reference that everything needs. */
+/* Time left for the coarse pass, which must leave time for the reference that everything needs. */
 double cost_coarse_left_ms(const cost_study *study);
 
 /* Why something was not measured, if the time or a signal is the reason. */

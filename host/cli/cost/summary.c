@@ -1,4 +1,4 @@
-/* What a study found, in a few sentences. */
+/* Writes the findings of a study in a few sentences. */
 #include "cost/findings.h"
 
 #include "cost/dial.h"
@@ -71,7 +71,7 @@ static cost_offer look_at_saving(const cost_study *study, int index, const void 
     return (cost_offer){is_faster ? shot->total_rms : (double)NAN, shot->price_ms};
 }
 
-/* What is worth changing to: the fastest that halves the error of the whole, otherwise the most accurate; and the fastest that errs
+/* Chooses the settings to change to: the fastest that halves the error of the whole, otherwise the most accurate; and the fastest that errs
  * no more than today's image. */
 static void choose_changes(cost_study *study) {
     const cost_shot *here = &study->measured.shots[study->measured.here];
@@ -122,7 +122,7 @@ static int list_missing(const cost_study *study, char *text, size_t size) {
     return count;
 }
 
-/* What all settings lack. */
+/* Adds the error by scatter, which all settings share. */
 static void name_scatter(cost_study *study) {
     const cost_source *scatter = &study->judged.sources[COST_SOURCE_SCATTER];
     char percent[48];
@@ -157,7 +157,7 @@ static void name_largest(cost_study *study) {
         cost_append(study->judged.summary, sizeof study->judged.summary, " Not measured: %s.", missing);
 }
 
-/* What an image costs, and how far it is off. */
+/* Adds price and error of today's image. */
 static void state_here(cost_study *study) {
     const cost_shot *here = &study->measured.shots[study->measured.here];
     const char *each = study->frames > 1 ? "a frame in batches" : "an image";
@@ -182,7 +182,7 @@ static void state_here(cost_study *study) {
     cost_append(study->judged.summary, sizeof study->judged.summary, ".");
 }
 
-/* What it costs to unite components, which the scene asks for, and what images would be without. */
+/* Adds the price of uniting components, which the scene asks for, and the error of images without it. */
 static void price_union(cost_study *study) {
     const cost_shot *here = &study->measured.shots[study->measured.here];
     const int32_t apart = cost_repair(study, &study->subject.own) - COST_UNITE;
@@ -200,7 +200,7 @@ static void price_union(cost_study *study) {
     }
 }
 
-/* What linear values between cells change, and what they take. */
+/* Adds the price of linear values between cells, and how much they change the image. */
 static void price_between(cost_study *study) {
     const cost_between *between = &study->measured.between;
     char cells[64], linear[64], percent[48];

@@ -18,7 +18,7 @@ static double making_ms(const cost_study *study, const cost_setting *setting) {
     return setting->meshing < 0 ? 0 : cost_making_ms(study, &study->meshings[setting->meshing]);
 }
 
-/* What measuring a point takes, with its reference if that is not made yet. */
+/* Estimated time to measure a point, ms, with its reference if that is not made yet. */
 static double effort_ms(const cost_study *study, const cost_point *point) {
     const cost_reference *reference = &study->measured.references[point->reference];
     const double phases = point->reference == COST_OF_BREATH ? COST_PHASES : 1;

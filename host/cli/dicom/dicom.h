@@ -5,7 +5,7 @@
 
 #include <skiagraph/skiagraph.h>
 
-/* What a picture does not say by itself. */
+/* Attributes of a DICOM file that a picture does not have. */
 typedef struct {
     const char *study;  /* the same text for pictures that belong to one study and series */
     int64_t number;     /* of the picture in its series, from 1 */

@@ -1,4 +1,4 @@
-/* What DICOM asks of a scene: the voltage, and how far the source is from the middle of the parts. */
+/* Finds the attributes that DICOM asks of a scene: the voltage, and how far the source is from the middle of the parts. */
 #include "dicom/dicom.h"
 
 #include <math.h>

@@ -15,7 +15,7 @@
 
 enum { TEXT_MAX = 65536, LONGEST_COMPLAINT = 1024, PATH_SIZE = 512 };
 
-/* What is asked of the file. The numbers are DICOM's attributes (PS3.6). */
+/* Attributes that are read from the file, by their numbers in DICOM (PS3.6). */
 typedef enum {
     FRAMES,
     ROWS,
@@ -142,7 +142,7 @@ static int read_facts(reading *r) {
     return CLI_DONE;
 }
 
-/* What the values are. A file of Skiagraph says it; others say at most whether values rise with the intensity. */
+/* Finds the quantity of the values. A file of Skiagraph says it; others say at most whether values rise with the intensity. */
 static int find_quantity(const reading *r, int32_t *quantity) {
     char relation[64] = "", maker[64] = "", comment[64] = "";
     (void)value_of(r, "(0028,1040)", relation);

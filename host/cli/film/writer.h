@@ -1,4 +1,4 @@
-/* What a format of film has to do. Functions that return int return an exit status and print the error. */
+/* Interface of a format of film. Functions that return int return an exit status and print the error. */
 #ifndef CLI_FILM_WRITER_H
 #define CLI_FILM_WRITER_H
 
@@ -14,7 +14,7 @@ typedef struct {
     const char *comment; /* what the film shows; the file names it beside the program */
 } film_format;
 
-/* What a writer knows of its film. */
+/* A film that is being written. */
 typedef struct {
     film_format format;
     cli_file file;

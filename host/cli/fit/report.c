@@ -1,4 +1,4 @@
-/* What a fit found, as text and JSON. */
+/* Reports the result of a fit as text and JSON. */
 #include "fit/work.h"
 
 #include "common/encode.h"

@@ -1,5 +1,4 @@
-/* What the verb fit works on, and what it says of it. Functions that return int return an exit status and print the
- * error. */
+/* Data of the verb fit, and its reports. Functions that return int return an exit status and print the error. */
 #ifndef CLI_FIT_WORK_H
 #define CLI_FIT_WORK_H
 
@@ -27,7 +26,7 @@ int fit_prepare(fit_work *work);
 /* The file of -o with an extension, or NULL. */
 const char *fit_output(const fit_work *work, const char *extension);
 
-/* What a fit found, in words and numbers. */
+/* --- Reports of a fit, in words and numbers. */
 
 json_t *fit_json(const fit_work *work);
 void fit_print(const fit_work *work);

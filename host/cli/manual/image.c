@@ -1,4 +1,4 @@
-/* What help says of image: its flags, text and examples. */
+/* Manual of the verb image: its flags, text and examples. */
 #include "manual/manual.h"
 
 /* In the order of SKG_QUANTITY_. */

@@ -1,4 +1,4 @@
-/* What is known of a verb's command line: one table for the parser, `help`, the man pages and the completion of shells. */
+/* Manual of a verb's command line: one table for the parser, `help`, the man pages and the completion of shells. */
 #include "manual/manual.h"
 
 #include <stdio.h>

@@ -1,12 +1,12 @@
-/* What is known of a verb's command line: one table for the parser, `help`, the man pages and the completion
- * of shells. A paragraph is one string without line breaks; who prints it breaks the lines. */
+/* Manual of a verb's command line: one table for the parser, `help`, the man pages and the completion of shells. A paragraph is one string
+ * without line breaks; the functions that print it break the lines. */
 #ifndef CLI_MANUAL_MANUAL_H
 #define CLI_MANUAL_MANUAL_H
 
 #include <stddef.h>
 #include <stdio.h>
 
-/* What a value or an operand names, for completion. CLI_NAMES_OUTPUT: a file that is written, by another flag than -o;
+/* Kinds of names that a value or an operand has, for completion. CLI_NAMES_OUTPUT: a file that is written, by another flag than -o;
  * CLI_NAMES_KEY: a key of a scene file, with its =. */
 enum {
     CLI_NAMES_NOTHING,

@@ -1,4 +1,4 @@
-/* What help says of scan: its flags, text and examples. */
+/* Manual of the verb scan: its flags, text and examples. */
 #include "manual/manual.h"
 
 static const cli_flag scan_output = {

@@ -39,7 +39,7 @@ static int put_picture(FILE *page, const register_png *picture, const char *kind
     return CLI_DONE;
 }
 
-/* What noise does not explain, and the cell with most of it. */
+/* Writes the picture of the structure that noise does not explain, and marks the cell with most of it. */
 static int put_structure(FILE *page, const register_work *work, int64_t image, const register_png *picture) {
     const skg_registration_result *r = &work->bodies[work->body_count - 1].result;
     const skg_view *view = &work->images[image].view;

@@ -1,4 +1,4 @@
-/* What a registration found, as text and JSON. */
+/* Reports the result of a registration as text and JSON. */
 #include "register/work.h"
 
 #include "common/encode.h"

@@ -1,4 +1,4 @@
-/* What the verb register works on. Functions that return int return an exit status and print the error. */
+/* Data of the verb register. Functions that return int return an exit status and print the error. */
 #ifndef CLI_REGISTER_WORK_H
 #define CLI_REGISTER_WORK_H
 
@@ -18,7 +18,7 @@ typedef struct {
     double flat_field;
 } register_image;
 
-/* What was found of a body. */
+/* Result for a body. */
 typedef struct {
     const char *label; /* the value of --part */
     skg_registration_result result;
@@ -59,7 +59,7 @@ skg_status register_result_get(const skg_registration *registration, register_bo
 /* "agrees", "structure", "not determined", "failed", "stopped" */
 const char *register_status(const register_body *body);
 
-/* What was found of a body; free: enum skg_registration_free. */
+/* The result for a body as JSON; free: enum skg_registration_free. */
 json_t *register_body_json(const register_body *body, int32_t free);
 json_t *register_json(const register_work *work);
 void register_print(const register_work *work);

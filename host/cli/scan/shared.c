@@ -9,7 +9,7 @@
 
 enum { WINDOWS_PER_RANK = 8, WINDOW_MAX = 64 }; /* several batches: rank 0 answers after each of its own */
 
-/* What this rank computes. */
+/* Projections of this rank. */
 typedef struct {
     skg_scan_run *run;
     int64_t taken, window; /* projections that it took; how many at least are on the way */

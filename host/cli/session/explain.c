@@ -1,4 +1,4 @@
-/* What a plan decided, as text and as JSON. */
+/* Reports the decisions of a plan as text and as JSON. */
 #include "session/explain.h"
 
 #include "common/encode.h"
@@ -10,7 +10,7 @@
 #include <math.h>
 #include <stdio.h>
 
-/* What was chosen, for --verbose. The kernels are compiled, or taken from the cache, while the plan is made. */
+/* Reports the chosen strategy and the time with --verbose. The kernels are compiled, or taken from the cache, while the plan is made. */
 static void tell_plan(const skg_plan *plan, double plan_ms) {
     skg_plan_report report;
     int64_t effects = 0;
@@ -143,7 +143,7 @@ static json_t *tiles_json(const skg_plan_report *report) {
     return object;
 }
 
-/* What the precision may change; null if no bound is known. */
+/* The bound of the error by the precision; null if none is known. */
 static json_t *precision_bound_json(const skg_plan *plan) {
     double bound = 0;
     if (skg_plan_precision_bound_get(plan, &bound) != SKG_OK) return json_null();

@@ -1,4 +1,4 @@
-/* What a plan decided, as text and as JSON. */
+/* Reports the decisions of a plan as text and as JSON. */
 #ifndef SKG_CLI_EXPLAIN_H
 #define SKG_CLI_EXPLAIN_H
 

@@ -1,4 +1,4 @@
-/* What scatter would add to a plan's images, from few histories, and whether the scene calls for it. */
+/* Predicts the scatter in a plan's images from few histories, and whether images need it. */
 #include "session/prediction.h"
 
 #include "common/encode.h"

@@ -1,4 +1,4 @@
-/* What scatter would add to a plan's images, from few histories, and whether the scene calls for it. */
+/* Predicts the scatter in a plan's images from few histories, and whether images need it. */
 #ifndef SKG_CLI_PREDICTION_H
 #define SKG_CLI_PREDICTION_H
 
@@ -15,7 +15,7 @@ typedef struct {
 /* Predicts. What fails is the reason. */
 void cli_predict(skg_plan *plan, double tolerance, cli_prediction *prediction);
 
-/* What the grid of the scene passes, by the definitions of IEC 60627; nothing is printed without a grid. */
+/* Prints the transmissions of the scene's grid, by the definitions of IEC 60627; nothing without a grid. */
 void cli_prediction_print_grid(const cli_prediction *prediction);
 
 /* {ratio_predicted, called_for, reason}, and of a grid {primary, scatter, total, selectivity} */

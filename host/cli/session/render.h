@@ -1,4 +1,4 @@
-/* What `image` and `lbuffer` share: plan, frames, files, report. */
+/* Shared work of `image` and `lbuffer`: plan, frames, files, report. */
 #ifndef SKG_CLI_RENDER_H
 #define SKG_CLI_RENDER_H
 
@@ -7,7 +7,7 @@
 #include "session/scattering.h"
 #include "session/session.h"
 
-/* What a verb fills in before cli_render. */
+/* Data that a verb fills in before cli_render. */
 typedef struct {
     const cli_arguments *arguments;
     cli_session session;

@@ -66,7 +66,7 @@ int cli_refuse_counting(const cli_session *session, const char *what) {
                      session->path ? session->path : "scene", what);
 }
 
-/* What was loaded, for --verbose. */
+/* Reports the loaded scene with --verbose. */
 static void tell_scene(const cli_session *session) {
     int64_t parts = 0, bins = 0;
     if (skg_scene_part_count(session->scene, &parts) != SKG_OK) return;

@@ -86,7 +86,7 @@ static void ask_device(const skg_device_info *device, char *refused, size_t size
     skg_context_release(&context);
 }
 
-/* What the children have found of devices whose platform is not known. */
+/* Answers of the children about devices whose platform is not known. */
 typedef struct {
     int64_t count;
     char (*refused)[CLI_REFUSED]; /* of each device; "" if it is known, or can be opened */

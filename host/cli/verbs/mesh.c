@@ -12,7 +12,7 @@
 #include <stdio.h>
 #include <string.h>
 
-/* What is found of a mesh. */
+/* Properties that the verb reports of a mesh. */
 typedef struct {
     skg_mesh_health health;
     skg_mesh_nesting nesting;

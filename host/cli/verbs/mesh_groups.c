@@ -1,4 +1,4 @@
-/* What the verb mesh does with the named groups of a file: lists them, and splits a file into one file a part with a scene. */
+/* Named groups of a file in the verb mesh: lists them, and splits a file into one file a part with a scene. */
 #define _XOPEN_SOURCE 700 /* realpath */
 #include "verbs/mesh_groups.h"
 

@@ -14,7 +14,7 @@
 
 enum { PROPERTIES = 5 };
 
-/* What Assimp is shown of a part. Nothing of it is Assimp's own memory. */
+/* A part in the structs of Assimp, whose memory is the writer's, not Assimp's. */
 typedef struct {
     struct aiMesh mesh;
     struct aiNode node;

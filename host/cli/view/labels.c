@@ -13,7 +13,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What is drawn on. */
+/* Canvas of the labels. */
 typedef struct {
     cairo_t *cairo;
     double text; /* height of the text, pixels */

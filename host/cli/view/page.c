@@ -12,8 +12,8 @@
 
 extern const char view_page_text[]; /* page/page.html with its scripts, as built in */
 
-/* What the page has besides its JSON: numbers in the order of the processor, which is that of the browsers: the lowest byte
- * first. Every block begins at a multiple of 4. */
+/* Binary data of the page besides its JSON: numbers in the order of the processor, which is that of the browsers: the lowest byte first.
+ * Every block begins at a multiple of 4. */
 typedef struct {
     unsigned char *bytes;
     size_t count, capacity;

@@ -8,7 +8,7 @@
 
 #include <jansson.h>
 
-/* What the page shows. */
+/* Contents of the page. */
 typedef struct {
     const cli_session *session;
     const skg_look *look; /* its direction, path and colours */

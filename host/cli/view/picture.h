@@ -42,7 +42,7 @@ int view_choose_named(const cli_session *session, const skg_look *look, view_pla
 /* Where the beam starts on its axis; of a source at infinity a point in front of the parts. */
 void view_source(const skg_view *view, const view_places *places, double source[3]);
 
-/* What the flags of `view` ask for, and what is made of it. */
+/* --- Flags of `view`, and the pictures made of them. */
 
 typedef struct {
     const cli_arguments *arguments;

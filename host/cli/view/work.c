@@ -1,4 +1,4 @@
-/* What the files of the verb `view` share: flags, scene, views. */
+/* Shared work of the verb `view`: flags, scene, views. */
 #include "view/picture.h"
 
 #include "common/say.h"

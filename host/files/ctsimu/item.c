@@ -101,7 +101,7 @@ skg_status skg_item_remark(const skg_item *item, const char *format, ...) {
     return skg_json_remark(make_nodes(item, nodes, keys), "%s", sentence);
 }
 
-/* What stands for the parameter: its value if it is an object. */
+/* The value of a parameter: its member "value" if it is an object. */
 static skg_item bare(const skg_item *item) {
     return json_is_object(item->value) ? skg_item_at(item, "value") : *item;
 }

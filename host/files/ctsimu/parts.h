@@ -1,4 +1,4 @@
-/* What the parts of the translation give each other: values, coordinate systems, geometry. Private. */
+/* Types and functions that the files of the translation share: values, coordinate systems, geometry. Private. */
 #ifndef SKG_CTSIMU_PARTS_H
 #define SKG_CTSIMU_PARTS_H
 
@@ -11,7 +11,7 @@
 
 enum { SKG_ITEM_PATH = 192 };
 
-/* What is translated. */
+/* State of a translation. */
 typedef struct {
     skg_json_file *file;
     skg_ctsimu_find find;

@@ -128,7 +128,7 @@ int skg_json_same_key(const char *a, const char *b) {
     return *a == '\0' && *b == '\0';
 }
 
-/* What people and exporters write into any object for themselves and for displays. */
+/* Keys that people and exporters write into any object for themselves and for displays. */
 static const skg_json_key asides[] = {
     {"Comment", NULL, SKG_KEY_IGNORED, "any", NULL},     {"Comments", NULL, SKG_KEY_IGNORED, "any", NULL},
     {"Colour", NULL, SKG_KEY_IGNORED, "any", NULL},      {"Color", NULL, SKG_KEY_IGNORED, "any", NULL},

@@ -47,7 +47,7 @@ typedef struct {
     int64_t count;
 } skg_json_table;
 
-/* What may stand in any object besides. */
+/* Keys that any object may have besides its own: comments and colours, which are ignored. */
 extern const skg_json_table skg_json_asides;
 
 typedef struct {
@@ -63,7 +63,7 @@ skg_status skg_json_read_object(const skg_json_node *node, const skg_json_table 
 /* The member with this name, or another spelling of it; its value is NULL where there is none. */
 skg_json_node skg_json_member(const skg_json_object *object, const char *name);
 
-/* The same for a member that is required: SKG_ERR_FORMAT where there is none. */
+/* Gets a member that is required: SKG_ERR_FORMAT where there is none. */
 skg_status skg_json_need(const skg_json_object *object, const char *name, const char *example,
                          skg_json_node *member);
 

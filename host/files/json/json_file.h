@@ -20,7 +20,7 @@ typedef struct {
  * path is not copied. Close also after a failure. */
 skg_status skg_json_open(const char *path, skg_json_file *file);
 
-/* The same from a text, which is copied. path: for messages. */
+/* Parses a text, which is copied, as skg_json_open does a file. path: for messages. */
 skg_status skg_json_parse(const char *text, const char *path, skg_json_file *file);
 void skg_json_close(skg_json_file *file);
 

@@ -80,7 +80,7 @@ static skg_status read_reach(const skg_json_object *object, const char *name, do
     return skg_json_fail(&node, SKG_ERR_BREATHING, "is %g mm; the range is above 0 to 1000 mm", *mm);
 }
 
-/* What the anatomical coupling can be told. Values out of range are refused here, where the file can be named. */
+/* Reads the options of the anatomical coupling. Values out of range are refused here, where the file can be named. */
 static skg_status read_anatomy(const skg_json_object *object, skg_body_options *body) {
     const double degree = SKG_PI / 180;
     const struct {
@@ -225,7 +225,7 @@ static skg_status read_events(skg_setup_reader *reader, const skg_json_node *nod
     return SKG_OK;
 }
 
-/* What was recorded of a patient, in a file. */
+/* Reads the recorded breath of a patient from its file. */
 static skg_status read_signal(skg_setup_reader *reader, const skg_json_node *node) {
     skg_breathing_section *section = &reader->setup->breathing;
     const char *name = NULL, *path = NULL;

@@ -1,4 +1,4 @@
-/* What identifies a set-up: its file after the settings, and the contents of the files that it names. */
+/* Hash of a set-up: of its file after the settings, and of the contents of the files that it names. */
 #include "core/digest.h"
 #include "core/files.h"
 #include "core/text.h"

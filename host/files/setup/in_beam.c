@@ -1,4 +1,4 @@
-/* What lies in the beam besides the samples: Bowtie of a source, Grid of a detector. */
+/* Reads the objects in the beam besides the samples: Bowtie of a source, Grid of a detector. */
 #include "beam/bowtie.h"
 #include "beam/grid.h"
 #include "core/files.h"

@@ -1,4 +1,4 @@
-/* What the readers of a scene file's sections share. */
+/* Functions that the readers of a scene file's sections share. */
 #include "setup/reader.h"
 
 #include <string.h>

@@ -1,4 +1,4 @@
-/* What the readers of a scene file's sections share. Private. */
+/* Functions that the readers of a scene file's sections share. Private. */
 #ifndef SKG_READER_H
 #define SKG_READER_H
 

@@ -1,4 +1,4 @@
-/* What the keys Scan, GreyValues and Poses say of how projections are recorded. */
+/* Reads how projections are recorded: the keys Scan, GreyValues and Poses. */
 #include "core/core.h"
 #include "core/files.h"
 #include "core/maths.h"

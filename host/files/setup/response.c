@@ -1,4 +1,4 @@
-/* What the detector makes of a photon: Energy response and Scintillator. */
+/* Reads the detector's response to a photon: Energy response and Scintillator. */
 #include "core/text.h"
 #include "setup/keys.h"
 #include "setup/sections.h"

@@ -10,7 +10,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-/* What the second pass needs to know of a sample. */
+/* A sample after the first pass, for the second one, which sets parents. */
 typedef struct {
     skg_json_node node; /* of the sample, in Samples or the scene graph */
     int64_t part;
@@ -132,7 +132,7 @@ static skg_status read_priority(const skg_json_object *sample, int32_t *priority
     return SKG_OK;
 }
 
-/* What the part is made of: a mesh and its material, or a volume, whose box stands for its mesh. */
+/* Reads the matter of a part: a mesh and its material, or a volume, whose box stands for its mesh. */
 static skg_status read_matter(skg_setup_reader *reader, const skg_json_object *sample, int32_t flip,
                               skg_mesh_cache *cache, skg_part *part, double *own) {
     if (!skg_json_member(sample, "Volume").value)

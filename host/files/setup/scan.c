@@ -12,7 +12,7 @@ enum { SAMPLED_VIEWS = 16 };
 
 static const double degree = SKG_PI / 180;
 
-/* What the section says about angles, in degrees. */
+/* Angles of the section, degrees. */
 typedef struct {
     double step, final;
     int32_t has_step, has_final, include_last, is_short;

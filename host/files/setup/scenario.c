@@ -23,7 +23,7 @@ static skg_status check_path(const char *path) {
                     skg_scenario_ending);
 }
 
-/* What a scenario does not hold of a scan. */
+/* Fails for scans with a property that a CTSimU scenario cannot hold, and names it. */
 static skg_status check_scan(const skg_setup *setup, const skg_scan_options *o) {
     const double moves[] = {o->pitch_mm,
                             skg_length(o->source_travel_mm),

@@ -152,7 +152,7 @@ static json_t *of_array(json_t *item, int64_t count, json_t *last) {
     return schema;
 }
 
-/* What follows a word and a blank; NULL: the form does not begin with the word. */
+/* The rest of a form behind a word and a blank; NULL: the form does not begin with the word. */
 static const char *after(const char *form, const char *word) {
     const size_t length = strlen(word);
     if (strncmp(form, word, length) != 0 || (form[length] && form[length] != ' ')) return NULL;

@@ -38,7 +38,7 @@ skg_status skg_setup_bounds(const skg_scene *scene, double *bounds);
 
 void skg_scan_section_free(skg_scan_section *section);
 
-/* What skg_setup_hash_get covers, besides the files. */
+/* Keeps the text of the scene file that skg_setup_hash_get digests besides the files. */
 skg_status skg_setup_keep_text(skg_setup_reader *reader);
 
 /* The section Breathing, after Samples, whose labels it names. node->value may be NULL. */
@@ -79,7 +79,7 @@ skg_status skg_setup_read_counting(skg_setup_reader *reader, const skg_json_obje
 skg_status skg_setup_read_grey_values(skg_setup_reader *reader, const skg_json_object *detector);
 void skg_grey_section_free(skg_grey_section *section);
 
-/* What the key Scan says of how its projections are recorded; after the scan is made. */
+/* Reads the keys of Scan for the recording of its projections; after the scan is made. */
 skg_status skg_setup_read_record(skg_setup_reader *reader, const skg_json_object *scan);
 
 /* A table of rows of `width` numbers. The caller frees it. */
@@ -99,7 +99,7 @@ void skg_setup_blur_free(skg_setup *setup);
 /* Binning and BinningNoise of the detector: the view, the rays of a pixel and the blur become those of bins. */
 skg_status skg_setup_read_binning(skg_setup_reader *reader, const skg_json_object *detector);
 
-/* The same for photons and noise, when they were read. */
+/* Applies the binning to photons and noise, after these are read. */
 skg_status skg_setup_bin_counts(skg_setup_reader *reader);
 
 /* The key Noise of the file (value NULL: none). */

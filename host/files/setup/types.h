@@ -1,4 +1,4 @@
-/* What a set-up holds: the sections of its scene file as they were read. Private. */
+/* Contents of a set-up: the sections of its scene file as they were read. Private. */
 #ifndef SKG_SETUP_TYPES_H
 #define SKG_SETUP_TYPES_H
 
@@ -115,8 +115,8 @@ struct skg_setup {
     skg_setup_noise noise;
     skg_grey_section grey;
     skg_spot spot;
-    /* What the file says of these options, which stands for what the caller says: precision, tolerance, repair, band_weight (negative: the
-     * file does not say), heel, bowtie, grid, collimation, scatter (those below; NULL: it does not have the key). */
+    /* Options that the file sets, which replace the caller's: precision, tolerance, repair, band_weight (negative: the file does not have
+     * the key), heel, bowtie, grid, collimation, scatter (those below; NULL: it does not have the key). */
     skg_plan_options said;
     skg_heel heel;     /* kvp, anode, angle and bins are those of the tube, if the beam is one */
     int32_t has_tube;  /* 1: the beam is a tube */

@@ -7,7 +7,7 @@
 
 enum { CLASSES_MAX = 256 };
 
-/* What the source of a volume points to while it is read. */
+/* Compositions of a volume, which its source points to while it is read. */
 typedef struct {
     int64_t count;
     double from[CLASSES_MAX];
@@ -101,7 +101,7 @@ static void doubt(const skg_setup_reader *reader, const char *place, const skg_v
             place, contents->low, contents->high);
 }
 
-/* What its file leaves open. */
+/* Passes on the remarks about a volume and its file, with the place in the scene file. */
 static skg_status pass_remarks(const skg_setup_reader *reader, const char *place, const skg_volume *volume,
                                int64_t count) {
     for (int64_t k = 0; k < count; k++) {

@@ -92,7 +92,7 @@ typedef struct {
     /** With SKG_COUPLING_ANATOMICAL, at diaphragmatic weight 1: by how much farther down the top of the left dome goes than
      * the middle of the tendon, mm, -57 to 57; 0 by default. */
     double dome_left_mm;
-    /** The same of the right dome. */
+    /** By how much farther down the top of the right dome goes, likewise. */
     double dome_right_mm;
     /** By how much farther down the back goes than the middle, and the front less, mm, -57 to 57; 0 by default. */
     double dome_back_mm;
@@ -120,9 +120,9 @@ enum skg_organ_kind {
     SKG_ORGAN_BY_LABEL = 0,
     /** Not at all. */
     SKG_ORGAN_STATIC = 1,
-    /** It turns as a whole with the ribs. */
+    /** The organ turns as a whole with the ribs. */
     SKG_ORGAN_RIGID = 2,
-    /** It is linked to other organs and deforms. */
+    /** The organ is linked to others and deforms. */
     SKG_ORGAN_DEFORMABLE = 3
 };
 

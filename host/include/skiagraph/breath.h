@@ -102,9 +102,9 @@ typedef struct {
     double phase;
     /** f of the waveform at that phase, 0 to 1. */
     double amplitude;
-    /** What moves the ribs: weight times lagged amplitude. */
+    /** Amplitude of the ribs: weight times lagged amplitude. */
     double thoracic;
-    /** What moves the diaphragm: weight times amplitude. */
+    /** Amplitude of the diaphragm: weight times amplitude. */
     double diaphragmatic;
 } skg_breath_state;
 

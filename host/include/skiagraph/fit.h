@@ -174,8 +174,8 @@ SKG_API skg_status skg_fit_finish(skg_fit *fit);
  *     covariance   result: [size][size] */
 SKG_API skg_status skg_fit_covariance_get(const skg_fit *fit, int64_t size, double *covariance);
 
-/** What became of a target. The library fills it; prepare with skg_fit_target_init. Distances are from the organ to the
- * target, over the surface (distance.h). */
+/** Distances of a target before and after the fit. The library fills it; prepare with skg_fit_target_init. Distances are from the organ to
+ * the target, over the surface (distance.h). */
 typedef struct {
     /** Set by skg_fit_target_init. */
     int32_t size;
@@ -183,7 +183,7 @@ typedef struct {
     int32_t reserved;
     /** Number of the part. */
     int64_t part;
-    /** Its label, valid as long as the set-up. */
+    /** Label of the part, valid as long as the set-up. */
     const char *label;
     /** Phase of the target. */
     double phase;

@@ -64,9 +64,9 @@ typedef struct {
     double phase;
     /** Of the waveform at that phase, 0 to 1. */
     double amplitude;
-    /** What moves the ribs: weight times lagged amplitude, with the weight of the events. */
+    /** Amplitude of the ribs: weight times lagged amplitude, with the weight of the events. */
     double thoracic;
-    /** What moves the diaphragm: weight times amplitude, with the weight of the events. */
+    /** Amplitude of the diaphragm: weight times amplitude, with the weight of the events. */
     double diaphragmatic;
     /** Depth of the needle below the skin, mm; NaN: no needle. */
     double needle_mm;

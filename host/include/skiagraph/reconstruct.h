@@ -24,7 +24,7 @@ enum skg_fdk_filter {
     SKG_FDK_FILTER_HANN = 1
 };
 
-/** What is done about projections that the detector cuts off. */
+/** Treatment of projections that the detector cuts off. */
 enum skg_fdk_truncation {
     /** Nothing: values rise towards the edge of what the detector sees. */
     SKG_FDK_TRUNCATION_NONE = 0,
@@ -33,7 +33,7 @@ enum skg_fdk_truncation {
     SKG_FDK_TRUNCATION_EXTRAPOLATE = 1
 };
 
-/** What is reconstructed. Prepare with skg_fdk_options_init: axis z through the origin, 128 voxels of 1 mm along
+/** Volume, filter and weights of a reconstruction. Prepare with skg_fdk_options_init: axis z through the origin, 128 voxels of 1 mm along
  * each side, the ramp. */
 typedef struct {
     /** Set by skg_fdk_options_init. */
@@ -60,7 +60,7 @@ typedef struct {
 
 SKG_INIT(skg_fdk_options)
 
-/** What the detector saw of the bodies. The library fills it; prepare with skg_fdk_report_init. */
+/** Coverage of the bodies by the detector. The library fills it; prepare with skg_fdk_report_init. */
 typedef struct {
     /** Set by skg_fdk_report_init. */
     int32_t size;

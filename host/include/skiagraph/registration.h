@@ -38,7 +38,7 @@ extern "C" {
 /** A registration: what moves, the radiographs, and what was found. */
 typedef struct skg_registration skg_registration;
 
-/** What is found. The geometry, source or detector or both, is one for each radiograph. */
+/** Unknowns of a registration. The geometry, source or detector or both, is one for each radiograph. */
 enum skg_registration_free {
     /** The pose of the parts, which move as one. */
     SKG_REGISTRATION_FREE_POSE = 1,
@@ -48,7 +48,7 @@ enum skg_registration_free {
     SKG_REGISTRATION_FREE_DETECTOR = 4
 };
 
-/** What is minimized. */
+/** Losses that a registration can minimise. */
 enum skg_registration_loss {
     /** Mean square of the difference of attenuations, less what the polynomials take. */
     SKG_REGISTRATION_LOSS_LSQ = 0,
@@ -58,19 +58,19 @@ enum skg_registration_loss {
     SKG_REGISTRATION_LOSS_GRADIENT_NCC = 2
 };
 
-/** What came of a registration. */
+/** Verdict on the result of a registration. */
 enum skg_registration_verdict {
-    /** It has not run. */
+    /** The registration has not run. */
     SKG_REGISTRATION_VERDICT_NONE = 0,
     /** The images agree: what is left is noise. */
     SKG_REGISTRATION_VERDICT_AGREES = 1,
-    /** They agree, but what is left has a structure that neither the parts nor the polynomials explain. */
+    /** The images agree, but the residual has a structure that neither the parts nor the polynomials explain. */
     SKG_REGISTRATION_VERDICT_STRUCTURE = 2,
     /** The radiographs do not determine some direction as well as options.need_mm asks. */
     SKG_REGISTRATION_VERDICT_UNDETERMINED = 3,
     /** The body is not where it shows in the radiographs, or does not show in them. */
     SKG_REGISTRATION_VERDICT_FAILED = 4,
-    /** It was cancelled: the best pose so far stands. */
+    /** The registration was cancelled: the best pose so far stands. */
     SKG_REGISTRATION_VERDICT_STOPPED = 5
 };
 
@@ -166,7 +166,7 @@ SKG_API skg_status skg_registration_image_add(skg_registration *registration, co
  *              skg_plan_derivatives, such as SKG_ERR_UNSUPPORTED for meshes that are not closed */
 SKG_API skg_status skg_registration_run(skg_registration *registration);
 
-/** What was found. The library fills it; prepare with skg_registration_result_init. */
+/** Result of a registration. The library fills it; prepare with skg_registration_result_init. */
 typedef struct {
     /** Set by skg_registration_result_init. */
     int32_t size;
@@ -190,15 +190,15 @@ typedef struct {
     double shift_mm;
     /** Angle by which the body was turned. */
     double turn_rad;
-    /** What was minimized, at the start and at the end, over the finest images. */
+    /** Loss at the start, over the finest images. */
     double loss_start;
-    /** At the end. */
+    /** Loss at the end, over the finest images. */
     double loss;
     /** Root mean square difference of the attenuations at the end, polynomials included. */
     double residual;
     /** The part of it that is noise: from differences of neighbours. */
     double noise;
-    /** Pixels over which what is left is correlated. */
+    /** Pixels over which the residual is correlated. */
     double correlation_pixels;
     /** Share of the variance of the radiographs in their masks that model and polynomials explain, to 1. */
     double explained;
@@ -213,19 +213,19 @@ typedef struct {
     int64_t jacobians;
     /** Wall time of the run, s. */
     double seconds;
-    /** Number of free directions, whose combinations skg_registration_direction_get tells. */
+    /** Number of free directions, whose combinations skg_registration_direction_get returns. */
     int64_t directions;
-    /** Where the mean square of what is left is largest, among cells of an eighth of a radiograph: number of the radiograph. */
+    /** Number of the radiograph in which the mean square of the residual is largest, among cells of an eighth of a radiograph. */
     int64_t worst_image;
-    /** Middle of this cell. */
+    /** Row of the middle of this cell. */
     int64_t worst_row;
-    /** Middle of this cell. */
+    /** Column of the middle of this cell. */
     int64_t worst_column;
 } skg_registration_result;
 
 SKG_INIT(skg_registration_result)
 
-/** Gets what was found, after skg_registration_run. */
+/** Gets the result, after skg_registration_run. */
 SKG_API skg_status skg_registration_result_get(const skg_registration *registration,
                                                skg_registration_result *result);
 
@@ -239,11 +239,11 @@ typedef struct {
     int32_t size;
     /** 1: it is as well known as need_mm asks. */
     int32_t determined;
-    /** What it is in words, such as "shift along the beam of view 1"; valid as long as the registration. */
+    /** Name of the direction, such as "shift along the beam of view 1"; valid as long as the registration. */
     const char *name;
     /** One standard deviation from noise alone, mm; of turns at the body's radius. */
     double sigma_mm;
-    /** The same with what is left in the images taken for noise. */
+    /** One standard deviation with the residual of the images taken for noise, likewise. */
     double sigma_structure_mm;
 } skg_registration_direction;
 
@@ -270,7 +270,7 @@ SKG_API skg_status skg_registration_motion_get(const skg_registration *registrat
 SKG_API skg_status skg_registration_pose_get(const skg_registration *registration, int64_t part,
                                              double *pose);
 
-/** What skg_registration_picture_get shows of a radiograph. */
+/** Pictures that skg_registration_picture_get makes of a radiograph. */
 enum skg_registration_picture {
     /** The radiograph, -ln of the transmission. */
     SKG_REGISTRATION_PICTURE_FIXED = 0,
@@ -278,11 +278,11 @@ enum skg_registration_picture {
     SKG_REGISTRATION_PICTURE_MODEL = 1,
     /** Model less radiograph at the start. 0 where pixels do not count. */
     SKG_REGISTRATION_PICTURE_BEFORE = 2,
-    /** The same at the end. */
+    /** Model less radiograph at the end, likewise. */
     SKG_REGISTRATION_PICTURE_AFTER = 3,
     /** Attenuation of the parts alone at the start. */
     SKG_REGISTRATION_PICTURE_SHADOW_BEFORE = 4,
-    /** The same at the end. */
+    /** Attenuation of the parts alone at the end. */
     SKG_REGISTRATION_PICTURE_SHADOW_AFTER = 5,
     /** Where the model lacks something: SKG_REGISTRATION_PICTURE_AFTER, averaged over the pixels that count among those at most an eightieth
      * of the radiograph's shorter side away, along rows and along columns; 0 where noise alone may be the reason (three standard

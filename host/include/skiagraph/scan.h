@@ -59,11 +59,11 @@ typedef struct {
     double detector_skew_rad;
     /** How far the source is displaced in the last projection, mm; growing from 0 in the first. */
     double source_drift_mm[3];
-    /** The same for the detector. */
+    /** How far the detector is displaced in the last projection, mm; growing from 0 in the first. */
     double detector_drift_mm[3];
     /** Standard deviation of a random displacement of the source along x, y and z, mm. */
     double source_jitter_mm;
-    /** The same for the detector. */
+    /** Standard deviation of a random displacement of the detector along x, y and z, mm. */
     double detector_jitter_mm;
     /** Standard deviation of a random error of the angle. */
     double angle_jitter_rad;
@@ -213,7 +213,8 @@ SKG_API skg_status skg_scan_short_range_get(const skg_view *view, const skg_scan
  *              or seen from behind (RTK), pixels of different sizes (TIGRE, CIL) */
 SKG_API skg_status skg_scan_geometry_save(const skg_scan *scan, const char *path);
 
-/** The same with a note at the end, such as where the flat fields are: a comment of .csv, .xml and .py; transforms.json has none.
+/** Writes the geometry with a note at the end, such as where the flat fields are: a comment of .csv, .xml and .py; transforms.json has
+ * none.
  *
  *     note   one line of up to 1000 bytes; NULL: none */
 SKG_API skg_status skg_scan_geometry_save_noted(const skg_scan *scan, const char *path, const char *note);

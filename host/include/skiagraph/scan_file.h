@@ -16,7 +16,7 @@ extern "C" {
 /** A file of projections that is being written. */
 typedef struct skg_scan_file skg_scan_file;
 
-/** What a file of projections holds. Prepare with skg_scan_file_options_init: float. */
+/** Contents of a file of projections to be written. Prepare with skg_scan_file_options_init: float. */
 typedef struct {
     /** Set by skg_scan_file_options_init. */
     int32_t size;
@@ -28,7 +28,7 @@ typedef struct {
     const char *hash;
     /** Name of the quantity, such as "energy"; copied. NULL: "". */
     const char *name;
-    /** Its unit, such as "keV per pixel"; copied. NULL: "". */
+    /** Unit of the quantity, such as "keV per pixel"; copied. NULL: "". */
     const char *unit;
     /** I0 in the unit of the projections; 0: unknown. */
     double flat_field;

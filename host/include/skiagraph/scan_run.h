@@ -16,8 +16,8 @@ extern "C" {
 /** A scan that is being computed. */
 typedef struct skg_scan_run skg_scan_run;
 
-/** What of a scan is computed, and how. Prepare with skg_scan_run_options_init: every projection, as float, of a
- * scene that stands still. */
+/** Projections of a scan to be computed, and how. Prepare with skg_scan_run_options_init: every projection, as float, of a scene that
+ * stands still. */
 typedef struct {
     /** Set by skg_scan_run_options_init. */
     int32_t size;

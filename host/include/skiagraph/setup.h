@@ -90,7 +90,7 @@ SKG_API skg_status skg_setup_file_count(const skg_setup *setup, int64_t *count);
 SKG_API skg_status skg_setup_file_get(const skg_setup *setup, int64_t index, const char **name,
                                       const char **path);
 
-/** What skg_setup_save changes. Prepare with skg_setup_changes_init: nothing. */
+/** Changes that skg_setup_save writes into a scene file. Prepare with skg_setup_changes_init: none. */
 typedef struct {
     /** Set by skg_setup_changes_init. */
     int32_t size;

@@ -142,7 +142,7 @@ inline mesh make_mesh(std::span<const double> positions, std::span<const std::in
     return make_mesh(source, positions.size(), corners, unit_mm, name);
 }
 
-/** The same from floats. */
+/** Makes a mesh of positions in single precision. */
 inline mesh make_mesh(std::span<const float> positions, std::span<const std::int32_t> corners,
                       double unit_mm = 1, const char *name = nullptr) {
     skg_mesh_source source;

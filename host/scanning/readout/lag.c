@@ -90,7 +90,7 @@ skg_status skg_lag_clear(skg_lag *lag) {
     return SKG_OK;
 }
 
-/* What a pixel makes of a signal by the sensitivity that earlier ones left it. */
+/* Signal of a pixel with the sensitivity that earlier signals left it. */
 static double sense(skg_lag *lag, int64_t pixel, double signal) {
     double sensitivity = 1;
     for (int64_t k = 0; k < lag->ghosts; k++) {
@@ -101,7 +101,7 @@ static double sense(skg_lag *lag, int64_t pixel, double signal) {
     return signal * fmax(sensitivity, 0);
 }
 
-/* What a pixel shows of a signal: what is not held, and what is set free of what was. */
+/* Shown signal of a pixel: the share that is not trapped, and the charge that traps release. */
 static double pass(skg_lag *lag, int64_t pixel, double signal) {
     double shown = signal;
     for (int64_t k = 0; k < lag->count; k++) {

@@ -81,9 +81,9 @@ static void back_project_line(skg_fdk *fdk, const pixel_map *map, double scale, 
     }
 }
 
-/* The same of a curved detector about the source: a voxel is seen by its angle about the detector's axis, and weighs by the inverse
- * square of its distance from that axis (Kak and Slaney 1988, sections 3.4.2 and 3.6; H. Turbell, thesis 1001, Linkoping 2001, on
- * cylindrical detectors). */
+/* Adds a row of voxels of a projection by a curved detector about the source: a voxel is seen by its angle about the detector's axis, and
+ * weighs by the inverse square of its distance from that axis (Kak and Slaney 1988, sections 3.4.2 and 3.6; H. Turbell, thesis 1001,
+ * Linkoping 2001, on cylindrical detectors). */
 static void back_project_fan(skg_fdk *fdk, const skg_orbit_pose *pose, double scale, int64_t y, int64_t z) {
     const skg_fdk_options *o = &fdk->options;
     const skg_view *v = &pose->view;

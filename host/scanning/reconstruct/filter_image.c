@@ -82,7 +82,7 @@ static int is_cut(const float *edge, int64_t next, int64_t columns, double large
     return sum > SHARE * largest * (double)count;
 }
 
-/* What holds for all rows of a projection. */
+/* Data common to all rows of a projection. */
 typedef struct {
     const skg_orbit_pose *pose;
     const float *image;

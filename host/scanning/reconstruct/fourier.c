@@ -29,8 +29,8 @@ static void transform(const skg_row_filter *f, int64_t n, double *re, double *im
         }
 }
 
-/* What the ramp is multiplied by `away` from its middle, rad. Rays of a fan are less than half a turn apart, and so are the samples that
- * the ramp joins; beyond that it joins zeros. */
+/* Factor of the ramp of a fan for samples at equal angles: (a / sin a)^2, `away` rad from its middle. Rays of a fan are less than half a
+ * turn apart, and so are the samples that the ramp joins; beyond that it joins zeros. */
 static double of_fan(double away) {
     static const double MOST = 0.9 * SKG_PI;
     const double x = away < MOST ? away : MOST;

@@ -20,8 +20,8 @@ void skg_scan_open_direct(skg_scan_file *file) {
     if (O_DIRECT) file->direct = open(file->path, O_WRONLY | O_DIRECT | O_CLOEXEC);
 }
 
-/* What the file system refuses, and the rest of a short write, go through the cache, which also gives the reason if the disk
- * is full. */
+/* Writes through the cache what the file system refuses to write directly, and the rest of a short write; the cache also gives the reason
+ * if the disk is full. */
 static skg_status write_piece(skg_scan_file *file, const char *from, int64_t count, int64_t at) {
     ssize_t put = -1;
     do put = file->direct >= 0 ? pwrite(file->direct, from, (size_t)count, (off_t)at) : 0;

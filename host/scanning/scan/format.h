@@ -35,7 +35,7 @@ struct skg_scan_file {
     int64_t damaged;     /* projections that did not fit their checksum */
 };
 
-/* Who wrote a file. */
+/* Identity of the scan of a file. */
 typedef struct {
     char hash[SKG_DIGEST_TEXT]; /* "": no scan of ours */
     int64_t samples;

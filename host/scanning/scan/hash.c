@@ -1,4 +1,4 @@
-/* What identifies the projections of a scan. */
+/* Hash of the projections of a scan: of its set-up and the options that change them. */
 #include "core/core.h"
 #include "core/digest.h"
 #include "core/text.h"

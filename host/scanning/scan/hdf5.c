@@ -29,7 +29,7 @@ static skg_status fail(const char *path) {
     return skg_output_fail(path, 0, reason);
 }
 
-/* What depends on the projection alone: [3] source, centre, column step, row step; time; angle in degrees. */
+/* Geometry of each projection: [3] source, centre, column step, row step; time; angle in degrees. */
 typedef struct {
     double *vectors[4], *time, *theta;
 } geometry;
@@ -79,7 +79,7 @@ static int make_exchange(hid_t root, const skg_scan_file *file, const geometry *
     return done;
 }
 
-/* What a reconstruction needs of a scan that turns. */
+/* Writes the axis and the centre of rotation of a scan that turns, for reconstructions. */
 static int write_rotation(hid_t group, const skg_scan_file *file) {
     const hsize_t size = 3;
     const hid_t space = H5Screate_simple(1, &size, NULL);

@@ -35,7 +35,7 @@ static skg_status refuse(const packing *p, const char *what) {
     return skg_fail(SKG_ERR_FORMAT, "%s: %s", p->from, what);
 }
 
-/* What HDF5 could not write. */
+/* Fails because HDF5 could not write. */
 static skg_status fail(const packing *p) {
     return skg_output_fail(p->to, errno == ENOSPC ? ENOSPC : 0, "HDF5 could not write it");
 }
@@ -252,7 +252,7 @@ static skg_status pack(packing *p) {
     return pack_set(p, "exchange/data_dark", 0);
 }
 
-/* What HDF5 may hold of a file at its end: an index of pieces of images, of which there are 64 bytes for each. */
+/* Memory that HDF5 may hold at the end of a file, bytes: an index of pieces of images, of which there are 64 bytes for each. */
 static int64_t held_of(hid_t result) {
     const hid_t set = H5Dopen2(result, "exchange/data", H5P_DEFAULT);
     hsize_t size[3] = {0};

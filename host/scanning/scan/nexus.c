@@ -141,7 +141,7 @@ static int put_instrument(hid_t entry, const skg_scan_file *file, hid_t *detecto
     return done;
 }
 
-/* What is plotted by default. */
+/* Writes the group that viewers plot by default. */
 static int put_default(hid_t entry) {
     const hid_t data = make_group(entry, "data", "NXdata");
     const int done =

@@ -121,7 +121,7 @@ static skg_status describe(const skg_scan_work *work, int64_t index, double from
     return skg_motion_fill(o->motion, frame);
 }
 
-/* What the series of a scan's scatter asks for. */
+/* Data for the series of a scan's scatter, which asks for the frames. */
 typedef struct {
     const skg_scan_work *work;
     skg_view view;

@@ -7,7 +7,7 @@
 #include <skiagraph/scan_run.h>
 #include <skiagraph/scatter_series.h>
 
-/* What is computed and how; constant during a run. */
+/* Plan, scan and options of a run; constant during the run. */
 typedef struct {
     skg_plan *plan;
     skg_scan *scan;

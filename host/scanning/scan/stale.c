@@ -1,4 +1,4 @@
-/* What writers that were killed have left of a scan. */
+/* Removes the unfinished files that killed writers of a scan have left. */
 #include "scan/format.h"
 
 #include "core/text.h"

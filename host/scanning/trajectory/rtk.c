@@ -6,7 +6,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What RTK says of a projection. In its rotated coordinates x runs along the columns' step, y along the rows' step, and
+/* Parameters of a projection in RTK. In its rotated coordinates x runs along the columns' step, y along the rows' step, and
  * z from the detector to the source; lengths are in mm, angles in degrees. */
 typedef struct {
     double distance, source_to_detector; /* of the source from the origin and from the detector, along z */

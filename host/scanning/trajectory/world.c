@@ -1,4 +1,4 @@
-/* What the writers of geometries share. */
+/* Functions that the writers of geometries share. */
 #include "core/maths.h"
 #include "trajectory/writers.h"
 

@@ -42,7 +42,7 @@ skg_status skg_tool_pixel(const skg_scan *scan, const char *tool, double pixel_m
 /* Comment lines of a Python file: where the axes of a tool's world are. */
 void skg_tool_write_world(const skg_tool_world *world, FILE *stream);
 
-/* What a table of poses begins with, by enum skg_projection. */
+/* First words of a table of poses, by enum skg_projection. */
 extern const char *const skg_scan_table_beams[];
 
 skg_status skg_scan_write_rtk(const skg_scan *scan, FILE *stream);

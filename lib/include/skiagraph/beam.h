@@ -99,7 +99,7 @@ enum skg_tube_model {
  * do, which is no measurement; beyond nothing is verified;
  * behind 0.5 mm Al at 25 to 40 kV both are within 5 %; mammographic beams (Mo/Mo,
  * Mo/Rh, Rh/Rh, W/Rh, W/Ag) are within 2 %. First half-value layers that PTB measured are reproduced within 3 %.
- * What lies outside the range of the calibration is reported as a warning: other voltages and angles, other
+ * A tube outside the range of the calibration is reported as a warning: other voltages and angles, other
  * anodes, and filters so thin that more than 1 % of the air kerma is that of photons below 7 keV. No
  * inherent filtration is assumed; from 70 kV on, a beam softer than behind 2.5 mm Al (IEC 60601-1-3) is
  * reported as a warning. */
@@ -197,11 +197,11 @@ SKG_INIT(skg_quality)
 /** Gets the figures of a beam's quality. */
 SKG_API skg_status skg_spectrum_quality_get(const skg_spectrum *spectrum, skg_quality *quality);
 
-/** What a detector records of a photon, by its energy. Where a response may be NULL, NULL is the ideal
- * detector: it records every photon with all its energy. */
+/** Recorded energy of a photon and the probability that it is recorded, by its energy. Where a response may be NULL, NULL is the
+ * ideal detector: it records every photon with all its energy. */
 typedef struct skg_response skg_response;
 
-/** What the recorded energies of a table mean for noise. Means are the same for both. */
+/** How noise is computed from the recorded energies of a table. Means are the same for both. */
 enum skg_response_meaning {
     /** The mean signal of a photon that arrives, in units of the energy that would give it. The share of the
      * photons that give any signal is the table's efficiency; without one, every photon does. */

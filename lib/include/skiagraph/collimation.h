@@ -11,7 +11,7 @@
 extern "C" {
 #endif
 
-/** What limits the beam. */
+/** Kinds of collimation. */
 enum skg_collimation_kind {
     /** Nothing. */
     SKG_COLLIMATION_OPEN = 0,
@@ -48,7 +48,7 @@ typedef struct {
     double distance_mm;
     /** Of the rectangle: its lowest coordinates along the column step and along the row step, mm. */
     double low[2];
-    /** Its highest, above the lowest. */
+    /** Of the rectangle: its highest coordinates, above the lowest, mm. */
     double high[2];
     /** Of the detector's rectangle: mm on the detector; below 0: the field is smaller. */
     double margin_mm;

@@ -103,7 +103,7 @@ SKG_API skg_status skg_context_retain(skg_context *context);
  * the handle to NULL, accepts NULL and cannot fail. */
 SKG_API void skg_context_release(skg_context **context);
 
-/** What a line of the log is. */
+/** Levels of the lines of the log. */
 enum skg_log_level {
     /** Something about the result that the caller should know. */
     SKG_LOG_WARNING = 1,
@@ -206,7 +206,7 @@ SKG_API skg_status skg_device_count(int64_t *count);
 /** The device with number 0 <= index < count. Errors: SKG_ERR_ARGUMENT, SKG_ERR_FORK. */
 SKG_API skg_status skg_device_get(int64_t index, skg_device_info *info);
 
-/** What a test found out about a device. */
+/** Verdict of a self-test of a device. */
 enum skg_test_verdict {
     /** The kernels compute wrongly. */
     SKG_TEST_WRONG = 0,
@@ -228,9 +228,9 @@ typedef struct {
     double seconds;
     /** Of the first test: images of 512 x 512 pixels and 300 triangles per second. Otherwise 0. */
     double score;
-    /** What was tested, such as "strategy tiles". */
+    /** Name of the test, such as "strategy tiles". */
     char name[32];
-    /** What is wrong; "" if nothing is. */
+    /** Reason of the verdict if the device is wrong, unsupported or failed; "" if it is right. */
     char reason[256];
 } skg_device_test;
 

@@ -22,9 +22,9 @@ enum skg_counting_limit {
     SKG_COUNTING_SIDE = 11
 };
 
-/** What a pixel does with pulses that follow each other. Pulses that overlap are counted in the window of their sum: with several thresholds
- * counts move to higher windows, while all together stay as below. A low window of a paralysable detector, the difference of two counters,
- * may be negative from about one pulse in a dead time on; skg_channel.flat_field is then 0. */
+/** Models of pile-up: pulses that follow each other within the dead time. Overlapping pulses count in the window of their sum: with several
+ * thresholds counts move to higher windows, while all together stay as below. A low window of a paralysable detector, the difference of two
+ * counters, may be negative from about one pulse in a dead time on; skg_channel.flat_field is then 0. */
 enum skg_pile_up {
     /** Every pulse counts. */
     SKG_PILE_UP_NONE = 0,

@@ -13,11 +13,11 @@
 extern "C" {
 #endif
 
-/** What a scene gives. */
+/** Air kerma, absorbed doses and detector exposure of one exposure of a scene. */
 typedef struct skg_dose skg_dose;
 
-/** What skg_dose_create is asked for. Prepare with skg_dose_options_init: 200,000 photons, and the place where the middle ray of the field
- * enters the first part. */
+/** Options of skg_dose_create. Prepare with skg_dose_options_init: 200,000 photons, and air kerma at one place, where the middle ray of
+ * the field enters the first part. */
 typedef struct {
     /** Set by skg_dose_options_init. */
     int32_t size;
@@ -111,7 +111,7 @@ typedef struct {
     int32_t scattered;
     /** The pixel of the field with the least signal. */
     int64_t darkest_row;
-    /** Its column. */
+    /** Column of this pixel. */
     int64_t darkest_column;
     /** The mean there, in the plan's quantity. */
     double darkest_signal;
@@ -140,7 +140,7 @@ typedef struct {
      * place is outside the field, or parts stand between it and the source. Interactions nearest to the
      * place count as they do on average there. */
     double backscatter;
-    /** Its standard error. */
+    /** Standard error of the backscatter factor. */
     double backscatter_sigma;
 } skg_dose_point;
 
@@ -152,7 +152,7 @@ SKG_API skg_status skg_dose_point_count(const skg_dose *dose, int64_t *count);
 /** Gets place 0 <= index < count, in the order of the options. */
 SKG_API skg_status skg_dose_point_get(const skg_dose *dose, int64_t index, skg_dose_point *point);
 
-/** What stays in a part. The library fills it; prepare with skg_dose_part_init. */
+/** Energy and dose that a part absorbs. The library fills it; prepare with skg_dose_part_init. */
 typedef struct {
     /** Set by skg_dose_part_init. */
     int32_t size;
@@ -160,7 +160,7 @@ typedef struct {
     int32_t reserved;
     /** Mean absorbed dose: energy over mass, uGy. NAN: photons were not followed, or the part has no mass. */
     double dose_ugy;
-    /** Its standard error, uGy. NAN likewise, and where no photon came near the part. */
+    /** Standard error of dose_ugy, uGy. NAN likewise, and where no photon came near the part. */
     double sigma_ugy;
     /** Energy that stays in the part, without those that lie inside it, keV. NAN as dose_ugy. */
     double energy_kev;
@@ -170,7 +170,7 @@ typedef struct {
 
 SKG_INIT(skg_dose_part)
 
-/** Gets what stays in part 0 <= part < number of parts of the scene. */
+/** Gets energy and dose of part 0 <= part < number of parts of the scene. */
 SKG_API skg_status skg_dose_part_get(const skg_dose *dose, int64_t part, skg_dose_part *result);
 
 #ifdef __cplusplus

@@ -57,7 +57,7 @@ typedef int32_t skg_status;
 
 /** The status codes of SKG_STATUS_LIST. */
 enum skg_status_code {
-/** One of them. */
+/** Defines one code of the list. */
 #define SKG_STATUS_ENUM(name, value, text) name = (value),
     SKG_STATUS_LIST(SKG_STATUS_ENUM)
 #undef SKG_STATUS_ENUM

@@ -58,8 +58,8 @@ typedef struct {
     /** [override_count] fill fraction: the share of the part that is there, 0 to 1; the rest is what the part
      * lies inside. NULL: 1. A part below 1 must not contain another part. */
     const double *fill_fractions;
-    /** Of a plan with scatter: a series that has the scatter of this frame (scatter_series.h); NULL: it is computed for the frame.
-     * The same plan made the series. */
+    /** Of a plan with scatter: a series that has the scatter of this frame (scatter_series.h) and was made by this plan; NULL: scatter
+     * is computed for the frame. */
     const skg_scatter_series *scatter_series;
     /** The frame's number in that series, 0 to its number of frames less 1; between two numbers it is between them. */
     double series_place;
@@ -71,7 +71,7 @@ typedef struct {
 
 SKG_INIT(skg_frame)
 
-/** What an output receives. */
+/** Kinds of outputs. */
 enum skg_output_kind {
     /** Images: as many channels as the plan has, in its quantity. */
     SKG_OUTPUT_IMAGE = 0,
@@ -80,9 +80,9 @@ enum skg_output_kind {
     /** The scattered part of the images, without noise and blur, in the plan's quantity; of an attenuation or a transmission, as a
      * fraction of the flat field. Needs skg_plan_options.scatter. */
     SKG_OUTPUT_SCATTER = 2,
-    /** Its standard error, smoothing included. */
+    /** Standard error of SKG_OUTPUT_SCATTER, smoothing included. */
     SKG_OUTPUT_SCATTER_SIGMA = 3,
-    /** One of its components, in the same unit (skg_output.component). Smoothed by the same cosines, so that the components
+    /** A component of the scatter, in the same unit (skg_output.component). Smoothed by the same cosines, so that the components
      * add up to SKG_OUTPUT_SCATTER; a small one may be slightly negative. */
     SKG_OUTPUT_SCATTER_COMPONENT = 4,
     /** The images that are expected, without noise and without the steps of the detector, in the plan's quantity. Of an attenuation
@@ -121,8 +121,8 @@ enum skg_lengths {
     SKG_LENGTHS_SURFACE = 1
 };
 
-/** What is computed, and where it goes: [frame][channel][row][column]. Prepare with skg_output_init: images, float,
- * dense. */
+/** An output of a job: its kind, and the memory that receives it as [frame][channel][row][column]. Prepare with skg_output_init:
+ * images, float, dense. */
 typedef struct {
     /** Set by skg_output_init. */
     int32_t size;

@@ -49,11 +49,11 @@ typedef struct {
 
 SKG_INIT(skg_adjoint)
 
-/** What a gradient is wanted of, and where it goes: the caller's memory, which is written as a whole. Prepare with
- * skg_gradient_init: nothing.
+/** Parameters of a gradient, and the caller's memory that receives its components, each array written as a whole. Prepare with
+ * skg_gradient_init: no parameters.
  *
- * A twist is (tx, ty, tz in mm, rx, ry, rz in radians), in world axes about the world's origin: what it moves has the pose
- * exp(twist) pose. */
+ * A twist is (tx, ty, tz in mm, rx, ry, rz in radians), in world axes about the world's origin: a body with the pose T moves to
+ * exp(twist) T. */
 typedef struct {
     /** Set by skg_gradient_init. */
     int32_t size;

@@ -35,7 +35,7 @@ typedef struct {
     const void *data;
     /** Name of the quantity, for the file's header, such as "energy"; NULL: "". */
     const char *name;
-    /** Its unit, such as "keV per pixel"; NULL: "". */
+    /** Unit of the quantity, such as "keV per pixel"; NULL: "". */
     const char *unit;
     /** Where the detector is, for the file's header; NULL: pixels of 1 mm at no particular place. */
     const skg_view *view;
@@ -97,7 +97,7 @@ SKG_API skg_status skg_picture_range_get(const skg_picture *picture, double *low
 SKG_API skg_status skg_picture_window_get(const skg_picture *picture, double below, double above, double *low,
                                           double *high);
 
-/** What an image file holds. The library fills it; prepare with skg_picture_contents_init. */
+/** Quantity, size and pixel spacing of an image file. The library fills it; prepare with skg_picture_contents_init. */
 typedef struct {
     /** Set by skg_picture_contents_init. */
     int32_t size;

@@ -22,7 +22,7 @@ extern "C" {
 /** Vertices and triangles. */
 typedef struct skg_mesh skg_mesh;
 
-/** What a mesh is made of. The arrays are the caller's. */
+/** Vertices and triangles of a mesh to be made. The arrays are the caller's. */
 typedef struct {
     /** Set by skg_mesh_source_init. */
     int32_t size;
@@ -33,7 +33,7 @@ typedef struct {
     int64_t vertices;
     /** Rows of x, y, z in units of unit_mm. */
     const double *positions;
-    /** The same as floats; one of the two is NULL. */
+    /** Positions in single precision instead; one of positions and floats is NULL. */
     const float *floats;
     /** Elements from one row to the next, at least 3; 0: 3. */
     int64_t position_stride;
@@ -232,7 +232,7 @@ typedef struct {
     int64_t turned;
     /** Number of the first of them; -1: none. */
     int64_t first_turned;
-    /** Its middle, mm. */
+    /** Middle of the first turned triangle, mm. */
     double first_turned_position[3];
     /** Number of patches that are one-sided, as a Moebius strip is: they stay as they are. */
     int64_t one_sided;
@@ -265,7 +265,7 @@ typedef struct {
     int64_t inverted;
     /** Number of the first inverted component, in the order of their first triangles; -1: none. */
     int64_t first_inverted;
-    /** Its number of triangles. */
+    /** Number of triangles of the first inverted component. */
     int64_t inverted_triangles;
     /** 1: it faces inward in the open; 0: outward, inside another. */
     int32_t inverted_inward;
@@ -337,7 +337,7 @@ typedef struct {
     double mm;
     /** mm per unit that the file names, even where the caller named another one; 0: none */
     double file_mm;
-    /** Its name: "nm", "um", "mm", "cm", "dm", "m", "inch", "ft", ..., or such as "2.5 mm". */
+    /** Name of the unit: "nm", "um", "mm", "cm", "dm", "m", "inch", "ft", ..., or such as "2.5 mm". */
     char name[32];
 } skg_mesh_unit;
 

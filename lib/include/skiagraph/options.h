@@ -1,5 +1,5 @@
 /** @file
- * What a plan is asked for: precision, quantity, source, detector, repair, tolerances.
+ * Options of a plan: precision, quantity, source, detector, repair, tolerances.
  *
  * @since 0.1.0 */
 #ifndef SKIAGRAPH_OPTIONS_H
@@ -29,7 +29,7 @@ enum skg_strategy {
     SKG_STRATEGY_ATOMICS = 3
 };
 
-/** What happens at the bad pixels of a leaky mesh, where a ray does not leave the mesh as often as it enters
+/** Repair of the bad pixels of a leaky mesh, where a ray does not leave the mesh as often as it enters
  * it.
  *
  * A ray that enters through one hole and leaves through another is not bad by this count: NEIGHBOURS cannot

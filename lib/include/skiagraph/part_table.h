@@ -27,7 +27,7 @@ SKG_API void skg_part_table_release(skg_part_table **table);
 /** Gets the mean energy of the beam, at which shares hold, keV. */
 SKG_API skg_status skg_part_table_energy_get(const skg_part_table *table, double *kev);
 
-/** What is measured of a part. The library fills it; prepare with skg_part_row_init. */
+/** Measurements of a part. The library fills it; prepare with skg_part_row_init. */
 typedef struct {
     /** Set by skg_part_row_init. */
     int32_t size;

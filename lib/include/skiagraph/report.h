@@ -1,5 +1,5 @@
 /** @file
- * What a plan decided and why, and what its last job found. Texts are valid as long as the plan.
+ * Reports of a plan: its decisions and their reasons, and the findings of its last job. Texts are valid as long as the plan.
  *
  * @since 0.1.0 */
 #ifndef SKIAGRAPH_REPORT_H
@@ -17,9 +17,9 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Such as "energy", "photons from 20 to 40 keV". */
+    /** Name of the channel, such as "energy", "photons from 20 to 40 keV". */
     const char *name;
-    /** Such as "keV per pixel". */
+    /** Unit of its values, such as "keV per pixel". */
     const char *unit;
     /** I0 in this unit: what the beam gives without parts and world, before it is weakened by falloff. 1 for
      * transmission, 0 for attenuation. */
@@ -34,7 +34,7 @@ SKG_API skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *count);
 /** Gets channel 0 <= index < count. */
 SKG_API skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel *channel);
 
-/** What was decided, and what the last frame and job found. The library fills it; prepare with
+/** The plan's decisions, and the findings of its last frame and job. The library fills it; prepare with
  * skg_plan_report_init. */
 typedef struct {
     /** Set by skg_plan_report_init. */
@@ -70,7 +70,7 @@ typedef struct {
     int64_t device_bytes;
     /** Rays per pixel: samples of the source times those of the pixel. */
     int64_t samples;
-    /** What the last doubling of adaptive sampling changed, as a fraction of the flat field; 0: not known. */
+    /** Change of the image by the last doubling of the samples in adaptive sampling, as a fraction of the flat field; 0: not known. */
     double sample_error;
     /** Pixels of the last frame at which the signed hits of a leaky mesh do not cancel. */
     int64_t bad_pixels;
@@ -103,7 +103,7 @@ SKG_INIT(skg_plan_report)
 /** Gets the report of a plan. */
 SKG_API skg_status skg_plan_report_get(const skg_plan *plan, skg_plan_report *report);
 
-/** What the scatter of the last frame was. The library fills it; prepare with skg_scatter_report_init. */
+/** Amount, error and composition of the scatter of the last frame. The library fills it; prepare with skg_scatter_report_init. */
 typedef struct {
     /** Set by skg_scatter_report_init. */
     int32_t size;
@@ -111,7 +111,7 @@ typedef struct {
     int32_t cosines;
     /** Mean over the detector and all channels, in the unit of SKG_OUTPUT_SCATTER. */
     double mean;
-    /** Its standard error: root mean square over both, smoothing included, in the same unit. */
+    /** Standard error of the mean: root mean square over detector and channels, smoothing included, in the same unit. */
     double sigma;
     /** Photons from the source. */
     int64_t histories;
@@ -142,7 +142,7 @@ SKG_INIT(skg_scatter_report)
  *     errors   SKG_ERR_ARGUMENT if the plan has no scatter, or no frame was submitted yet */
 SKG_API skg_status skg_plan_scatter_report_get(const skg_plan *plan, skg_scatter_report *report);
 
-/** What the scatter of a plan's images is, from few histories. The library fills it; prepare with
+/** Estimate of the scatter in a plan's images, from few histories. The library fills it; prepare with
  * skg_scatter_prediction_init. */
 typedef struct {
     /** Set by skg_scatter_prediction_init. */
@@ -154,14 +154,14 @@ typedef struct {
     double ratio;
     /** Root mean square of the scatter over the detector, as a fraction of the open beam: the error of images without it. */
     double rms;
-    /** Its maximum, likewise. */
+    /** Maximum of the scatter over the detector, likewise. */
     double max;
-    /** What the anti-scatter grid passes of the primary, of the scatter and of both, over the detector, of this scene instead of the
+    /** Transmission of the anti-scatter grid for primary radiation, averaged over the detector in this scene instead of behind the
      * phantom of IEC 60627; its selectivity is grid_primary / grid_scatter. 1 without a grid. */
     double grid_primary;
-    /** Of the scatter. */
+    /** Transmission of the grid for scatter, likewise. */
     double grid_scatter;
-    /** Of both. */
+    /** Transmission of the grid for primary radiation and scatter together, likewise. */
     double grid_total;
     /** Wall time. */
     double seconds;
@@ -216,7 +216,7 @@ typedef struct {
     int32_t size;
     /** 1: the scene calls for it; 0: absent, and it costs nothing. */
     int32_t on;
-    /** What it is called. */
+    /** Name of the effect, such as "scatter". */
     const char *name;
     /** Why it is on or off. */
     const char *reason;
@@ -268,7 +268,7 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Such as "raster". */
+    /** Name of the stage, such as "raster". */
     const char *name;
     /** Time on the device in ns, over all frames of the job. */
     double ns;

@@ -45,7 +45,7 @@ SKG_API skg_status skg_scatter_series_retain(skg_scatter_series *series);
 /** Releases the handle, and sets it to NULL. */
 SKG_API void skg_scatter_series_release(skg_scatter_series **series);
 
-/** What a series is. The library fills it; prepare with skg_scatter_series_report_init. */
+/** Frames, histories and error of a series. The library fills it; prepare with skg_scatter_series_report_init. */
 typedef struct {
     /** Set by skg_scatter_series_report_init. */
     int32_t size;
@@ -65,7 +65,7 @@ typedef struct {
 
 SKG_INIT(skg_scatter_series_report)
 
-/** Gets what a series is. */
+/** Gets the report of a series. */
 SKG_API skg_status skg_scatter_series_report_get(const skg_scatter_series *series,
                                                  skg_scatter_series_report *report);
 

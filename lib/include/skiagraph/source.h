@@ -1,5 +1,5 @@
 /** @file
- * What leaves the source: focal spot, falloff, heel effect, bow-tie filter.
+ * Emission of the source over space and direction: focal spot, falloff, heel effect, bow-tie filter.
  *
  * @since 0.1.0 */
 #ifndef SKIAGRAPH_SOURCE_H

@@ -41,7 +41,7 @@ enum skg_precision {
     SKG_PRECISION_HALF = 2
 };
 
-/** What a pixel holds. I0 is the flat field: the same beam and detector without noise and without parts. */
+/** Quantity and unit of a pixel's value. I0 is the flat field: the same beam and detector without noise and without parts. */
 enum skg_quantity {
     /** keV per pixel; the paper's "energy fluence" */
     SKG_QUANTITY_ENERGY = 0,

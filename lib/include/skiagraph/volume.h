@@ -17,7 +17,7 @@ extern "C" {
 /** A grid of cells. It never changes, and may be shared by threads. */
 typedef struct skg_volume skg_volume;
 
-/** What the values of cells are. */
+/** Physical quantity of the values of cells. */
 enum skg_volume_values {
     /** Hounsfield numbers. Density and, without a material or classes, composition follow from them as in
      * skg_material_create_hounsfield; they are rounded to whole numbers. Below -1000 is air; above 3000 bone of rising density
@@ -29,7 +29,7 @@ enum skg_volume_values {
     SKG_VOLUME_MU = 2
 };
 
-/** What values are between the centres of cells. */
+/** Interpolation of the values between the centres of cells. */
 enum skg_volume_interpolation {
     /** Each cell has one value throughout. */
     SKG_VOLUME_CELLS = 0,
@@ -50,8 +50,8 @@ enum skg_volume_type {
     SKG_VOLUME_FLOAT64 = 3
 };
 
-/** What a volume is made of. The arrays are the caller's, and copied. Prepare with skg_volume_source_init: Hounsfield numbers, cells
- * of 1 mm. */
+/** Cells, values and materials of a volume to be made. The arrays are the caller's, and copied. Prepare with skg_volume_source_init:
+ * Hounsfield numbers, cells of 1 mm. */
 typedef struct {
     /** Set by skg_volume_source_init. */
     int32_t size;
@@ -112,7 +112,7 @@ SKG_API skg_status skg_volume_retain(skg_volume *volume);
 /** Removes an owner; the last one frees the volume. */
 SKG_API void skg_volume_release(skg_volume **volume);
 
-/** What a volume is. The library fills it; prepare with skg_volume_contents_init. */
+/** Size, spacing and range of values of a volume. The library fills it; prepare with skg_volume_contents_init. */
 typedef struct {
     /** Set by skg_volume_contents_init. */
     int32_t size;
@@ -148,7 +148,7 @@ typedef struct {
 
 SKG_INIT(skg_volume_contents)
 
-/** Gets what a volume is. */
+/** Gets size, spacing and range of values of a volume. */
 SKG_API skg_status skg_volume_contents_get(const skg_volume *volume, skg_volume_contents *contents);
 
 /** Gets composition 0 <= index < classes of a volume.

@@ -71,7 +71,7 @@ static cl_int give_text(const char *text, size_t size, void *place, size_t *need
     return give(text, strlen(text) + 1, size, place, needed);
 }
 
-/* What nobody cares for is 0, as wide as the caller has room. */
+/* Answers a query that no test reads with 0, as wide as the caller has room. */
 static cl_int give_zero(size_t size, void *place, size_t *needed) {
     if (needed) *needed = size;
     if (place) memset(place, 0, size);
@@ -271,7 +271,7 @@ static const cl_icd_dispatch calls = {.clGetPlatformIDs = platform_ids,
                                       CALL(clEnqueueBarrierWithWaitList),
                                       CALL(clEnqueueReadBuffer)};
 
-/* What the loader looks for. */
+/* Functions that the loader looks for. */
 GUEST cl_int CL_API_CALL clIcdGetPlatformIDsKHR(cl_uint room, cl_platform_id *platforms, cl_uint *count);
 GUEST cl_int CL_API_CALL clIcdGetPlatformIDsKHR(cl_uint room, cl_platform_id *platforms, cl_uint *count) {
     return platform_ids(room, platforms, count);

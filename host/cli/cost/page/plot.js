@@ -90,7 +90,7 @@ function grid(at) {
   return text;
 }
 
-/* What lies behind the marks: the noise, what the best image itself is not known to, the dials, the frontier. */
+/* Draws the background of the marks: the noise, the uncertainty of the best image, the dials, the frontier. */
 function behind(at) {
   const line = (v, name) => `<line class="noise" x1="${box.left}" x2="${box.right}" y1="${at.y(v)}" y2="${at.y(v)}" stroke="${colour("bins")}" stroke-dasharray="2 3"/>` +
     `<text class="faint" x="${box.left + 6}" y="${at.y(v) - 4}">${name}</text>`;

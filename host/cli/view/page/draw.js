@@ -140,7 +140,7 @@ function uploadParts() {
   }
 }
 
-// What the view holds when all is seen.
+// Measures the points that have to be in view when all is seen.
 function measureWhole() {
   const v = scene.view, [low, high] = scene.box, path = scene.path.length / 3;
   const everything = [...boxPoints(low, high), ...v.strips.flat(), ...v.field, ...v.starts, ...Array.from({length: path}, (_, i) => scene.path.slice(3 * i, 3 * i + 3))];
@@ -184,7 +184,7 @@ function showImage(frame) {
   gl.texParameteri(gl.TEXTURE_2D, gl.TEXTURE_MAG_FILTER, gl.NEAREST);
 }
 
-// What every program of a picture needs to know.
+// Values that every program of a picture reads.
 const shot = {time: 0, m: null, eye: [0, 0, 0, 1], light: [0, 0, 1], chosen: -1, under: -1, marks: true, ground: [0.957, 0.961, 0.969], cut: [0, 0, 0, 0], aimed: null};
 // cut: points p with dot(xyz, p) > w are not drawn. aimed: called after the camera was set, with the direction towards the eye.
 

@@ -1,4 +1,4 @@
-// What the page shows beside the picture, and what mouse, fingers and keys do.
+// The page beside its picture: lists and controls, and the actions of mouse, fingers and keys.
 'use strict';
 const byId = id => document.getElementById(id);
 const make = (kind, text = '', name = '') => Object.assign(document.createElement(kind), {textContent: text, className: name});

@@ -262,7 +262,7 @@ CALLS: dict[str, tuple[str, str]] = {
 
 
 def description(name: str) -> str:
-    """What help() shows of a call that has no words of its own."""
+    """Text of help() for a call that has no words of its own."""
     kind, remark = CALLS[name]
     if kind == "same":
         return f"The arguments, values and units of gVXR's {name}."

@@ -1,4 +1,4 @@
-"""What gVXR computes of arrays: means, extremes, correlation and errors."""
+"""gVXR's comparisons of arrays: means, extremes, correlation and errors."""
 from __future__ import annotations
 
 from typing import Any

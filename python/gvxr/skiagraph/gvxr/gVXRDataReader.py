@@ -28,7 +28,7 @@ class gVXRDataReader:
         self.use_parallel_beam = world.shape == "ParallelBeam"
 
     def geometry(self) -> dict[str, Any]:
-        """What CIL is told, by the names of its arguments."""
+        """Arguments of CIL's geometry, by name."""
         source, centre = np.array(world.source), np.array(world.detector)
         made = {"detector_position": centre, "detector_direction_x": np.array(getDetectorRightVector()),
                 "detector_direction_y": np.array(getDetectorUpVector()),

@@ -60,7 +60,7 @@ def computeSpectralImage() -> NDArray[np.float32]:
 
 
 def getWhiteSpectralImage() -> NDArray[np.float32]:
-    """The same without meshes."""
+    """Photons per pixel in each of the bands without the meshes, [band, row, column]."""
     return _bands(_white())
 
 

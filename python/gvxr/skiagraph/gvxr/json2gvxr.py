@@ -58,7 +58,7 @@ def _read(fname: str) -> dict[str, Any]:
 
 
 def _listed(value: Any) -> Any:
-    """What a script may have put into params, as a file has it: arrays and tuples as lists, numbers of NumPy as Python's."""
+    """A value of params as a file has it: arrays and tuples as lists, numbers of NumPy as Python's."""
     if isinstance(value, dict):
         return {key: _listed(inside) for key, inside in value.items()}
     if isinstance(value, (list, tuple)):

@@ -1,4 +1,4 @@
-"""What meshes are made of."""
+"""Materials, densities and coefficients of the meshes."""
 from __future__ import annotations
 
 import re
@@ -143,7 +143,7 @@ def getElementSymbol(Z: str | int) -> str:
 
 
 def getElementName(anElement: str | int) -> str:
-    """Such as "Iron"."""
+    """Name of the element, such as "Iron"."""
     return element_name(anElement)
 
 

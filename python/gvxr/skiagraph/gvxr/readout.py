@@ -30,12 +30,12 @@ def getDetectorGain() -> float:
 
 
 def setDetectorBias(aBias: float) -> None:
-    """What is added to the ...WithGain images, in their unit."""
+    """Sets the bias that is added to the ...WithGain images, in their unit."""
     world.bias = float(aBias)
 
 
 def getDetectorBias() -> float:
-    """What is added to the ...WithGain images."""
+    """The bias that is added to the ...WithGain images."""
     return world.bias
 
 

@@ -1,4 +1,4 @@
-"""What the detector records: response, blur, bands and noise."""
+"""Response of the detector: energies, blur, bands and noise."""
 from __future__ import annotations
 
 import os
@@ -64,7 +64,7 @@ def clearLSF() -> None:
 
 
 def _scintillator(material: str, thickness_mm: float) -> Response:
-    """What scattered photons and K fluorescence carry out of the layer is not recorded."""
+    """A scintillator without the energy that scattered photons and K fluorescence carry out of the layer."""
     return Response.scintillator(_layer(material), thickness_mm, escape=True)
 
 
@@ -84,7 +84,7 @@ def getScintillatorThickness(aUnitOfLength: str) -> float:
 
 
 def getSupportedScintillatorMaterials() -> tuple[str, ...]:
-    """Those that gVXR names; every material of the tables and every formula of them will do."""
+    """Scintillators that gVXR names; every material of the tables and every formula of them will do."""
     return tuple(_SCINTILLATORS)
 
 

@@ -54,7 +54,7 @@ def getSpectrumXpecgen(kvp_in_kV: float, filters: Any = None, th_in_deg: float =
                        max_number_of_energy_bins: int | None = None,
                        inherent_filtration_thickness_in_mm: float | None = 0.5,
                        inherent_filtration_material: str | None = "Al") -> Spectrum:
-    """The same without an exposure, by the same model."""
+    """Energies, photons and unit of a tube without an exposure, by Skiagraph's own model."""
     return getSpectrumSpekpy(kvp_in_kV, filters, th_in_deg, max_number_of_energy_bins, None, None,
                              inherent_filtration_thickness_in_mm, inherent_filtration_material)
 
@@ -155,7 +155,7 @@ def loadSpectrumXpecgen(kvp_in_kV: float, filters: Any = None, th_in_deg: float 
                         max_number_of_energy_bins: int | None = None,
                         inherent_filtration_thickness_in_mm: float | None = 0.5,
                         inherent_filtration_material: str | None = "Al") -> Loaded:
-    """The same without an exposure."""
+    """Sets the beam of a tube without an exposure, by Skiagraph's own model."""
     return loadSpectrumSpekpy(kvp_in_kV, filters, th_in_deg, max_number_of_energy_bins, None, None,
                               inherent_filtration_thickness_in_mm, inherent_filtration_material)
 

@@ -1,4 +1,4 @@
-"""What the calls set: a graph of meshes, a source and a detector, and the scene that they make. Private.
+"""State that the calls set: a graph of meshes, a source and a detector, and the scene that they make. Private.
 
 Lengths are in mm, energies in keV, matrices act on columns.
 """

@@ -93,7 +93,7 @@ def _capped(kept: list[list[int]]) -> list[list[int]]:
 
 
 def clipped(vertices: _Vertices, faces: _Faces, normals: _Vertices, offsets: _Vertices, size: float) -> tuple[_Vertices, _Faces]:
-    """What of a closed mesh is behind all these planes, closed."""
+    """The part of a closed mesh behind all these planes, closed."""
     for normal, offset in zip(normals, offsets):
         if not len(faces):
             break

@@ -1,4 +1,4 @@
-"""What gVXR's module utils offers: plots by Matplotlib, the scene in a notebook, and spectra.
+"""gVXR's module utils: plots by Matplotlib, the scene in a notebook, and spectra.
 
 Spectra are those of Skiagraph's own tube, so that neither SpekPy nor xpecgen is needed: the flags has_... of packages that
 are not needed are True.
@@ -61,7 +61,7 @@ def logImage(xray_image: Any, min_val: float, max_val: float) -> NDArray[np.floa
 
 
 def applyLogScaleAndNegative(image: Any) -> NDArray[np.float64]:
-    """The same with the least value white."""
+    """The logarithm of an image, negative: the least value is 1 (white), the greatest 0."""
     values = np.asarray(image, dtype=float)
     return 1 - logImage(values, float(values.min()), float(values.max()))
 

@@ -1,4 +1,4 @@
-"""What lies in gVXR's wheel and is not part of Skiagraph. Private."""
+"""Files of gVXR's wheel that are not part of Skiagraph. Private."""
 from __future__ import annotations
 
 #: The mesh of gVXR's tutorials.

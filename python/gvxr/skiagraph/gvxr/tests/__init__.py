@@ -51,5 +51,5 @@ def test_offscreen() -> None:
 
 
 def test_gvxr() -> None:
-    """The same: there is no window."""
+    """One radiograph, without a window."""
     _check()

@@ -63,7 +63,7 @@ class TwinFlux:
 
 @dataclass(kw_only=True)
 class TwinBeam:
-    """What all beams have."""
+    """Properties that all beams have."""
 
     beam_type: str = ""
     shape: SourceType = SourceType.POINT

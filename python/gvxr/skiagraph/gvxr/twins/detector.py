@@ -10,7 +10,7 @@ __all__ = ["TwinADU", "TwinDarkfield", "TwinDetector", "TwinDetectorGain", "Twin
 
 @dataclass(kw_only=True)
 class TwinScintillator:
-    """Its material, its thickness in um, and rows of energy and response in keV if they are known."""
+    """A scintillator: material, thickness in um, and rows of energy and response in keV if they are known."""
 
     material: str
     thickness: float
@@ -62,7 +62,7 @@ def gain_from_config(json: dict[str, Any]) -> TwinDetectorGain:
 
 @dataclass(kw_only=True)
 class TwinDarkfield:
-    """What each image has more, and its deviation from pixel to pixel."""
+    """Dark signal of each image, and its deviation from pixel to pixel."""
 
     bias: float
     sigma: float

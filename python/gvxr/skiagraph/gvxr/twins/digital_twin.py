@@ -24,7 +24,7 @@ _Layers = list[tuple[str, float]]
 
 @dataclass(kw_only=True)
 class DigitalTwinSpecification:
-    """What a scanner can do."""
+    """Abilities of a scanner."""
 
     name: str
     description: str

@@ -40,7 +40,7 @@ class XYZRange:
         return usual(self.x, 0.0), abs(usual(self.y, 500.0)), usual(self.z, 0.0)
 
     def errors(self, name: str, position: tuple[float, float, float]) -> Iterator[str]:
-        """What is wrong with a position."""
+        """Errors of a position, a sentence each."""
         for axis, limits, value in zip("xyz", (self.x, self.y, self.z), position):
             if limits is None or limits[0] <= value <= limits[1]:
                 continue
