@@ -4,15 +4,11 @@
 #include "common/interrupt.h"
 #include "common/progress.h"
 
-#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
-const char *const cost_source_names[COST_SOURCES] = {"triangles", "precision",      "bins of the spectrum",
-                                                     "tolerance", "source samples", "supersampling",
-                                                     "repair",    "true surface",   "scatter"};
 const char *const cost_repair_names[2 * COST_UNITE] = {[SKG_REPAIR_NONE] = "none",
                                                        [SKG_REPAIR_NEIGHBOURS] = "neighbours",
                                                        [SKG_REPAIR_EXACT] = "exact",
@@ -20,9 +16,6 @@ const char *const cost_repair_names[2 * COST_UNITE] = {[SKG_REPAIR_NONE] = "none
                                                        [SKG_REPAIR_NEIGHBOURS + COST_UNITE] =
                                                            "neighbours and union",
                                                        [SKG_REPAIR_EXACT + COST_UNITE] = "exact and union"};
-const char *const cost_reference_names[COST_REFERENCES] = {
-    "precision, tolerance, bins", "source samples",    "supersampling", "repair", "triangles",
-    "relaxation, hysteresis",     "all dials together"};
 const double cost_tolerances[COST_TOLERANCES] = {1e-2, 1e-3, 1e-4, 1e-6};
 
 double cost_left_ms(const cost_study *study, double share) {

@@ -283,12 +283,8 @@ typedef struct {
     cost_judged judged;
 } cost_study;
 
-extern const char *const cost_source_names[COST_SOURCES];
 extern const char *const cost_repair_names[2 * COST_UNITE]; /* by the repair of a setting */
 extern const double cost_tolerances[COST_TOLERANCES];
-
-/* The dials that are compared with a reference: "precision, tolerance, bins". */
-extern const char *const cost_reference_names[COST_REFERENCES];
 
 /* The name of a setting's precision. */
 const char *cost_precision_name(const cost_setting *setting);
