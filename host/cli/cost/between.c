@@ -7,7 +7,6 @@
 
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const char *const ways[2] = {"cells", "linear"};
 
@@ -20,10 +19,8 @@ static int64_t list_settings(const skg_scene *scene, const char *way, char ***se
         skg_part part;
         skg_part_init(&part);
         if (skg_scene_part_get(scene, i, &part) != SKG_OK || !part.volume) continue;
-        const size_t length = strlen(part.label) + 64;
-        char *text = malloc(length);
+        char *text = cost_part_setting(&part, i, "Interpolation=\"%s\"", way);
         if (!text) return -1;
-        snprintf(text, length, "Samples.%s.Interpolation=\"%s\"", part.label, way);
         (*settings)[count++] = text;
     }
     return *settings ? count : -1;

@@ -4,6 +4,7 @@
 #include "common/interrupt.h"
 #include "common/progress.h"
 
+#include <inttypes.h>
 #include <stdarg.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -84,6 +85,25 @@ skg_status cost_load(const cost_study *study, int64_t count, const char *const *
     skg_status status = skg_setup_create(NULL, &source, setup);
     free(all);
     return status;
+}
+
+char *cost_part_setting(const skg_part *part, int64_t number, const char *format, ...) {
+    char *text = NULL;
+    size_t size = 0;
+    const char *name = "";
+    FILE *stream = open_memstream(&text, &size);
+    va_list arguments;
+    if (!stream) return NULL;
+    if (skg_mesh_name_get(part->mesh, &name) == SKG_OK && strcmp(part->label, name) == 0)
+        fprintf(stream, "Samples.%" PRId64 ".", number);
+    else
+        fprintf(stream, "Samples.%s.", part->label);
+    va_start(arguments, format);
+    vfprintf(stream, format, arguments);
+    va_end(arguments);
+    if (fclose(stream) == 0) return text;
+    free(text);
+    return NULL;
 }
 
 static skg_status read_spectrum(const cost_study *study, int64_t bins, skg_spectrum **spectrum) {
