@@ -6,8 +6,8 @@
  * is overwritten. The same bits on every machine. Takes 72 n^3 multiplications at most. */
 void skg_eigen(int n, double *matrix, double *values, double *vectors);
 
-/* Finds them in rising order, with the vectors as columns (column k the k-th, matrix[n * row + k]) in place of the matrix.
- * n <= SKG_EIGEN_MAX. */
+/* Finds eigenvalues and eigenvectors in rising order, with the vectors as columns (column k the k-th, matrix[n * row + k]) in place of the
+ * matrix. n <= SKG_EIGEN_MAX. */
 enum { SKG_EIGEN_MAX = 64 };
 void skg_eigen_rising(int n, double *matrix, double *values);
 

@@ -270,6 +270,14 @@ START_TEST(linear_values_between_cells_have_their_price) {
     ck_assert_double_gt(worst, 0.01);
     ck_assert_double_eq_tol(number(between, "max_open"), worst, 1e-6); /* floats of the same images */
     json_decref(study);
+    /* A volume without a label is set by its number. */
+    ck_run(0,
+           "cost 'small scene.json' --quick --within 5 --json %s --set "
+           "'Samples.bone={\"Volume\":\"ct.mha\",\"Values\":\"HU\",\"Parent\":\"skin\"}'",
+           beam);
+    study = said_json();
+    ck_assert_double_gt(number(member(study, "interpolation"), "linear_ms"), 0);
+    json_decref(study);
     ck_run(0, "cost 'small scene.json' --quick --within 5 --json %s", beam);
     study = said_json();
     ck_assert(json_is_null(member(study, "interpolation")));

@@ -153,9 +153,9 @@ static void blame_coarse(const cost_study *study, int source, int point, double 
     if (point >= 0 || !has_dial || cost_why_absent(study, source)) return;
     const char *separator = *text ? "; " : "";
     if (coarse->state != COST_COARSE)
-        cost_append(text, size, "%sthe error of %s was not measured", separator, cost_source_names[source]);
+        cost_append(text, size, "%sthe error of %s was not measured", separator, cost_sources[source].name);
     else if (coarse->error > bar)
-        cost_append(text, size, "%sthe error of %s is about %.1e", separator, cost_source_names[source],
+        cost_append(text, size, "%sthe error of %s is about %.1e", separator, cost_sources[source].name,
                     coarse->error);
 }
 

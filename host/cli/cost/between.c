@@ -5,10 +5,8 @@
 #include "common/encode.h"
 #include "common/say.h"
 
-#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
-#include <string.h>
 
 static const char *const ways[2] = {"cells", "linear"};
 
@@ -21,10 +19,8 @@ static int64_t list_settings(const skg_scene *scene, const char *way, char ***se
         skg_part part;
         skg_part_init(&part);
         if (skg_scene_part_get(scene, i, &part) != SKG_OK || !part.volume) continue;
-        const size_t length = strlen(part.label) + 64;
-        char *text = malloc(length);
+        char *text = cost_part_setting(&part, i, "Interpolation=\"%s\"", way);
         if (!text) return -1;
-        snprintf(text, length, "Samples.%s.Interpolation=\"%s\"", part.label, way);
         (*settings)[count++] = text;
     }
     return *settings ? count : -1;
@@ -42,45 +38,46 @@ static skg_status shoot(cost_study *study, const char *const *settings, int64_t 
     return status;
 }
 
-/* Both images, and their difference. */
-static skg_status compare(cost_study *study, double *batch, double *images[2]) {
+/* Both images, and their prices. */
+static skg_status shoot_both(cost_study *study, double *batch, double *images) {
     cost_between *between = &study->measured.between;
-    for (int k = 0; k < 2; k++) {
+    skg_status status = SKG_OK;
+    for (int k = 0; k < 2 && status == SKG_OK; k++) {
         char **settings = NULL;
         cost_shot *shot = calloc(1, sizeof *shot);
         const int64_t count = list_settings(study->session.scene, ways[k], &settings);
-        skg_status status = shot && count >= 0 ? SKG_OK : SKG_ERR_MEMORY;
+        status = shot && count >= 0 ? SKG_OK : SKG_ERR_MEMORY;
         if (status == SKG_OK)
-            status = shoot(study, (const char *const *)settings, count, batch, images[k], shot);
+            status =
+                shoot(study, (const char *const *)settings, count, batch, images + k * study->pixels, shot);
         if (status == SKG_OK)
             between->ms[k] = shot->price_ms, between->uncertainty_ms[k] = shot->uncertainty_ms;
         for (int64_t i = 0; settings && settings[i]; i++) free(settings[i]);
         free(settings);
         free(shot);
-        if (status != SKG_OK) return status;
     }
-    double squares = 0;
-    for (int64_t i = 0; i < study->pixels; i++) {
-        const double error = fabs(images[1][i] - images[0][i]) / study->subject.flat_field;
-        between->max = fmax(between->max, error);
-        squares += error * error;
-    }
-    between->rms = sqrt(squares / (double)study->pixels);
-    between->is_known = 1;
-    return SKG_OK;
+    return status;
 }
 
 int cost_measure_between(cost_study *study) {
     if (!study->subject.has_volume) return CLI_DONE;
-    double *memory = calloc((size_t)((2 + study->frames) * study->pixels), sizeof *memory);
-    if (!memory) return cli_error(CLI_DEVICE, "out of host memory for the images of volumes");
-    double *images[2] = {memory, memory + study->pixels};
-    const skg_status status = compare(study, memory + 2 * study->pixels, images);
-    free(memory);
-    if (status == SKG_ERR_MEMORY) return cli_fail(status);
-    if (status != SKG_OK)
+    double *images = calloc((size_t)((2 + study->frames) * study->pixels), sizeof *images);
+    if (!images) return cli_error(CLI_DEVICE, "out of host memory for the images of volumes");
+    const skg_status status = shoot_both(study, images + 2 * study->pixels, images);
+    cost_coarse difference = {0};
+    int exit_status = CLI_DONE;
+    if (status == SKG_OK)
+        exit_status = cost_compare_coarsely(study, images + study->pixels, images, &difference);
+    else if (status == SKG_ERR_MEMORY)
+        exit_status = cli_fail(status);
+    else
         cost_note(study, "linear values between cells are not compared: %.300s", skg_last_error());
-    return CLI_DONE;
+    study->measured.between.is_known = status == SKG_OK;
+    study->measured.between.max = difference.max;
+    study->measured.between.rms = difference.error;
+    free(difference.difference);
+    free(images);
+    return exit_status;
 }
 
 json_t *cost_between_json(const cost_study *study) {

@@ -28,7 +28,7 @@ static int choose_pair(const cost_study *study, int source, cost_setting *from, 
     /* Few source samples, to save time. */
     if (source == COST_SOURCE_SUPERSAMPLING && from->samples > 16) from->samples = 16;
     *to = *from;
-    return cost_improve(study, cost_source_dial(source), to);
+    return cost_improve(study, cost_sources[source].dial, to);
 }
 
 /* Every energy takes longer than the energies of a tolerance, at most in proportion to their numbers. */
@@ -61,11 +61,6 @@ static int fetch(cost_study *study, slot slots[SLOTS], const cost_setting *setti
     return its->is_filled ? free_slot : -1;
 }
 
-/* The dial's value that today's is compared with. */
-static void name_pair(const cost_study *study, int source, const cost_setting *to, cost_coarse *coarse) {
-    cost_describe_dial(study, to, cost_source_dial(source), coarse->compared, sizeof coarse->compared);
-}
-
 static int compare_pair(cost_study *study, int source, slot slots[SLOTS], const cost_setting *from,
                         const cost_setting *to) {
     cost_coarse *coarse = &study->measured.coarse[source];
@@ -78,14 +73,9 @@ static int compare_pair(cost_study *study, int source, slot slots[SLOTS], const 
         snprintf(coarse->reason, sizeof coarse->reason, "not measured: %.150s", skg_last_error());
         return CLI_DONE;
     }
-    cost_point point = {0};
-    const int exit_status = cost_compare(study, 1, slots[first].image, slots[second].image, &point);
     coarse->state = COST_COARSE;
-    coarse->error = point.rms_flat;
-    coarse->max = point.max_flat;
-    coarse->difference = point.difference;
-    name_pair(study, source, to, coarse);
-    return exit_status;
+    cost_describe_dial(study, to, cost_sources[source].dial, coarse->compared, sizeof coarse->compared);
+    return cost_compare_coarsely(study, slots[first].image, slots[second].image, coarse);
 }
 
 /* Whether the images of a pair that are not there yet can be computed in the time that is left. */

@@ -100,7 +100,7 @@ static int try_guess(cost_study *study, const guess *its, double share, double *
         study->left_out++;
         return 0;
     }
-    cost_add_point(study, COST_SEVERAL, COST_OF_ALL, 0, its->setting);
+    cost_add_point(study, COST_SEVERAL, 0, its->setting);
     if (study->measured.count == count) return 0;
     (*tried)++;
     return cost_measure(study, &study->measured.points[count], image);

@@ -72,6 +72,16 @@ int cost_compare(const cost_study *study, int64_t images, const double *image, c
     return point->difference ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
 }
 
+int cost_compare_coarsely(const cost_study *study, const double *image, const double *better,
+                          cost_coarse *coarse) {
+    cost_point point = {.difference = coarse->difference};
+    const int exit_status = cost_compare(study, 1, image, better, &point);
+    coarse->error = point.rms_flat;
+    coarse->max = point.max_flat;
+    coarse->difference = point.difference;
+    return exit_status;
+}
+
 int cost_compare_shot(const cost_study *study, const double *image, cost_shot *shot) {
     const double *reference = study->measured.references[COST_OF_ALL].image;
     double squares;

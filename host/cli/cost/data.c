@@ -7,10 +7,6 @@
 #include "cost/findings.h"
 #include "cost/measuring.h"
 
-#include <inttypes.h>
-#include <math.h>
-#include <stdio.h>
-#include <stdlib.h>
 #include <time.h>
 
 static json_t *setting_json(const cost_study *study, const cost_setting *setting) {
@@ -34,24 +30,14 @@ static void add_price(const cost_study *study, const cost_shot *shot, json_t *ob
 }
 
 static json_t *point_json(const cost_study *study, const cost_point *point) {
-    const cost_shot *shot = &study->measured.shots[point->shot];
     json_t *object = json_object();
     json_object_set_new(object, "dial", cli_json_text(cost_dial_name(point->dial)));
     json_object_set_new(object, "setting", setting_json(study, &point->setting));
     json_object_set_new(object, "reference", json_integer(point->reference));
     json_object_set_new(object, "settings_index", json_integer(point->shot));
     json_object_set_new(object, "frontier", json_boolean(point->on_frontier));
-    json_object_set_new(object, "nodes", json_integer(shot->nodes));
-    json_object_set_new(object, "planes", json_integer(shot->planes));
-    json_object_set_new(object, "runs", json_integer(shot->runs));
-    json_object_set_new(object, "plan_ms", cli_json_number(shot->plan_ms));
-    add_price(study, shot, object);
-    json_object_set_new(object, "max_open", cli_json_number(point->max_flat));
-    json_object_set_new(object, "rms_open", cli_json_number(point->rms_flat));
-    json_object_set_new(object, "max_ref", cli_json_number(point->max_ref));
-    json_object_set_new(object, "rms_ref", cli_json_number(point->rms_ref));
-    json_object_set_new(object, "max_mm", cli_json_number(point->max_mm));
-    json_object_set_new(object, "rms_mm", cli_json_number(point->rms_mm));
+    add_price(study, &study->measured.shots[point->shot], object);
+    cost_add_numbers(study, point, object);
     return object;
 }
 
@@ -85,7 +71,7 @@ static json_t *source_json(const cost_study *study, int number) {
     char today[160];
     json_t *object = json_object();
     cost_describe_source(study, number, today, sizeof today);
-    json_object_set_new(object, "name", cli_json_text(cost_source_names[number]));
+    json_object_set_new(object, "name", cli_json_text(cost_sources[number].name));
     json_object_set_new(object, "state", cli_json_text(states[source->state]));
     json_object_set_new(object, "error", cli_json_number(source->error));
     json_object_set_new(object, "max", cli_json_number(source->max));
@@ -103,15 +89,14 @@ static json_t *index_json(int index) {
 }
 
 static json_t *advice_json(const cost_study *study, const cost_advice *advice) {
-    static const int chosen[] = {COST_SAMPLES, COST_SUPERSAMPLING, COST_TRIANGLES, COST_REPAIR};
     json_t *object = json_object();
     json_object_set_new(object, "tolerance", cli_json_number(advice->tolerance));
     json_object_set_new(object, "bar", cli_json_number(advice->bar));
     json_object_set_new(object, "rays", index_json(advice->rays));
     json_object_set_new(object, "rays_met", json_boolean(advice->rays_met));
     json_object_set_new(object, "rays_command", cli_json_text(advice->rays_command));
-    for (int i = 0; i < 4; i++)
-        json_object_set_new(object, cost_dials[chosen[i]].key, index_json(advice->chosen[chosen[i]]));
+    for (int dial = COST_SAMPLES; dial <= COST_TRIANGLES; dial++)
+        json_object_set_new(object, cost_dials[dial].key, index_json(advice->chosen[dial]));
     json_object_set_new(object, "sampling_met", json_boolean(advice->sampling_met));
     json_object_set_new(object, "reason", *advice->reason ? cli_json_text(advice->reason) : json_null());
     json_object_set_new(object, "settings_index", index_json(cost_find_shot(study, &advice->whole.setting)));
@@ -122,14 +107,22 @@ static json_t *advice_json(const cost_study *study, const cost_advice *advice) {
     return object;
 }
 
+/* The dials that are compared with a reference: "precision, tolerance, bins". */
+static json_t *dials_json(int reference) {
+    char text[96] = "";
+    for (int dial = COST_PRECISION; dial < COST_DIALS; dial++)
+        if (cost_dials[dial].reference == reference)
+            cost_append(text, sizeof text, "%s%s", *text ? ", " : "", cost_dials[dial].name);
+    return cli_json_text(*text ? text : "all dials together");
+}
+
 static json_t *references_json(const cost_study *study) {
     json_t *references = json_array();
     for (int i = 0; i < COST_REFERENCES; i++) {
         json_t *reference = study->measured.references[i].image
                                 ? setting_json(study, &study->measured.references[i].setting)
                                 : json_null();
-        if (json_is_object(reference))
-            json_object_set_new(reference, "dials", cli_json_text(cost_reference_names[i]));
+        if (json_is_object(reference)) json_object_set_new(reference, "dials", dials_json(i));
         json_array_append_new(references, reference);
     }
     return references;

@@ -1,9 +1,8 @@
-/* The table of dials, and what is done with its rows. */
+/* The table of dials; reads, writes, describes and compares their values, and finds the cheapest setting within an error. */
 #include "cost/dial.h"
 
 #include "common/encode.h"
 
-#include <inttypes.h>
 #include <math.h>
 #include <string.h>
 
@@ -24,23 +23,23 @@ static double triangle_count(const cost_study *study, const cost_setting *settin
 const cost_dial cost_dials[COST_DIALS] = {
     [COST_SCENE] = {.name = "scene", .reference = COST_OF_RAYS},
     [COST_PRECISION] = {"precision", "precision", COST_OF_RAYS, INT32(precision), -1, precision_word, NULL,
-                        "%s precision", "%s", " --precision %s"},
+                        "%s precision", "%s", " --precision %s", NULL},
     [COST_TOLERANCE] = {"tolerance", "tolerance", COST_OF_RAYS, REAL(tolerance), -1, NULL, NULL,
-                        "tolerance %.3g", "tolerance %.3g", " --tolerance %.3g"},
+                        "tolerance %.3g", "tolerance %.3g", " --tolerance %.3g", NULL},
     [COST_BINS] = {"bins", "bins", COST_OF_RAYS, INT64(bins), 0, NULL, NULL,
-                   "%.0f bins", "%.0f bins", " --set Source.Beam.MaxNumberOfEnergyBins=%.0f"},
+                   "%.0f bins", "%.0f bins", " --set Source.Beam.MaxNumberOfEnergyBins=%.0f", "max_bins"},
     [COST_SAMPLES] = {"source samples", "samples", COST_OF_SAMPLES, INT64(samples), 0, NULL, NULL,
-                      "%.0f source samples", "%.0f samples", " --set Source.Samples=%.0f"},
+                      "%.0f source samples", "%.0f samples", " --set Source.Samples=%.0f", NULL},
     [COST_SUPERSAMPLING] = {"supersampling", "supersampling", COST_OF_AREAS, INT32(supersampling), -1, NULL, NULL,
-                            "%1$.0f x %1$.0f rays a pixel", "%1$.0f x %1$.0f rays", " --set Detector.Oversampling=%.0f"},
+                            "%1$.0f x %1$.0f rays a pixel", "%1$.0f x %1$.0f rays", " --set Detector.Oversampling=%.0f", NULL},
     [COST_REPAIR] = {"repair", "repair", COST_OF_REPAIR, INT32(repair), -1, cost_repair_of, NULL,
-                     "%s repair", "repair %s", NULL},
+                     "%s repair", "repair %s", NULL, NULL},
     [COST_TRIANGLES] = {"triangles", "triangles", COST_OF_TRIANGLES, INT32(meshing), -1, NULL, triangle_count,
-                        "%.0f triangles", "%.0f triangles", NULL},
+                        "%.0f triangles", "%.0f triangles", NULL, NULL},
     [COST_RELAXATION] = {"relaxation", "relaxation", COST_OF_BREATH, INT32(relaxation), -1, NULL, NULL,
-                         NULL, "relaxation %.0f", NULL},
+                         NULL, "relaxation %.0f", NULL, NULL},
     [COST_HYSTERESIS] = {"hysteresis", "hysteresis", COST_OF_BREATH, REAL(hysteresis), -1, NULL, NULL,
-                         NULL, "hysteresis %g", NULL}};
+                         NULL, "hysteresis %g", NULL, NULL}};
 /* clang-format on */
 
 static size_t bytes_of(int dial) {
@@ -52,12 +51,11 @@ void cost_take(int dial, const cost_setting *from, cost_setting *to) {
     memcpy((char *)to + at, (const char *)from + at, bytes_of(dial));
 }
 
-static double value_of(int dial, const cost_setting *setting) {
-    const char *at = (const char *)setting + cost_dials[dial].at;
+double cost_read(int kind, const void *at) {
     int32_t small;
     int64_t large;
     double real;
-    switch (cost_dials[dial].kind) {
+    switch (kind) {
     case COST_IS_INT32:
         memcpy(&small, at, sizeof small);
         return small;
@@ -68,6 +66,19 @@ static double value_of(int dial, const cost_setting *setting) {
         memcpy(&real, at, sizeof real);
         return real;
     }
+}
+
+json_t *cost_number_json(int kind, double value) {
+    return kind == COST_IS_REAL ? cli_json_number(value) : json_integer((json_int_t)value);
+}
+
+void cost_put_number(FILE *stream, int kind, double value) {
+    if (!isnan(value)) fprintf(stream, kind == COST_IS_REAL ? "%.6g" : "%.0f", value);
+    fputc(',', stream);
+}
+
+static double value_of(int dial, const cost_setting *setting) {
+    return cost_read(cost_dials[dial].kind, (const char *)setting + cost_dials[dial].at);
 }
 
 int cost_has_value(int dial, const cost_setting *setting) {
@@ -90,17 +101,16 @@ json_t *cost_value_json(const cost_study *study, const cost_setting *setting, in
     const double number = number_of(study, setting, dial);
     if (word) return *word ? cli_json_text(word) : json_null();
     if (number == cost_dials[dial].none) return json_null();
-    return cost_dials[dial].kind == COST_IS_REAL ? cli_json_number(number) : json_integer((json_int_t)number);
+    return cost_number_json(cost_dials[dial].kind, number);
 }
 
 void cost_put_value(FILE *stream, const cost_study *study, const cost_setting *setting, int dial) {
     const char *word = word_of(study, setting, dial);
     const double number = number_of(study, setting, dial);
     if (word)
-        fputs(word, stream);
-    else if (number >= 0) /* below: the setting has no breath */
-        fprintf(stream, cost_dials[dial].kind == COST_IS_REAL ? "%.6g" : "%.0f", number);
-    fputc(',', stream);
+        fprintf(stream, "%s,", word);
+    else /* below 0: the setting has no breath */
+        cost_put_number(stream, cost_dials[dial].kind, number < 0 ? (double)NAN : number);
 }
 
 void cost_append_value(const cost_study *study, const cost_setting *setting, int dial, const char *format,

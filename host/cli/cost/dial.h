@@ -1,5 +1,5 @@
-/* A dial is a row: its name, how a setting takes a value, its reference and its sentences; its values and what is better are those of
- * settings.c. And the one query: what is cheapest with an error of at most so much. */
+/* The table of dials: name, place in a setting, reference, sentences; their values and better ones are those of settings.c. And the one
+ * query: the cheapest with an error of at most a bar. */
 #ifndef CLI_COST_DIAL_H
 #define CLI_COST_DIAL_H
 
@@ -21,6 +21,7 @@ typedef struct {
     double (*number)(const cost_study *study, const cost_setting *setting);
     /* Formats of printf: by itself, among others, and in a command; flag NULL: command.c. */
     const char *sentence, *listed, *flag;
+    const char *column; /* of CSV; NULL: key */
 } cost_dial;
 
 extern const cost_dial cost_dials[COST_DIALS];
@@ -30,6 +31,11 @@ void cost_take(int dial, const cost_setting *from, cost_setting *to);
 
 /* Whether the setting has a value of its own. */
 int cost_has_value(int dial, const cost_setting *setting);
+
+/* A number of a kind at an address; for JSON; and as a cell of CSV with its comma, which is empty for NaN: not measured. */
+double cost_read(int kind, const void *at);
+json_t *cost_number_json(int kind, double value);
+void cost_put_number(FILE *stream, int kind, double value);
 
 /* The setting's value for JSON, and as a cell of CSV with its comma. */
 json_t *cost_value_json(const cost_study *study, const cost_setting *setting, int dial);

@@ -23,8 +23,8 @@ void cost_choose_settings(cost_study *study);
 /* Changes a setting to a better value of a dial, for the coarse pass. Returns 0: there is none. */
 int cost_improve(const cost_study *study, int dial, cost_setting *setting);
 
-/* Adds a point, unless the study has it. */
-void cost_add_point(cost_study *study, int dial, int reference, int priority, cost_setting setting);
+/* Adds a point of a dial, or of several, against its reference, unless the study has it. */
+void cost_add_point(cost_study *study, int dial, int priority, cost_setting setting);
 
 /* The scene with other numbers of triangles. */
 

@@ -15,8 +15,12 @@ void cost_describe_source(const cost_study *study, int number, char *text, size_
 /* Fills the source of error that scatter is, from its prediction or its histories. */
 void cost_take_scatter(const cost_study *study, cost_source *source);
 
-/* The dial of a source that has one. */
-int cost_source_dial(int source);
+/* A source of error: its name, and its dial; COST_SCENE: it has none. */
+typedef struct {
+    const char *name;
+    int dial;
+} cost_source_row;
+extern const cost_source_row cost_sources[COST_SOURCES];
 
 /* Why the scene has no such error; NULL: it may have it. */
 const char *cost_why_absent(const cost_study *study, int source);
@@ -36,14 +40,19 @@ void cost_find_trust(cost_study *study);
 /* Fills in study->judged.buy, .saving and .summary. */
 void cost_summarise(cost_study *study);
 
-/* "0.21 %", for a fraction. size: 16 suffice. */
-const char *cost_percent(double share, char *text, size_t size);
+/* A number in words, by value: cost_percent(share).of lasts for the expression. */
+typedef struct {
+    char of[64];
+} cost_text;
+
+/* "0.21 %", for a fraction. */
+cost_text cost_percent(double share);
 
 /* "8.1 ms", with "+-" and the uncertainty where it matters. */
-const char *cost_ms(double ms, double uncertainty_ms, char *text, size_t size);
+cost_text cost_ms(double ms, double uncertainty_ms);
 
-/* Words for a difference of times: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "in the same time". */
-const char *cost_more(double ms, double uncertainty_ms, char *text, size_t size);
+/* Words for a difference of times: "+3.1 ms", "+3.1 +- 0.2 ms", "-2 ms", "the same time within +- 0.5 ms". */
+cost_text cost_more(double ms, double uncertainty_ms);
 
 /* Which setting to use: marks the frontier and fills study->judged.advice; measures the combinations that were not measured
  * yet. */

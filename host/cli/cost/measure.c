@@ -75,6 +75,10 @@ static int ascending(const void *a, const void *b) {
     return (x > y) - (x < y);
 }
 
+void cost_sort(int64_t count, double *values) {
+    qsort(values, (size_t)count, sizeof *values, ascending);
+}
+
 /* Wall time, price and its uncertainty of what was timed so far. The price is the lower quartile: a busy machine lengthens the time on
  * the wall, and the busiest thread's by giving it work of those that wait, while the fastest of few runs is luck. The uncertainty is half
  * of the interquartile range. */
@@ -83,8 +87,8 @@ static void summarise(cost_shot *shot) {
     double wall[COST_RUNS_MAX], price[COST_RUNS_MAX];
     memcpy(wall, shot->run_wall_ms, (size_t)n * sizeof *wall);
     memcpy(price, shot->run_price_ms, (size_t)n * sizeof *price);
-    qsort(wall, (size_t)n, sizeof *wall, ascending);
-    qsort(price, (size_t)n, sizeof *price, ascending);
+    cost_sort(n, wall);
+    cost_sort(n, price);
     shot->wall_now_ms = 0.5 * (wall[(n - 1) / 2] + wall[n / 2]);
     shot->price_ms = price[n / 4];
     shot->uncertainty_ms = n < 3 ? (double)NAN : 0.5 * (price[(3 * n) / 4] - price[n / 4]);
@@ -110,17 +114,6 @@ skg_status cost_time(cost_study *study, cost_run run, void *user, int64_t least,
     if (n && shot->visits < COST_VISITS_MAX) shot->visits++;
     if (n) summarise(shot);
     return SKG_OK;
-}
-
-skg_status cost_report_plan(const skg_plan *plan, cost_shot *shot) {
-    skg_plan_report report;
-    skg_plan_report_init(&report);
-    skg_status status = skg_plan_report_get(plan, &report);
-    shot->nodes = report.nodes;
-    shot->planes = report.planes;
-    shot->bins = report.bins;
-    shot->device_bytes = report.device_bytes;
-    return status;
 }
 
 int32_t cost_type(int32_t precision) {
@@ -181,11 +174,29 @@ int cost_find_shot(const cost_study *study, const cost_setting *setting) {
     return -1;
 }
 
-int cost_add_shot(cost_study *study, const cost_setting *setting) {
-    if (study->measured.shot_count == COST_SHOTS_MAX) return -1;
-    study->measured.shots[study->measured.shot_count] =
-        (cost_shot){.setting = *setting, .total_rms = (double)NAN, .total_max = (double)NAN};
-    return study->measured.shot_count++;
+static skg_status report_plan(const skg_plan *plan, cost_shot *shot) {
+    skg_plan_report report;
+    skg_plan_report_init(&report);
+    skg_status status = skg_plan_report_get(plan, &report);
+    shot->nodes = report.nodes;
+    shot->planes = report.planes;
+    shot->bins = report.bins;
+    shot->device_bytes = report.device_bytes;
+    return status;
+}
+
+skg_status cost_add_shot(cost_study *study, const skg_plan *plan, cost_run run, void *user,
+                         const cost_shot *begun, int *number) {
+    cost_shot shot = *begun;
+    *number = -1;
+    if (study->measured.shot_count == COST_SHOTS_MAX) return SKG_ERR_MEMORY;
+    skg_status status = cost_time(study, run, user, cost_first_runs(study), cost_first_ms(study), &shot);
+    if (!SKG_FAILED(status)) status = report_plan(plan, &shot);
+    if (SKG_FAILED(status)) return status;
+    shot.total_rms = shot.total_max = (double)NAN;
+    *number = study->measured.shot_count++;
+    study->measured.shots[*number] = shot;
+    return status;
 }
 
 /* Keeps the plan for further visits if memory allows. The scene's own is always kept: it is the pulse. */
@@ -222,30 +233,28 @@ static skg_status feel_pulse(cost_study *study) {
     return status;
 }
 
+/* Plans a setting, and computes its first image, [pixels]. The plan is released by the caller also after a failure. */
+static skg_status begin_shot(cost_study *study, const cost_setting *setting, skg_scene *scene, double *image,
+                             still *its, cost_shot *shot) {
+    const double begun = cli_now_ms();
+    skg_status status = cost_plan(study, setting, scene, &its->plan);
+    *shot = (cost_shot){.setting = *setting, .plan_ms = cli_now_ms() - begun, .frames = study->frames};
+    begin_still(setting, image, 1, its);
+    if (!SKG_FAILED(status)) status = make_still(its);
+    if (!SKG_FAILED(status)) cost_widen(its->output.type, study->pixels, image);
+    return status;
+}
+
 skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *image, int *number) {
     still its = {0};
+    cost_shot shot;
     *number = cost_find_shot(study, setting);
     if (*number >= 0) return cost_image(study, setting, image, NULL);
-    const double begun = cli_now_ms();
-    skg_status status = cost_plan(study, setting, NULL, &its.plan);
-    const double plan_ms = cli_now_ms() - begun;
-    if (SKG_FAILED(status)) return status;
-    begin_still(setting, image, 1, &its);
-    status = make_still(&its);
-    if (!SKG_FAILED(status)) cost_widen(its.output.type, study->pixels, image);
-    cost_shot shot = {.plan_ms = plan_ms, .frames = study->frames};
+    skg_status status = begin_shot(study, setting, NULL, image, &its, &shot);
     begin_still(setting, study->batch, study->frames, &its);
     if (!SKG_FAILED(status) && study->measured.shot_count) status = feel_pulse(study);
-    if (!SKG_FAILED(status))
-        status = cost_time(study, make_still, &its, cost_first_runs(study), cost_first_ms(study), &shot);
-    if (!SKG_FAILED(status)) status = cost_report_plan(its.plan, &shot);
-    if (!SKG_FAILED(status) && (*number = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
-    if (!SKG_FAILED(status)) {
-        shot.setting = *setting;
-        shot.total_rms = shot.total_max = (double)NAN;
-        study->measured.shots[*number] = shot;
-        keep_plan(study, *number, &its.plan);
-    }
+    if (!SKG_FAILED(status)) status = cost_add_shot(study, its.plan, make_still, &its, &shot, number);
+    if (!SKG_FAILED(status)) keep_plan(study, *number, &its.plan);
     skg_plan_release(&its.plan);
     return SKG_FAILED(status) ? status : SKG_OK;
 }
@@ -253,13 +262,8 @@ skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *im
 skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, double *image,
                             cost_shot *shot) {
     still its = {0};
-    skg_status status = cost_plan(study, &study->subject.own, scene, &its.plan);
-    if (SKG_FAILED(status)) return status;
-    begin_still(&study->subject.own, image, 1, &its);
-    status = make_still(&its);
-    if (!SKG_FAILED(status)) cost_widen(its.output.type, study->pixels, image);
+    skg_status status = begin_shot(study, &study->subject.own, scene, image, &its, shot);
     begin_still(&study->subject.own, batch, study->frames, &its);
-    shot->frames = study->frames;
     if (!SKG_FAILED(status))
         status = cost_time(study, make_still, &its, cost_first_runs(study), cost_first_ms(study), shot);
     skg_plan_release(&its.plan);

@@ -15,21 +15,25 @@ skg_status cost_image(cost_study *study, const cost_setting *setting, double *im
 /* The image of a setting, [pixels], and the shot of that setting. A setting that is new is timed. */
 skg_status cost_shoot(cost_study *study, const cost_setting *setting, double *image, int *number);
 
-/* The image, [pixels], of the scene's own setting with another scene, and the price of it in an empty shot. batch: [frames][pixels], to
- * work with */
+/* The image, [pixels], of the scene's own setting with another scene, and its price in a shot. batch: [frames][pixels], to work with */
 skg_status cost_shoot_scene(cost_study *study, skg_scene *scene, double *batch, double *image,
                             cost_shot *shot);
 
 /* Finds a shot; negative: the setting was not measured. */
 int cost_find_shot(const cost_study *study, const cost_setting *setting);
 
-/* Adds a shot without times; negative: there are too many. */
-int cost_add_shot(cost_study *study, const cost_setting *setting);
-
 /* Adds the times of a visit to a shot: of at least `least` runs, and more until they took `wish_ms`. */
 typedef skg_status (*cost_run)(void *user);
 skg_status cost_time(cost_study *study, cost_run run, void *user, int64_t least, double wish_ms,
                      cost_shot *shot);
+
+/* Adds a shot to the study: one that has begun with its setting, frames and time of planning, the times of its first visit and the decisions
+ * of its plan. SKG_ERR_MEMORY: there are too many. */
+skg_status cost_add_shot(cost_study *study, const skg_plan *plan, cost_run run, void *user,
+                         const cost_shot *begun, int *number);
+
+/* Sorts values, rising. */
+void cost_sort(int64_t count, double *values);
 
 /* Runs and milliseconds of a first visit. */
 int64_t cost_first_runs(const cost_study *study);
@@ -37,9 +41,6 @@ double cost_first_ms(const cost_study *study);
 
 /* Visits every still shot again, as long as the share of the given time allows: the wanted ones first. */
 skg_status cost_visit_again(cost_study *study, double share);
-
-/* Stores the decisions of a plan in a shot. */
-skg_status cost_report_plan(const skg_plan *plan, cost_shot *shot);
 
 /* The type of the images of a precision. */
 int32_t cost_type(int32_t precision);
@@ -63,6 +64,10 @@ double cost_effort_ms(const cost_study *study, const cost_setting *setting);
 /* Errors of `images` images against those of a reference, and a small picture of the difference. */
 int cost_compare(const cost_study *study, int64_t images, const double *image, const double *reference,
                  cost_point *point);
+
+/* Error of an image against a better one, as that of a source. */
+int cost_compare_coarsely(const cost_study *study, const double *image, const double *better,
+                          cost_coarse *coarse);
 
 /* Errors of a shot's image against the reference COST_OF_ALL, and small pictures of both, unless it has them. */
 int cost_compare_shot(const cost_study *study, const double *image, cost_shot *shot);

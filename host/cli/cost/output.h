@@ -21,6 +21,9 @@ json_t *cost_between_json(const cost_study *study);
 /* The object under the key "sensitivity"; null: it was not asked for. */
 json_t *cost_sensitivity_json(const cost_study *study);
 
+/* Adds the numbers of a point to its object. */
+void cost_add_numbers(const cost_study *study, const cost_point *point, json_t *object);
+
 /* The table of all points as .csv. The caller frees the text; NULL if memory is exhausted. */
 char *cost_csv(const cost_study *study);
 

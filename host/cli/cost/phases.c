@@ -128,13 +128,7 @@ skg_status cost_breathe(cost_study *study, const cost_setting *setting, cost_poi
         *exit_status = cost_compare(study, COST_PHASES, images, reference->image, point);
         compare_positions(positions, reference->positions, COST_PHASES * vertices, point);
         b.output.data = images;
-        status = cost_time(study, run, &b, cost_first_runs(study), cost_first_ms(study), &shot);
-        if (!SKG_FAILED(status)) status = cost_report_plan(b.plan, &shot);
-        if (!SKG_FAILED(status) && (point->shot = cost_add_shot(study, setting)) < 0) status = SKG_ERR_MEMORY;
-        if (!SKG_FAILED(status)) {
-            shot.total_rms = shot.total_max = (double)NAN;
-            study->measured.shots[point->shot] = shot;
-        }
+        status = cost_add_shot(study, b.plan, run, &b, &shot, &point->shot);
     }
     end(&b);
     free(images);

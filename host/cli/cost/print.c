@@ -28,13 +28,11 @@ static void print_wrapped(const char *text) {
 
 static void print_source(const cost_study *study, int number) {
     const cost_source *source = &study->judged.sources[number];
-    char error[48] = "?", ms[64];
     if (source->error == 0) return; /* named in one line by print_none */
-    if (!isnan(source->error)) cost_percent(source->error, error, sizeof error);
-    printf("  %-21s %14s  ", cost_source_names[number], error);
+    printf("  %-21s %14s  ", cost_sources[number].name,
+           isnan(source->error) ? "?" : cost_percent(source->error).of);
     if (source->halving >= 0)
-        printf("%s, %s\n", source->buys,
-               cost_more(source->halving_ms, source->halving_uncertainty_ms, ms, sizeof ms));
+        printf("%s, %s\n", source->buys, cost_more(source->halving_ms, source->halving_uncertainty_ms).of);
     else
         printf("%s\n", source->reason);
 }
@@ -44,7 +42,7 @@ static void print_none(const cost_study *study) {
     char text[256] = "";
     for (int i = 0; i < COST_SOURCES; i++)
         if (study->judged.sources[i].error == 0)
-            cost_append(text, sizeof text, "%s%s", *text ? ", " : "", cost_source_names[i]);
+            cost_append(text, sizeof text, "%s%s", *text ? ", " : "", cost_sources[i].name);
     if (*text) printf("  %-21s %14s  %s\n", "none", "0 %", text);
 }
 
@@ -56,25 +54,24 @@ static void print_sources(const cost_study *study) {
 
 static void print_advice(const cost_study *study, const cost_advice *advice) {
     const int number = cost_find_shot(study, &advice->whole.setting);
-    char text[160], ms[64] = "not timed";
+    const cost_shot *shot = &study->measured.shots[number < 0 ? 0 : number];
+    char text[160];
     cost_describe(study, &advice->whole.setting, text, sizeof text);
-    if (number >= 0)
-        cost_ms(study->measured.shots[number].price_ms, study->measured.shots[number].uncertainty_ms, ms,
-                sizeof ms);
-    printf("  %-7g %-18s %s%s%s\n", advice->tolerance, ms, *advice->reason ? "(not reached) " : "", text,
+    printf("  %-7g %-18s %s%s%s\n", advice->tolerance,
+           number < 0 ? "not timed" : cost_ms(shot->price_ms, shot->uncertainty_ms).of,
+           *advice->reason ? "(not reached) " : "", text,
            advice->bar > advice->tolerance ? " (a tenth of the noise is enough)" : "");
 }
 
 /* The machine, and how far the numbers can be trusted. */
 static void print_trust(const cost_study *study) {
-    char sure[48];
     printf("\n  %lld settings in %.0f s on %s", (long long)study->measured.shot_count,
            1e-3 * (study->ended_ms - study->begun_ms), study->session.device.name);
     if (!isnan(study->judged.unrest))
         printf("; prices by %s, the same image's varied by %.0f %%",
                study->has_processor_clock ? "processor time" : "the wall", 100 * study->judged.unrest);
     if (study->judged.reference_error > 0)
-        printf("; best image known to %s", cost_percent(study->judged.reference_error, sure, sizeof sure));
+        printf("; best image known to %s", cost_percent(study->judged.reference_error).of);
     putchar('\n');
     if (study->stopped)
         printf("  stopped: what was measured until then is kept\n");
@@ -91,7 +88,6 @@ static double steady(double value) {
 /* How much the image changes when a part moves. */
 static void print_sensitivity(const cost_study *study) {
     const cli_sensitivity *s = &study->measured.sensitivity;
-    char text[4][48];
     if (!study->sensitive) return;
     printf("\n  %-21s %13s %13s %13s %13s  %s\n", "rms change for a mm", "along x", "along y", "along z",
            "at most", "along");
@@ -99,9 +95,8 @@ static void print_sensitivity(const cost_study *study) {
         const cli_part_sensitivity *its = &s->parts[i];
         const char *label = "";
         skg_scene_part_label_get(study->session.scene, its->part, &label);
-        for (int k = 0; k < 4; k++)
-            cost_percent(k < 3 ? its->along[k] : its->largest, text[k], sizeof text[k]);
-        printf("  %-21s %13s %13s %13s %13s  (%.3f, %.3f, %.3f)\n", label, text[0], text[1], text[2], text[3],
+        printf("  %-21s %13s %13s %13s %13s  (%.3f, %.3f, %.3f)\n", label, cost_percent(its->along[0]).of,
+               cost_percent(its->along[1]).of, cost_percent(its->along[2]).of, cost_percent(its->largest).of,
                steady(its->direction[0]), steady(its->direction[1]), steady(its->direction[2]));
     }
     if (*s->refusal) print_wrapped(s->refusal);

@@ -3,7 +3,6 @@
 
 #include <inttypes.h>
 #include <math.h>
-#include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
 
@@ -62,24 +61,6 @@ static int64_t scaled(int64_t sectors, double factor) {
     return (int64_t)fmin(fmax(round((double)sectors * factor), FEWEST_SECTORS), SECTORS_MAX);
 }
 
-/* "Samples.bone.Sphere.0=128". A part without a label, which has its mesh's name instead, is named by its
- * number. */
-static char *setting_of(const skg_part *part, int64_t number, int shape, int64_t sectors) {
-    char *text = NULL;
-    size_t size = 0;
-    const char *name = "";
-    FILE *stream = open_memstream(&text, &size);
-    if (!stream || skg_mesh_name_get(part->mesh, &name) != SKG_OK) return NULL;
-    if (strcmp(part->label, name) == 0)
-        fprintf(stream, "Samples.%" PRId64 ".", number);
-    else
-        fprintf(stream, "Samples.%s.", part->label);
-    fprintf(stream, "%s.0=%" PRId64, keys[shape], sectors);
-    if (fclose(stream) == 0) return text;
-    free(text);
-    return NULL;
-}
-
 /* The settings that multiply all sectors by a factor. *triangles: of the scene with these settings. */
 static skg_status scale_sectors(const cost_study *study, double factor, cost_meshing *meshing,
                                 int64_t *triangles) {
@@ -98,7 +79,7 @@ static skg_status scale_sectors(const cost_study *study, double factor, cost_mes
         const int64_t wanted = scaled(sectors, factor);
         *triangles += shape == CYLINDER ? 4 * (wanted - sectors)
                                         : triangles_of_sphere(wanted) - triangles_of_sphere(sectors);
-        char *setting = setting_of(&part, i, shape, wanted);
+        char *setting = cost_part_setting(&part, i, "%s.0=%" PRId64, keys[shape], wanted);
         if (!setting) return SKG_ERR_MEMORY;
         meshing->settings[meshing->setting_count++] = setting;
     }

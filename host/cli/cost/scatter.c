@@ -45,22 +45,13 @@ static skg_status render(const cost_study *study, const skg_scatter *scatter, fl
 
 /* Finds the error of an image without this scatter. */
 static int take_error(cost_study *study, const float *data) {
-    cost_coarse *coarse = &study->measured.coarse[COST_SOURCE_SCATTER];
-    double *scatter = calloc((size_t)study->pixels, sizeof *scatter);
-    double *nothing = calloc((size_t)study->pixels, sizeof *nothing);
-    cost_point point = {0};
-    int exit_status = CLI_DONE;
-    for (int64_t i = 0; scatter && i < study->pixels; i++) scatter[i] = (double)data[i];
-    if (scatter && nothing)
-        exit_status = cost_compare(study, 1, nothing, scatter, &point);
-    else
-        exit_status = cli_error(CLI_DEVICE, "out of host memory");
-    free(coarse->difference);
-    coarse->error = point.rms_flat;
-    coarse->max = point.max_flat;
-    coarse->difference = point.difference;
-    free(scatter);
-    free(nothing);
+    double *images = calloc((size_t)(2 * study->pixels), sizeof *images);
+    if (!images) return cli_error(CLI_DEVICE, "out of host memory");
+    double *scatter = images + study->pixels;
+    for (int64_t i = 0; i < study->pixels; i++) scatter[i] = (double)data[i];
+    const int exit_status =
+        cost_compare_coarsely(study, images, scatter, &study->measured.coarse[COST_SOURCE_SCATTER]);
+    free(images);
     return exit_status;
 }
 

@@ -1,5 +1,4 @@
 /* How much the image changes when parts move, beside what accuracy costs. */
-#include "cost/findings.h"
 #include "cost/measuring.h"
 #include "cost/output.h"
 

@@ -1,6 +1,6 @@
-/* The settings that a study tries. */
+/* Settings that a study tries: the values of each dial, and better ones. */
+#include "cost/dial.h"
 #include "cost/dials.h"
-
 #include "cost/measuring.h"
 
 /* Points are measured in this order: what the scene has today and its neighbours say most. */
@@ -9,7 +9,8 @@ enum { NOW, NEXT, SOON, LATER, LAST };
 static const double REFERENCE =
     4; /* an image of a reference may take so many times the time of a setting's */
 
-void cost_add_point(cost_study *study, int dial, int reference, int priority, cost_setting setting) {
+void cost_add_point(cost_study *study, int dial, int priority, cost_setting setting) {
+    const int reference = dial == COST_SEVERAL ? COST_OF_ALL : cost_dials[dial].reference;
     for (int i = 0; i < study->measured.count; i++) {
         cost_point *point = &study->measured.points[i];
         if (point->reference != reference || !cost_is_same(study, &point->setting, &setting)) continue;
@@ -37,7 +38,7 @@ static void add_precision(cost_study *study) {
     its.bins = study->subject.finest;
     for (int i = 0; i < 2 + study->session.device.double_precision; i++) {
         its.precision = precisions[i];
-        cost_add_point(study, COST_PRECISION, COST_OF_RAYS, i ? NEXT : LATER, its);
+        cost_add_point(study, COST_PRECISION, i ? NEXT : LATER, its);
     }
 }
 
@@ -50,15 +51,15 @@ static void add_tolerances(cost_study *study) {
     for (its.precision = SKG_PRECISION_SINGLE; its.precision <= finest; its.precision++)
         for (int i = study->quick; i < 6; i += 1 + study->quick) {
             its.tolerance = tolerances[i];
-            cost_add_point(study, COST_TOLERANCE, COST_OF_RAYS, LATER, its);
+            cost_add_point(study, COST_TOLERANCE, LATER, its);
         }
     if (!(study->subject.own.tolerance > 0)) return;
     /* The scene's own tolerance by itself, and what is better. */
     its.precision = finest;
     its.tolerance = study->subject.own.tolerance;
-    cost_add_point(study, COST_TOLERANCE, COST_OF_RAYS, NEXT, its);
+    cost_add_point(study, COST_TOLERANCE, NEXT, its);
     its.tolerance = study->subject.own.tolerance / 10;
-    cost_add_point(study, COST_TOLERANCE, COST_OF_RAYS, SOON, its);
+    cost_add_point(study, COST_TOLERANCE, SOON, its);
 }
 
 static void add_bins(cost_study *study) {
@@ -68,15 +69,15 @@ static void add_bins(cost_study *study) {
     its.precision = study->measured.references[COST_OF_RAYS].setting.precision;
     its.tolerance = 0;
     if (study->subject.finest)
-        cost_add_point(study, COST_BINS, COST_OF_RAYS, NEXT, its); /* the scene's own by themselves */
+        cost_add_point(study, COST_BINS, NEXT, its); /* the scene's own by themselves */
     its.precision = SKG_PRECISION_SINGLE;
     for (int i = 0; study->subject.has_tube && i < 5; i += 1 + study->quick) {
         if (!cost_has_bins(study, bins[i])) break; /* wider than the tube's model allows */
         its.bins = bins[i];
         its.tolerance = 0;
-        cost_add_point(study, COST_BINS, COST_OF_RAYS, LATER, its);
+        cost_add_point(study, COST_BINS, LATER, its);
         its.tolerance = 1e-4;
-        cost_add_point(study, COST_BINS, COST_OF_RAYS, LATER, its);
+        cost_add_point(study, COST_BINS, LATER, its);
     }
 }
 
@@ -85,16 +86,16 @@ static void add_changes(cost_study *study) {
     cost_setting its = study->subject.own;
     for (its.precision = SKG_PRECISION_SINGLE;
          its.precision <= study->measured.references[COST_OF_RAYS].setting.precision; its.precision++)
-        cost_add_point(study, COST_SEVERAL, COST_OF_ALL, NEXT, its);
+        cost_add_point(study, COST_SEVERAL, NEXT, its);
     if (!study->subject.has_energies) return;
     its = study->subject.own;
     its.bins = study->subject.finest;
-    cost_add_point(study, COST_SEVERAL, COST_OF_ALL, NEXT, its);
+    cost_add_point(study, COST_SEVERAL, NEXT, its);
     its = study->subject.own;
     its.tolerance = study->subject.own.tolerance > 0 ? study->subject.own.tolerance / 10 : 1e-4;
-    cost_add_point(study, COST_SEVERAL, COST_OF_ALL, NEXT, its);
+    cost_add_point(study, COST_SEVERAL, NEXT, its);
     its.tolerance = study->subject.own.tolerance > 0 ? study->subject.own.tolerance * 10 : 1e-3;
-    if (its.tolerance <= 0.1) cost_add_point(study, COST_SEVERAL, COST_OF_ALL, SOON, its);
+    if (its.tolerance <= 0.1) cost_add_point(study, COST_SEVERAL, SOON, its);
 }
 
 /* Powers of two of source samples and the scene's own number, in rising order, against at least four times as many. */
@@ -107,10 +108,9 @@ static void add_samples(cost_study *study) {
     const int64_t most = its.samples / 4, own = study->subject.own.samples;
     study->measured.references[COST_OF_SAMPLES].setting = its;
     for (int64_t n = 1, before = 0; n <= most; before = n, n *= study->quick ? 4 : 2) {
-        if (before < own && own < n)
-            cost_add_point(study, COST_SAMPLES, COST_OF_SAMPLES, NEXT, study->subject.own);
+        if (before < own && own < n) cost_add_point(study, COST_SAMPLES, NEXT, study->subject.own);
         its.samples = n;
-        cost_add_point(study, COST_SAMPLES, COST_OF_SAMPLES, n >= own && n <= 4 * own ? NEXT : LATER, its);
+        cost_add_point(study, COST_SAMPLES, n >= own && n <= 4 * own ? NEXT : LATER, its);
     }
 }
 
@@ -127,11 +127,9 @@ static void add_supersampling(cost_study *study) {
     study->measured.references[COST_OF_AREAS].setting = its;
     for (int i = 0, before = 0; i < 6 && sides[i] <= most; before = sides[i++]) {
         its.supersampling = own;
-        if (before < own && own < sides[i])
-            cost_add_point(study, COST_SUPERSAMPLING, COST_OF_AREAS, NEXT, its);
+        if (before < own && own < sides[i]) cost_add_point(study, COST_SUPERSAMPLING, NEXT, its);
         its.supersampling = sides[i];
-        cost_add_point(study, COST_SUPERSAMPLING, COST_OF_AREAS,
-                       sides[i] >= own && sides[i] <= 3 * own ? NEXT : LATER, its);
+        cost_add_point(study, COST_SUPERSAMPLING, sides[i] >= own && sides[i] <= 3 * own ? NEXT : LATER, its);
     }
 }
 
@@ -149,7 +147,7 @@ static void add_repair(cost_study *study) {
         const int is_own = its.repair % COST_UNITE == best % COST_UNITE;
         if (study->subject.has_leaky ? its.repair < COST_UNITE || is_own
                                      : study->subject.has_shells && is_own)
-            cost_add_point(study, COST_REPAIR, COST_OF_REPAIR, SOON, its);
+            cost_add_point(study, COST_REPAIR, SOON, its);
     }
     its.repair = best;
     study->measured.references[COST_OF_REPAIR].setting = its;
@@ -164,14 +162,14 @@ static void add_triangles(cost_study *study) {
         const int64_t triangles = study->meshings[i].triangles;
         its.meshing = -1;
         if (!has_own && triangles >= study->subject.triangles)
-            has_own = 1, cost_add_point(study, COST_TRIANGLES, COST_OF_TRIANGLES, NEXT, its);
+            has_own = 1, cost_add_point(study, COST_TRIANGLES, NEXT, its);
         its.meshing = i;
         if (triangles == study->subject.triangles) continue;
         const int is_next = triangles > study->subject.triangles && seen_finer++ < 2;
-        cost_add_point(study, COST_TRIANGLES, COST_OF_TRIANGLES, is_next ? NEXT : LATER, its);
+        cost_add_point(study, COST_TRIANGLES, is_next ? NEXT : LATER, its);
     }
     its.meshing = -1;
-    if (!has_own && study->meshing_count) cost_add_point(study, COST_TRIANGLES, COST_OF_TRIANGLES, NEXT, its);
+    if (!has_own && study->meshing_count) cost_add_point(study, COST_TRIANGLES, NEXT, its);
     its.meshing = finest;
     study->measured.references[COST_OF_TRIANGLES].setting = its;
 }
@@ -186,10 +184,10 @@ static void add_relaxation(cost_study *study) {
     study->measured.references[COST_OF_BREATH].setting = its;
     for (int i = 0; i < 6; i += study->quick ? 2 : 1) {
         its.relaxation = relaxations[i];
-        cost_add_point(study, COST_RELAXATION, COST_OF_BREATH, LAST, its);
+        cost_add_point(study, COST_RELAXATION, LAST, its);
     }
     its.relaxation = study->subject.body.relaxation;
-    cost_add_point(study, COST_RELAXATION, COST_OF_BREATH, LAST, its);
+    cost_add_point(study, COST_RELAXATION, LAST, its);
 }
 
 /* Hysteresis, with the scene's relaxation. */
@@ -199,7 +197,7 @@ static void add_hysteresis(cost_study *study) {
     its.relaxation = study->subject.body.relaxation;
     for (int i = 0; study->subject.has_breath && i < 5; i += study->quick ? 4 : 1) {
         its.hysteresis = hystereses[i];
-        cost_add_point(study, COST_HYSTERESIS, COST_OF_BREATH, LAST, its);
+        cost_add_point(study, COST_HYSTERESIS, LAST, its);
     }
 }
 
@@ -241,7 +239,8 @@ static int improve_triangles(const cost_study *study, cost_setting *setting) {
     return setting->meshing >= 0;
 }
 
-/* The values of each dial, and what is better. */
+/* The values of each dial, and a better one for the coarse pass, which is 0 where there is none. Not members of cost_dial: points are compared
+ * by its rows, so that these functions stand above. */
 static const struct {
     void (*add)(cost_study *study);
     int (*improve)(const cost_study *study, cost_setting *setting);
@@ -279,7 +278,7 @@ cost_setting cost_best_of_all(const cost_study *study, double max_ms) {
 }
 
 void cost_choose_settings(cost_study *study) {
-    cost_add_point(study, COST_SCENE, COST_OF_RAYS, NOW, study->subject.own);
+    cost_add_point(study, COST_SCENE, NOW, study->subject.own);
     for (int dial = COST_PRECISION; dial < COST_DIALS; dial++) {
         rows[dial].add(study);
         if (dial == COST_BINS) add_changes(study);

@@ -4,29 +4,32 @@
 #include "common/say.h"
 #include "cost/dial.h"
 #include "cost/dials.h"
+#include "cost/measuring.h"
 #include "cost/output.h"
 
 #include <inttypes.h>
 #include <math.h>
 #include <stdio.h>
-#include <stdlib.h>
-#include <string.h>
 
-/* The dials that are sources of error. */
-static const int dials[COST_SOURCE_SURFACE] = {
-    [COST_SOURCE_TRIANGLES] = COST_TRIANGLES, [COST_SOURCE_PRECISION] = COST_PRECISION,
-    [COST_SOURCE_BINS] = COST_BINS,           [COST_SOURCE_TOLERANCE] = COST_TOLERANCE,
-    [COST_SOURCE_SAMPLES] = COST_SAMPLES,     [COST_SOURCE_SUPERSAMPLING] = COST_SUPERSAMPLING,
-    [COST_SOURCE_REPAIR] = COST_REPAIR};
+const cost_source_row cost_sources[COST_SOURCES] = {
+    [COST_SOURCE_TRIANGLES] = {"triangles", COST_TRIANGLES},
+    [COST_SOURCE_PRECISION] = {"precision", COST_PRECISION},
+    [COST_SOURCE_BINS] = {"bins of the spectrum", COST_BINS},
+    [COST_SOURCE_TOLERANCE] = {"tolerance", COST_TOLERANCE},
+    [COST_SOURCE_SAMPLES] = {"source samples", COST_SAMPLES},
+    [COST_SOURCE_SUPERSAMPLING] = {"supersampling", COST_SUPERSAMPLING},
+    [COST_SOURCE_REPAIR] = {"repair", COST_REPAIR},
+    [COST_SOURCE_SURFACE] = {"true surface", COST_SCENE},
+    [COST_SOURCE_SCATTER] = {"scatter", COST_SCENE}};
 
 static int reference_of(int source) {
-    return cost_dials[dials[source]].reference;
+    return cost_dials[cost_sources[source].dial].reference;
 }
 
 /* The setting in which only this source errs: the scene's value, all else as the reference has it. */
 static cost_setting alone(const cost_study *study, int source) {
     cost_setting its = study->measured.references[reference_of(source)].setting;
-    cost_take(dials[source], &study->subject.own, &its);
+    cost_take(cost_sources[source].dial, &study->subject.own, &its);
     return its;
 }
 
@@ -47,7 +50,7 @@ static cost_offer look_at_family(const cost_study *study, int index, const void 
     const family *its = user;
     const cost_point *point = &study->measured.points[index];
     cost_setting changed = study->measured.points[its->today].setting;
-    cost_take(dials[its->source], &point->setting, &changed);
+    cost_take(cost_sources[its->source].dial, &point->setting, &changed);
     const int is_of_it = index != its->today && point->reference == reference_of(its->source) &&
                          cost_is_same(study, &changed, &point->setting);
     return (cost_offer){is_of_it ? point->rms_flat : (double)NAN, cost_price_of(study, point)};
@@ -66,16 +69,12 @@ static void price(const cost_study *study, cost_source *source) {
 
 /* The scene with the dial's better value, all else as it is. */
 static int name_halving(const cost_study *study, int number, cost_source *source) {
-    const int dial = dials[number];
+    const int dial = cost_sources[number].dial;
     cost_setting setting = study->subject.own;
     cost_take(dial, &study->measured.points[source->halving].setting, &setting);
     cost_describe_dial(study, &setting, dial, source->buys, sizeof source->buys);
     source->command = cost_command(study, &setting);
     return source->command ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory");
-}
-
-int cost_source_dial(int source) {
-    return dials[source];
 }
 
 const char *cost_why_not(const cost_study *study, int source) {
@@ -209,12 +208,7 @@ int cost_find_sources(cost_study *study) {
 void cost_describe_source(const cost_study *study, int number, char *text, size_t size) {
     *text = '\0';
     if (number < COST_SOURCE_SURFACE)
-        cost_describe_dial(study, &study->subject.own, dials[number], text, size);
-}
-
-static int ascending(const void *a, const void *b) {
-    double x = *(const double *)a, y = *(const double *)b;
-    return (x > y) - (x < y);
+        cost_describe_dial(study, &study->subject.own, cost_sources[number].dial, text, size);
 }
 
 /* The error of the most accurate point of a family that is not more accurate than `best`: an upper bound of that of `best`. */
@@ -222,7 +216,7 @@ static double error_near(const cost_study *study, int source, const cost_setting
     double least = (double)NAN;
     for (int i = 0; i < study->measured.count; i++) {
         const cost_point *point = &study->measured.points[i];
-        if (point->reference != reference_of(source) || point->dial != dials[source]) continue;
+        if (point->reference != reference_of(source) || point->dial != cost_sources[source].dial) continue;
         if (point->setting.samples > best->samples || point->setting.supersampling > best->supersampling ||
             cost_triangles(study, &point->setting) > cost_triangles(study, best))
             continue;
@@ -269,8 +263,7 @@ void cost_find_trust(cost_study *study) {
 void cost_find_unrest(cost_study *study) {
     study->judged.unrest = (double)NAN;
     if (study->measured.pulse_count >= 4) {
-        qsort(study->measured.pulse_ms, (size_t)study->measured.pulse_count, sizeof *study->measured.pulse_ms,
-              ascending);
+        cost_sort(study->measured.pulse_count, study->measured.pulse_ms);
         const double *ms = study->measured.pulse_ms;
         const int64_t n = study->measured.pulse_count;
         study->judged.unrest = (ms[(3 * n) / 4] - ms[n / 4]) / ms[n / 2];

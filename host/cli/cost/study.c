@@ -10,9 +10,6 @@
 #include <stdlib.h>
 #include <string.h>
 
-const char *const cost_source_names[COST_SOURCES] = {"triangles", "precision",      "bins of the spectrum",
-                                                     "tolerance", "source samples", "supersampling",
-                                                     "repair",    "true surface",   "scatter"};
 const char *const cost_repair_names[2 * COST_UNITE] = {[SKG_REPAIR_NONE] = "none",
                                                        [SKG_REPAIR_NEIGHBOURS] = "neighbours",
                                                        [SKG_REPAIR_EXACT] = "exact",
@@ -20,9 +17,6 @@ const char *const cost_repair_names[2 * COST_UNITE] = {[SKG_REPAIR_NONE] = "none
                                                        [SKG_REPAIR_NEIGHBOURS + COST_UNITE] =
                                                            "neighbours and union",
                                                        [SKG_REPAIR_EXACT + COST_UNITE] = "exact and union"};
-const char *const cost_reference_names[COST_REFERENCES] = {
-    "precision, tolerance, bins", "source samples",    "supersampling", "repair", "triangles",
-    "relaxation, hysteresis",     "all dials together"};
 const double cost_tolerances[COST_TOLERANCES] = {1e-2, 1e-3, 1e-4, 1e-6};
 
 double cost_left_ms(const cost_study *study, double share) {
@@ -91,6 +85,25 @@ skg_status cost_load(const cost_study *study, int64_t count, const char *const *
     skg_status status = skg_setup_create(NULL, &source, setup);
     free(all);
     return status;
+}
+
+char *cost_part_setting(const skg_part *part, int64_t number, const char *format, ...) {
+    char *text = NULL;
+    size_t size = 0;
+    const char *name = "";
+    FILE *stream = open_memstream(&text, &size);
+    va_list arguments;
+    if (!stream) return NULL;
+    if (skg_mesh_name_get(part->mesh, &name) == SKG_OK && strcmp(part->label, name) == 0)
+        fprintf(stream, "Samples.%" PRId64 ".", number);
+    else
+        fprintf(stream, "Samples.%s.", part->label);
+    va_start(arguments, format);
+    vfprintf(stream, format, arguments);
+    va_end(arguments);
+    if (fclose(stream) == 0) return text;
+    free(text);
+    return NULL;
 }
 
 static skg_status read_spectrum(const cost_study *study, int64_t bins, skg_spectrum **spectrum) {

@@ -283,12 +283,8 @@ typedef struct {
     cost_judged judged;
 } cost_study;
 
-extern const char *const cost_source_names[COST_SOURCES];
 extern const char *const cost_repair_names[2 * COST_UNITE]; /* by the repair of a setting */
 extern const double cost_tolerances[COST_TOLERANCES];
-
-/* The dials that are compared with a reference: "precision, tolerance, bins". */
-extern const char *const cost_reference_names[COST_REFERENCES];
 
 /* The name of a setting's precision. */
 const char *cost_precision_name(const cost_setting *setting);
@@ -336,6 +332,11 @@ void cost_describe(const cost_study *study, const cost_setting *setting, char *t
 
 /* Reads the scene again with `count` more settings, KEY=VALUE. The caller releases the set-up. */
 skg_status cost_load(const cost_study *study, int64_t count, const char *const *settings, skg_setup **setup);
+
+/* A setting of a part: "Samples.bone." and the words of the format. A part without a label, which has its mesh's name instead, is named by
+ * its number. The caller frees it; NULL if memory is exhausted. */
+char *cost_part_setting(const skg_part *part, int64_t number, const char *format, ...)
+    __attribute__((format(printf, 3, 4)));
 
 /* The scene's spectrum with at most `bins` bins (0: as the scene has it). It belongs to the study. */
 skg_status cost_spectrum(cost_study *study, int64_t bins, skg_spectrum **spectrum);

@@ -47,7 +47,7 @@ typedef struct {
     int32_t size;
     /** enum skg_waveform */
     int32_t waveform;
-    /** Of SKG_WAVEFORM_LUJAN, 1 to 8; 2 by default. */
+    /** Exponent of SKG_WAVEFORM_LUJAN, 1 to 8; 2 by default. */
     int32_t exponent;
     /** 0 */
     int32_t reserved;
@@ -55,7 +55,7 @@ typedef struct {
     double period_s;
     /** Phase at time 0, 0 to 1; 0 by default. */
     double start_phase;
-    /** Of SKG_WAVEFORM_ASYMMETRIC, 0.2 to 5; 1.5 by default. */
+    /** Ratio of SKG_WAVEFORM_ASYMMETRIC, expiration over inspiration, 0.2 to 5; 1.5 by default. */
     double expiration_ratio;
     /** Weight of the ribs, 0 (diaphragmatic breathing) to 4; 1, the default, is quiet breathing. */
     double thoracic;

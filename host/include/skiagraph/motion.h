@@ -60,9 +60,9 @@ typedef struct {
     int32_t reserved;
     /** s; NaN after skg_motion_pose_at_phase. */
     double time_s;
-    /** From end-inspiration, 0 to below 1. */
+    /** Phase from end-inspiration, 0 to below 1. */
     double phase;
-    /** Of the waveform at that phase, 0 to 1. */
+    /** Value of the waveform at that phase, 0 to 1. */
     double amplitude;
     /** Amplitude of the ribs: weight times lagged amplitude, with the weight of the events. */
     double thoracic;

@@ -46,7 +46,7 @@ typedef struct {
     int64_t from;
     /** Number of its projections; 0: all from `from` on. */
     int64_t count;
-    /** Of a folder: the files are STEM_0000.tif, STEM_flat_0000.tif and STEM_dark.tif; copied. NULL: projection-00000.tif,
+    /** First words of the files of a folder: STEM_0000.tif, STEM_flat_0000.tif and STEM_dark.tif; copied. NULL: projection-00000.tif,
      * flat-00000.tif and dark-00000.tif. */
     const char *stem;
 } skg_scan_file_options;
@@ -172,7 +172,7 @@ SKG_API skg_status skg_scan_file_finish(skg_scan_file *file);
 typedef struct {
     /** Set by skg_scan_pack_options_init. */
     int32_t size;
-    /** Of zlib: 0 (none) to 9 */
+    /** Level of zlib: 0 (none) to 9 */
     int32_t level;
     /** 1: values become grey values of 16 bits, 60000 where the mean flat field is strongest; larger ones end at 65535. */
     int32_t grey16;

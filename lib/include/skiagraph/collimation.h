@@ -43,14 +43,14 @@ typedef struct {
     int32_t size;
     /** enum skg_collimation_kind */
     int32_t kind;
-    /** Of the rectangle: from the middle of the source to its plane, along the detector's normal, mm. Above 0, beyond the
+    /** Distance of the rectangle: from the middle of the source to its plane, along the detector's normal, mm. Above 0, beyond the
      * focal spot, and at most the distance of the detector. */
     double distance_mm;
-    /** Of the rectangle: its lowest coordinates along the column step and along the row step, mm. */
+    /** Lowest coordinates of the rectangle along the column step and along the row step, mm. */
     double low[2];
-    /** Of the rectangle: its highest coordinates, above the lowest, mm. */
+    /** Highest coordinates of the rectangle, above the lowest, mm. */
     double high[2];
-    /** Of the detector's rectangle: mm on the detector; below 0: the field is smaller. */
+    /** Margin of the detector's rectangle, mm on the detector; below 0: the field is smaller. */
     double margin_mm;
 } skg_collimation;
 

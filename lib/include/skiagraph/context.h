@@ -226,7 +226,7 @@ typedef struct {
     int32_t verdict;
     /** Time that the test took, with compiling, in seconds. */
     double seconds;
-    /** Of the first test: images of 512 x 512 pixels and 300 triangles per second. Otherwise 0. */
+    /** Score of the first test: images of 512 x 512 pixels and 300 triangles per second. Otherwise 0. */
     double score;
     /** Name of the test, such as "strategy tiles". */
     char name[32];

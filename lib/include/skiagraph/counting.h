@@ -52,9 +52,9 @@ typedef struct {
     int32_t size;
     /** enum skg_pile_up; the dead time begins with pulses above the lowest threshold. */
     int32_t pile_up;
-    /** Of the sensor: of known composition and density; retained. */
+    /** Material of the sensor, of known composition and density; retained. */
     skg_material *material;
-    /** Of the sensor, mm. */
+    /** Thickness of the sensor, mm. */
     double thickness_mm;
     /** Pitch of the pixels along rows and along columns, mm. */
     double pixel_mm[2];
@@ -74,9 +74,9 @@ typedef struct {
     /** 1: anti-coincidence: the pixels of the 2 x 2 that together get most are summed, and the sum counts once, in the pixel that got
      * most; its noise is that of four pixels. */
     int32_t anti_coincidence;
-    /** Of a pixel, ns; needs pile_up and exposure_s. */
+    /** Dead time of a pixel, ns; needs pile_up and exposure_s. */
     double dead_time_ns;
-    /** In which the photons of an image arrive, s. */
+    /** Time in which the photons of an image arrive, s. */
     double exposure_s;
 } skg_counting;
 

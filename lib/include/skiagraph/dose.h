@@ -25,7 +25,7 @@ typedef struct {
     int32_t reserved;
     /** Photons that are followed through the parts, 1 to 2^40, in 32 batches; 0: none, and doses and backscatter are not known. */
     int64_t histories;
-    /** Of these photons. The same seed gives the same figures, whatever the number of threads. */
+    /** Seed of these photons. The same seed gives the same figures, whatever the number of threads. */
     int64_t seed;
     /** Number of places. 0: one, where the ray to the middle of the field enters the first part; where it meets none, that middle on
      * the detector or, with jaws, on their plane, which a warning says. */

@@ -106,7 +106,7 @@ typedef struct {
     /** 1: the path through the layer of the response grows with the angle of a ray to the detector's normal. 0
      * (default): every photon crosses it straight. Needs a response of a scintillator, not a table. */
     int32_t oblique;
-    /** Of the detector; NULL: ideal. */
+    /** Energy response of the detector; NULL: ideal. */
     skg_response *response;
     /** Photon-counting bands, 1 to SKG_CHANNELS_MAX, each a channel. 0: one channel of everything. Energy and
      * fluence of a band are in keV; its other quantities count photons, unless band_weight says otherwise. */

@@ -85,7 +85,7 @@ typedef struct {
     double bound;
     /** Number of points, each a length of every material, at which the error was computed. */
     int64_t verified;
-    /** Of the bad pixels, those that were repaired. At the others the part is left out. */
+    /** Bad pixels that were repaired. At the others the part is left out. */
     int64_t repaired_pixels;
     /** Pixels of the last job whose lengths lie outside the range for which the bound was verified. */
     int64_t outside_pixels;

@@ -28,9 +28,9 @@ typedef struct {
     double lines_per_cm;
     /** Thickness of a strip, mm, above 0 and less than its share of a cm. */
     double strip_mm;
-    /** Of the strips; retained. NULL: lead. */
+    /** Material of the strips; retained. NULL: lead. */
     skg_material *strip;
-    /** Between the strips; retained. NULL: vacuum. */
+    /** Material between the strips; retained. NULL: vacuum. */
     skg_material *interspace;
     /** Distance in mm from the grid to the line in which the planes of all strips meet, above the detector's
      * centre; 0: the strips are parallel. */
@@ -57,11 +57,11 @@ SKG_API skg_status skg_grid_transmission_get(const skg_grid *grid, double energy
 
 /** Fluorescence of the parts, with scatter: K and L lines after photo absorption. */
 enum skg_fluorescence {
-    /** Of elements from Z = 30 on whose edge is below the beam's highest energy. */
+    /** Lines of elements from Z = 30 on whose edge is below the beam's highest energy. */
     SKG_FLUORESCENCE_AUTO = 0,
-    /** Of lighter ones from Z = 20 on, too. */
+    /** Lines of lighter elements from Z = 20 on, too. */
     SKG_FLUORESCENCE_ON = 1,
-    /** None: what is absorbed is gone. */
+    /** No lines: absorbed photons are gone. */
     SKG_FLUORESCENCE_OFF = 2
 };
 
@@ -89,7 +89,7 @@ typedef struct {
     double tolerance;
     /** Photons from the source, 0 to 2^30; 0 (default): as many as the tolerance needs. */
     int64_t histories;
-    /** Of the histories. Frames with the same scene, view and seed have the same scatter. */
+    /** Seed of the histories. Frames with the same scene, view and seed have the same scatter. */
     int64_t seed;
     /** Sides of the cells, mm, about; 0 (default): 64 cells along each side of the box of all parts. Cells in
      * which parts differ hold their faces, however large they are. At most 128 along each side. */

@@ -49,7 +49,7 @@ typedef struct {
     /** n > 0: instead, the middles of n (line), n x n (rectangle) or n x n x n (cube) equal pieces, as in
      * Vidal and Villard 2016. */
     int64_t grid;
-    /** Of adaptive sampling, as a fraction of the flat field; 5e-3 by default. */
+    /** Tolerance of adaptive sampling, as a fraction of the flat field; 5e-3 by default. */
     double tolerance;
     /** Adaptive sampling stops at this number of samples; 1024 by default. */
     int64_t samples_max;
@@ -97,7 +97,7 @@ typedef struct {
     int32_t size;
     /** 0 */
     int32_t reserved;
-    /** Of known density; retained. */
+    /** Material of the filter, of known density; retained. */
     skg_material *material;
     /** Number of rows, 2 to 4096. */
     int64_t count;
