@@ -48,26 +48,14 @@ static json_t *plan_json(const skg_plan *plan) {
     return object;
 }
 
-/* Photons and energy of the open beam in a pixel, air kerma at the detector. */
-static skg_status find_beam(const skg_live_subject *subject, skg_quality *quality) {
-    double across[3];
-    skg_spectrum *spectrum = NULL;
-    skg_quality_init(quality);
-    SKG_TRY(skg_spectrum_create_resolved(subject->spectrum, subject->shown, &spectrum));
-    const skg_status status = skg_spectrum_quality_get(spectrum, quality);
-    skg_spectrum_release(&spectrum);
-    skg_cross(subject->shown->column_step, subject->shown->row_step, across);
-    quality->air_kerma_ugy /= hypot(hypot(across[0], across[1]),
-                                    across[2]); /* it counts the spectrum's photons as if they were per mm2 */
-    return status;
-}
-
 /* The open beam at the detector; empty if it has no such figures. */
 static json_t *beam_json(skg_live_plans *plans, const skg_live_subject *subject) {
     json_t *object = json_object();
     if (memcmp(&plans->beam_view, subject->shown, sizeof plans->beam_view) != 0) {
         plans->beam_view = *subject->shown;
-        plans->has_beam = find_beam(subject, &plans->beam) == SKG_OK;
+        skg_quality_init(&plans->beam);
+        plans->has_beam =
+            skg_flat_field_quality_get(subject->spectrum, subject->shown, &plans->beam) == SKG_OK;
     }
     if (!plans->has_beam) return object;
     json_object_set_new(object, "mean_kev", skg_live_number(plans->beam.mean_kev));

@@ -3,6 +3,7 @@
 
 #include "core/maths.h"
 #include "core/text.h"
+#include "show/drawing.h"
 
 #include <math.h>
 #include <string.h>
@@ -27,20 +28,6 @@ static skg_status strips_json(const skg_view *view, json_t *strips) {
     return SKG_OK;
 }
 
-/* Where the beam starts on its axis; of a source at infinity a point in front of the parts. */
-static void find_source(const skg_view *view, const double *box, double source[3]) {
-    double along[3], farthest = 0;
-    memcpy(source, view->source, 3 * sizeof *source);
-    if (view->projection != SKG_PROJECTION_PARALLEL_FROM_INFINITY) return;
-    skg_scale_vector(-1 / skg_length(view->source), view->source, along);
-    for (int corner = 0; corner < 8; corner++) {
-        double from[3];
-        for (int k = 0; k < 3; k++) from[k] = box[(corner >> k & 1 ? 3 : 0) + k] - view->centre[k];
-        farthest = fmax(farthest, skg_dot(along, from));
-    }
-    skg_add_scaled(view->centre, 1.1 * farthest, along, source);
-}
-
 /* Columns of the detector and its steps, the corners of the beam on its plane and in the jaws, one after the other, and where the beam to
  * each of these starts. */
 skg_status skg_live_view_json(const skg_view *view, const skg_collimation *collimation, const double *box,
@@ -51,13 +38,13 @@ skg_status skg_live_view_json(const skg_view *view, const skg_collimation *colli
     skg_status status = skg_collimation_corners_get(collimation, view, 0, field[0]);
     if (status == SKG_OK) status = skg_collimation_corners_get(collimation, view, 1, opening[0]);
     if (status == SKG_OK) status = strips_json(view, strips);
-    find_source(view, box, source);
+    memcpy(source, view->source, sizeof source);
+    if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
+        skg_show_beam_start(view, box, box + 3, view->centre, source);
     skg_scale_vector(-1, view->row_step, up);
     for (int i = 0; status == SKG_OK && i < 4; i++) {
         double start[3];
-        for (int k = 0; k < 3; k++)
-            start[k] = view->projection == SKG_PROJECTION_POINT ? source[k]
-                                                                : field[i][k] + source[k] - view->centre[k];
+        skg_show_beam_start(view, box, box + 3, field[i], start);
         json_array_append_new(ends, skg_live_numbers(field[i], 3));
         json_array_append_new(starts, skg_live_numbers(start, 3));
         if (collimation && collimation->kind == SKG_COLLIMATION_RECTANGLE)

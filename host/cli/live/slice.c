@@ -176,7 +176,8 @@ static skg_status make_beam(work *w, live_slice *slice) {
     const int has_spectrum = w->switches->spectrum && !live_slice_without_spectrum(&w->scene);
     int32_t is_absolute = 0;
     skg_quality quality;
-    skg_status status = cli_flat_field_quality(session, &quality);
+    skg_quality_init(&quality);
+    skg_status status = skg_flat_field_quality_get(session->spectrum, &session->view, &quality);
     if (status == SKG_OK) status = skg_spectrum_absolute_get(session->spectrum, &is_absolute);
     if (status != SKG_OK) return status;
     slice->mean_kev = quality.mean_kev;
