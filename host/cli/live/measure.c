@@ -100,28 +100,40 @@ static void tell(live_hub *hub, int dial, double ms, double error, const char *s
     live_hub_tell_json(hub, object);
 }
 
+/* Measures a dial. values: result, which the caller frees; NULL: it was not measured */
+static double measure(const live_base *base, int dial, const live_wish *wish, live_hub *hub, float **values,
+                      char *sentence) {
+    live_wish other = live_wish_copy(wish);
+    live_scene with = {0};
+    double ms = (double)NAN;
+    *values = NULL;
+    if (turn(dial, &other, sentence) && live_scene_make(base, &other, &with, sentence)) {
+        const float *image = render(&with, hub, &ms, sentence);
+        const size_t size = (size_t)(with.view.columns * with.view.rows) * sizeof **values;
+        *values = image ? malloc(size) : NULL;
+        if (*values) memcpy(*values, image, size);
+    }
+    live_scene_free(&with);
+    live_wish_free(&other);
+    return ms;
+}
+
 void live_measure(const live_base *base, const live_scene *scene, const live_wish *wish, live_hub *hub) {
     const int64_t pixels = scene->session.view.columns * scene->session.view.rows;
-    const float *reference = NULL;
-    live_scene first = {0}, with = {0};
+    float *reference = NULL;
     for (int dial = 0; dial < DIALS && !live_hub_has(hub, SKG_LIVE_ASKED_WISH); dial++) {
-        live_wish other = live_wish_copy(wish);
-        live_scene *its = dial == 0 ? &first : &with;
         char sentence[LIVE_SENTENCE] = "";
-        double ms = (double)NAN, error = (double)NAN;
-        const int is_asked = !dials[dial].only_present || has_key(scene, dials[dial].key);
-        const float *values =
-            is_asked && turn(dial, &other, sentence) && live_scene_make(base, &other, its, sentence)
-                ? render(its, hub, &ms, sentence)
-                : NULL;
+        double error = (double)NAN;
+        float *values = NULL;
+        if (dials[dial].only_present && !has_key(scene, dials[dial].key)) continue;
+        const double ms = measure(base, dial, wish, hub, &values, sentence);
+        if (values && reference) error = difference(values, reference, pixels);
+        if (values || *sentence) tell(hub, dial, ms, error, sentence);
         if (dial == 0)
             reference = values;
-        else if (values && reference)
-            error = difference(values, reference, pixels);
-        if (is_asked && (values || *sentence)) tell(hub, dial, ms, error, sentence);
-        live_scene_free(&with);
-        live_wish_free(&other);
+        else
+            free(values);
     }
-    live_scene_free(&first);
+    free(reference);
     live_hub_tell_json(hub, json_pack("{s:n}", "measured"));
 }
