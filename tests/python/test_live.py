@@ -352,6 +352,11 @@ def test_a_scene_breathes(tmp_path):
     one.wish(play=False)
     assert (one.image() == first).all() and all((part.mesh.vertices == old).all() for part, old in zip(scene, before))
     assert one.pages == 0
+    scene.remove("needle" if "needle" in [part.label for part in scene] else next(iter(scene)).label)
+    one.hub.refresh()  # the breath links the parts of the file, so that it has ended
+    one.say()
+    assert one.pages == 1 and one.last("scene")["scene"]["period"] is None
+    one.check(scene)
 
 
 CONVERSATION = pathlib.Path(__file__).parents[1] / "cli" / "live_conversation.json"

@@ -38,15 +38,13 @@ class Subject:
         self.wish = Wish({"wish": 0})
         #: What it took to read the settings, ms.
         self.load_ms = 0.0
-        self.breathes = _breathes(state)
-        self.period = 0.0
-        if self.breathes:
-            self.period = number("skg_motion_period_get", state.linked())
         self.begin()
 
     def begin(self) -> None:
         """What there is now is the beginning."""
         state = self.state
+        self.breathes = _breathes(state)
+        self.period = number("skg_motion_period_get", state.linked()) if self.breathes else 0.0
         self.document = _save.without_parts(_save.settings_text(state, True))
         _show_mono(self.document, state.require_beam())
         setup = state.light(json.dumps(self.document), [])
