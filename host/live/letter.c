@@ -54,7 +54,7 @@ void skg_live_letter_release(skg_live_letter **letter) {
     skg_free(&its);
 }
 
-skg_status skg_live_letter_get(const skg_live_letter *letter, int32_t *is_text, const void **bytes,
+skg_status skg_live_letter_get(const skg_live_letter *letter, int32_t *is_text, const uint8_t **bytes,
                                int64_t *count) {
     SKG_NEEDS(letter);
     if (is_text) *is_text = letter->is_text;

@@ -57,7 +57,7 @@ static skg_live_message *read_text(const char *text) {
 }
 
 static const void *bytes_of(const skg_live_letter *letter, int64_t *count) {
-    const void *bytes = NULL;
+    const uint8_t *bytes = NULL;
     ck_skg(skg_live_letter_get(letter, NULL, &bytes, count));
     return bytes;
 }

@@ -90,7 +90,7 @@ static void *run_sender(void *user) {
     pthread_mutex_lock(&hub->lock);
     while (!client->leaves) {
         skg_live_letter *letter = take_letter(client);
-        const void *bytes = NULL;
+        const uint8_t *bytes = NULL;
         int32_t is_text = 0;
         int64_t count = 0;
         if (!letter) {

@@ -135,14 +135,14 @@ static int parts_json(const view_page *page, blob *to, json_t **made) {
 
 /* Source, beam and detector, of a source at infinity in front of the parts. NULL with an error printed. */
 static json_t *view_json(const view_page *page) {
-    const void *text = NULL;
+    const uint8_t *text = NULL;
     skg_live_letter *letter = NULL;
     double box[6];
     memcpy(box, page->places->low, 3 * sizeof *box);
     memcpy(box + 3, page->places->high, 3 * sizeof *box);
     skg_status status = skg_live_view_write(&page->session->view, page->look->collimation, box, &letter);
     if (status == SKG_OK) status = skg_live_letter_get(letter, NULL, &text, NULL);
-    json_t *object = status == SKG_OK ? json_loads(text, 0, NULL) : (cli_fail(status), NULL);
+    json_t *object = status == SKG_OK ? json_loads((const char *)text, 0, NULL) : (cli_fail(status), NULL);
     skg_live_letter_release(&letter);
     return object;
 }

@@ -154,7 +154,7 @@ SKG_API void skg_live_letter_release(skg_live_letter **letter);
  *     is_text   result: 1: a text; 0: bytes
  *     bytes     result: valid as long as the letter; behind a text there is a 0
  *     count     result: number of the bytes, without that 0 */
-SKG_API skg_status skg_live_letter_get(const skg_live_letter *letter, int32_t *is_text, const void **bytes,
+SKG_API skg_status skg_live_letter_get(const skg_live_letter *letter, int32_t *is_text, const uint8_t **bytes,
                                        int64_t *count);
 
 /** The scene of a page as it stands. Its handles and pointers are the caller's, for the duration of a call. Prepare with

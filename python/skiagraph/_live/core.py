@@ -109,7 +109,7 @@ def written(view: View) -> Any:
 
 def letter(name: str, *arguments: Any) -> bytes:
     """The bytes of the letter that a call makes."""
-    handle, bytes_of, count = make(name, "skg_live_letter", *arguments), ffi.new("const void **"), ffi.new("int64_t *")
+    handle, bytes_of, count = make(name, "skg_live_letter", *arguments), ffi.new("const uint8_t **"), ffi.new("int64_t *")
     try:
         call("skg_live_letter_get", handle, ffi.NULL, bytes_of, count)
         return bytes(ffi.buffer(bytes_of[0], count[0]))
