@@ -108,7 +108,7 @@ static int make_frame(live_loop *loop, char *sentence) {
     skg_progress *progress = NULL;
     skg_live_letter *letter = NULL;
     skg_live_frame frame;
-    loop->is_wanted = 0;
+    loop->is_wanted = loop->again = 0;
     skg_live_frame_init(&frame);
     skg_status status = skg_progress_create(is_outdated, loop, &progress);
     if (status == SKG_OK)
