@@ -4,7 +4,7 @@
 set -eu
 cd "$(dirname "$0")/.."
 . cmake/setup.sh
-targets="scene grammar settings ctsimu xtekct mesh archive instances columns words"
+targets="scene grammar settings ctsimu xtekct mesh archive instances columns live words"
 # shellcheck disable=SC2046,SC2086 # a word a target
 skg_build fuzz $(printf 'fuzz_%s ' $targets)
 for target in $targets; do

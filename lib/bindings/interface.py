@@ -148,7 +148,7 @@ def measure(found, includes, folder):
                          f'sizeof((({name} *)0)->{field["name"]}));')
     program = f"{folder}/measure"
     with open(program + ".c", "w") as file:
-        headers = [f"skiagraph/{header}.h" for header in ("breathing", "opencl", "registration", "scanning", "skiagraph")]
+        headers = [f"skiagraph/{header}.h" for header in ("breathing", "live", "opencl", "registration", "scanning", "skiagraph")]
         file.write("".join(f"#include <{header}>\n" for header in headers + ["stddef.h", "stdio.h"]) +
                    "int main(void) {\n" + "\n".join(lines) + "\nreturn 0;\n}\n")
     command = [os.environ.get("CC", "cc"), "-std=c11", "-Wno-unused-function"]

@@ -10,7 +10,7 @@ import time
 import urllib.parse
 
 LIMIT = 120  # seconds that anything may take before it is a failure
-HEADER = struct.Struct("<4sIIHHdddfHBB")  # live_header of host/cli/live/frame.h
+HEADER = struct.Struct("<4sIIHHdddfHBB")  # skg_live_header of host/live/plans.h
 
 
 class Frame:

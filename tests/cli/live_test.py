@@ -198,6 +198,10 @@ def wishes(path):
         turned = page.frame(page.wish(projection=1))
         assert differ(turned, back)
         check_same(turned, image(path, "--quantity", "attenuation", "--set", "Scan.StartAngle=90"))
+        # a sample with Poses stands where its projection has it, as one that was dragged there
+        poses = [[1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, x, 0, z, 1] for x, z in ((0, 0), (16, -8), (0, 0), (0, 0))]
+        stands = page.frame(page.wish(settings={"Samples.bone.Poses": poses}, projection=1))
+        assert differ(stands, turned) and not differ(stands, page.frame(page.wish(poses={"1": moved}, projection=1)))
 
 
 def bands(path):

@@ -22,23 +22,23 @@ static cli_arguments arguments;
 static skg_context *context;
 
 /* Reconstructs with settings, a JSON object. progress: may be NULL. Returns whether there is a slice. */
-static int make(const char *settings, live_switches switches, skg_progress *progress, live_slice *slice,
+static int make(const char *settings, skg_live_asked switches, skg_progress *progress, live_slice *slice,
                 char *sentence) {
     char text[sizeof plain];
     strcpy(text, plain);
     const live_base base = {
         .arguments = &arguments, .context = context, .path = "scene.json", .precision = -1, .text = text};
-    live_wish wish;
-    live_wish_init(&wish);
-    json_decref(wish.settings);
-    wish.settings = json_loads(settings, 0, NULL);
-    ck_assert_ptr_nonnull(wish.settings);
+    static char words[sizeof "{\"wish\": 0, \"settings\": }" + 8192];
+    skg_live_message *message = NULL;
+    const int length = snprintf(words, sizeof words, "{\"wish\": 0, \"settings\": %s}", settings);
+    ck_skg(skg_live_message_create(words, length, &message));
+    live_wish wish = live_wish_of(message);
     const int is_made = live_slice_make(&base, &wish, &switches, progress, slice, sentence);
     live_wish_free(&wish);
     return is_made;
 }
 
-static void reconstruct(const char *settings, live_switches switches, live_slice *slice) {
+static void reconstruct(const char *settings, skg_live_asked switches, live_slice *slice) {
     char sentence[LIVE_SENTENCE] = "";
     ck_assert_msg(make(settings, switches, NULL, slice, sentence), "%s", sentence);
 }
@@ -78,7 +78,7 @@ static double truth(double kev) {
 
 START_TEST(one_energy_is_true_and_a_spectrum_cups) {
     live_slice one, all;
-    reconstruct("{}", (live_switches){0}, &one);
+    reconstruct("{}", (skg_live_asked){0}, &one);
     ck_assert_int_eq(one.projections, 120);
     ck_assert_int_eq(one.columns, 96);
     ck_assert_int_eq(one.across, 2);
@@ -88,7 +88,7 @@ START_TEST(one_energy_is_true_and_a_spectrum_cups) {
     ck_assert_double_eq_tol(edge_of(&one), centre_of(&one), 0.01 * per_cm);
     ck_assert_double_eq_tol(mean(&one, 60, 66, NULL), 0, 0.02 * per_cm);
     ck_assert(one.truncated == 0 && one.turn_s == 0);
-    reconstruct("{}", (live_switches){.has_spectrum = 1}, &all);
+    reconstruct("{}", (skg_live_asked){.spectrum = 1}, &all);
     ck_assert_double_gt(edge_of(&all), 1.02 * centre_of(&all));
     ck_assert_double_lt(centre_of(&all), 0.98 * centre_of(&one)); /* 0.967 of it were found */
 }
@@ -97,19 +97,19 @@ END_TEST
 START_TEST(noise_and_scatter_change_the_slice) {
     live_slice none, noisy, hazy;
     double was, is;
-    reconstruct("{}", (live_switches){0}, &none);
-    reconstruct("{}", (live_switches){.has_noise = 1}, &noisy);
+    reconstruct("{}", (skg_live_asked){0}, &none);
+    reconstruct("{}", (skg_live_asked){.noise = 1}, &noisy);
     mean(&none, 0, 40, &was), mean(&noisy, 0, 40, &is);
     ck_assert_double_gt(is, 4 * was);
     ck_assert_double_eq_tol(centre_of(&noisy), centre_of(&none),
                             0.01 * centre_of(&none)); /* noise of 1.4 % in each of 800 voxels */
     /* four times the photons, half of the noise: of larger pixels, too */
-    reconstruct("{\"Source.Beam.mAs\": 0.004}", (live_switches){.has_noise = 1}, &noisy);
+    reconstruct("{\"Source.Beam.mAs\": 0.004}", (skg_live_asked){.noise = 1}, &noisy);
     mean(&noisy, 0, 40, &was);
     ck_assert_double_eq_tol(was, 0.5 * is,
                             0.1 * is); /* what streaks of one energy add, 0.0002 per cm, and chance */
     reconstruct("{\"Scan\": {\"NumberOfProjections\": 30, \"FinalAngle\": 360}}",
-                (live_switches){.has_scatter = 1}, &hazy);
+                (skg_live_asked){.scatter = 1}, &hazy);
     ck_assert_double_lt(centre_of(&hazy),
                         0.95 * centre_of(&none)); /* 0.92 of it were found with all projections */
 }
@@ -131,9 +131,9 @@ START_TEST(motion_changes_the_slice) {
     static char settings[8192];
     live_slice still, moved;
     put_poses(settings, sizeof settings, 90);
-    reconstruct(settings, (live_switches){0}, &still);
+    reconstruct(settings, (skg_live_asked){0}, &still);
     ck_assert_int_eq(still.projections, 90);
-    reconstruct(settings, (live_switches){.has_motion = 1}, &moved);
+    reconstruct(settings, (skg_live_asked){.motion = 1}, &moved);
     double most = 0;
     for (int i = 0; i < SIZE * SIZE; i++)
         most = fmax(most, fabs((double)(still.values[i] - moved.values[i])));
@@ -146,14 +146,14 @@ END_TEST
 START_TEST(a_scan_is_thinned) {
     live_slice slice;
     reconstruct("{\"Scan\": {\"NumberOfProjections\": 400, \"FinalAngle\": 360}}",
-                (live_switches){.at_mm = 10}, &slice);
+                (skg_live_asked){.at_mm = 10}, &slice);
     ck_assert_int_eq(slice.projections, 134);
     ck_assert_double_eq_tol(slice.at_mm, 10, 1e-9); /* rounding of doubles */
     const double per_cm = truth(slice.mean_kev);
     ck_assert_double_eq_tol(centre_of(&slice), per_cm, 0.02 * per_cm); /* of the method with 96 columns */
     reconstruct(
         "{\"Scan\": {\"NumberOfProjections\": 90, \"FinalAngle\": 360}, \"Samples.water.Material\": [\"mu\", 0.3]}",
-        (live_switches){.at_mm = 40}, &slice);
+        (skg_live_asked){.at_mm = 40}, &slice);
     ck_assert_double_lt(centre_of(&slice), 0.05); /* beyond the cylinder's end */
 }
 END_TEST
@@ -169,7 +169,7 @@ START_TEST(a_slice_is_cancelled) {
     int64_t done = 0;
     skg_progress *progress = NULL;
     ck_skg(skg_progress_create(stop_at_20, &done, &progress));
-    ck_assert_int_eq(make("{}", (live_switches){0}, progress, &slice, sentence), 0);
+    ck_assert_int_eq(make("{}", (skg_live_asked){0}, progress, &slice, sentence), 0);
     ck_assert_int_eq(slice.is_cancelled, 1);
     ck_assert_int_lt(done, 30);
     skg_progress_release(&progress);
@@ -188,15 +188,15 @@ START_TEST(what_cannot_be_reconstructed_is_refused) {
     char sentence[LIVE_SENTENCE];
     live_slice slice;
     for (size_t i = 0; i < sizeof wrong / sizeof *wrong; i++) {
-        ck_assert_int_eq(make(wrong[i].settings, (live_switches){0}, NULL, &slice, sentence), 0);
+        ck_assert_int_eq(make(wrong[i].settings, (skg_live_asked){0}, NULL, &slice, sentence), 0);
         ck_assert_msg(strstr(sentence, wrong[i].says) != NULL, "%s", sentence);
         ck_assert_int_eq(slice.is_cancelled, 0);
     }
     /* the other curved detectors and parallel beams are not */
-    reconstruct("{\"Detector.Curved\": {\"Radius\": [600, \"mm\"]}}", (live_switches){0}, &slice);
+    reconstruct("{\"Detector.Curved\": {\"Radius\": [600, \"mm\"]}}", (skg_live_asked){0}, &slice);
     ck_assert_double_eq_tol(centre_of(&slice), truth(slice.mean_kev),
                             0.02 * truth(slice.mean_kev)); /* likewise */
-    reconstruct("{\"Source.Shape\": \"ParallelBeam\"}", (live_switches){0}, &slice);
+    reconstruct("{\"Source.Shape\": \"ParallelBeam\"}", (skg_live_asked){0}, &slice);
     ck_assert_double_eq_tol(centre_of(&slice), truth(slice.mean_kev),
                             0.02 * truth(slice.mean_kev)); /* likewise */
 }

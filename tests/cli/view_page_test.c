@@ -84,8 +84,8 @@ static const char still_script[] =
     "check('distances', byId('measures').textContent.includes('500 mm') && byId('measures').textContent.includes('1.25'));\n"
     "check('field', v0.field.every((p, i) => p.every((x, k) => Math.abs(x - v0.strips[i % 3 ? 1 : 0][i < 2 ? 0 : 1][k]) < 1e-9)) && v0.jaws.length === 0);\n"
     "check('loaded', byId('loading').hidden);\n"
-    "key('?'); check('keys', byId('keys').open && byId('keys').textContent.includes('hide the chosen part')); key('?');\n"
-    "check('no keys', !byId('keys').open);\n"
+    "key('?'); check('keys', byId('key-list').open && byId('key-list').textContent.includes('hide the chosen part')); key('?');\n"
+    "check('no keys', !byId('key-list').open);\n"
     "const shown = id => getComputedStyle(byId(id)).display !== 'none', wheel = () => canvas.dispatchEvent(\n"
     "  new WheelEvent('wheel', {deltaY: -120, cancelable: true}));\n"
     "canvas.blur(); key('0'); const before = sum(); setBare(true); check('bare', !shown('buttons') && !shown('labels') && canvas.clientWidth === innerWidth);\n"
@@ -95,7 +95,7 @@ static const char still_script[] =
     "const v = v0, low = v.strips[0], high = v.strips[1];\n"
     "sameImage((across, down) => low[0].map((x, k) => x + across * (high[0][k] - x) + down * (low[1][k] - x)));\n"
     "differs('no beam', () => key('m')); key('m'); byId('all').click();\n"
-    "key('0'); const ground = pixels()[0]; setDark(!document.documentElement.classList.contains('dark'));\n"
+    "key('0'); const ground = pixels()[0]; darken(!document.documentElement.classList.contains('dark'));\n"
     "check('dark', Math.abs(pixels()[0] - ground) > 100);\n"
     "check('panel', (key('l'), getComputedStyle(document.querySelector('aside')).display === 'none'));\n";
 
@@ -142,7 +142,7 @@ static const char sensitive_script[] =
     "check('own colours', meshes.every((m, i) => m.colour.every((x, k) => Math.abs(255 * x - scene.parts[i].colour[k]) < 1e-9)));\n"
     "key('s'); check('on again', sum() === first && String(meshes.map(m => m.colour[3])) === String(opacity));\n"
     "setChosen(1); check('chosen', byId('about').textContent.includes('for a mm' + percent(changeOf(1).largest))); setChosen(-1);\n"
-    "setDark(true); check('dark', sum() !== first && meshes[0].colour[0] === 253 / 255);\n";
+    "darken(true); check('dark', sum() !== first && meshes[0].colour[0] === 253 / 255);\n";
 
 /* A part that has no derivative: the reason, and the colours of other pages. */
 static const char insensitive_script[] =

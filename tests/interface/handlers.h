@@ -3,6 +3,7 @@
 #define HANDLERS_H
 
 #include <skiagraph/breathing.h>
+#include <skiagraph/live.h>
 #include <skiagraph/opencl.h>
 #include <skiagraph/registration.h>
 #include <skiagraph/scanning.h>

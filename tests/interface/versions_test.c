@@ -4,6 +4,7 @@
 
 #include <float.h>
 #include <skiagraph/breathing.h>
+#include <skiagraph/live.h>
 #include <skiagraph/registration.h>
 #include <skiagraph/scanning.h>
 #include <skiagraph/skiagraph.h>

@@ -150,17 +150,18 @@ def test_beam_and_options_are_in_the_scene(solid, hub, tmp_path):
 
 
 @pytest.mark.parametrize("message, sentence", [
-    (7, "a message is an object"), ([], "a message is an object"), ({}, "keys wish, ack"), ({"wish": "x"}, "no number of a wish"),
+    (7, "no JSON"), ([], "no JSON object"), ({}, "key wish, ack"), ({"wish": "x"}, "no number of a wish"),
     ({"wish": -1}, "no number"), ({"wish": True}, "no number"), ({"wish": 1, "drag": 1}, "neither true nor false"), ({"wish": 1, "what": 2}, 'no key "what"'),
     ({"wish": 1, "settings": [1]}, "no object"), ({"wish": 1, "settings": {"": 1}}, "no key of a scene file"),
     ({"wish": 1, "settings": {"a=b": 1}}, "no key of a scene file"), ({"wish": 1, "poses": {"x": SAME}}, "no number of a part"),
     ({"wish": 1, "poses": {"0": SAME[:15]}}, "16 numbers"), ({"wish": 1, "poses": {"0": [*SAME[:12], 0, 0, 0, 2]}}, "16 numbers"),
-    ({"wish": 1, "poses": {"0": [float("nan"), *SAME[1:]]}}, "16 numbers"), ({"wish": 1, "phase": 1.5}, "below 1"),
+    ({"wish": 1, "poses": {"0": [float("nan"), *SAME[1:]]}}, "no JSON"), ({"wish": 1, "phase": 1.5}, "below 1"),
     ({"wish": 1, "projection": 0.5}, "whole number"), ({"wish": 1, "quantity": ["energy"]}, "quantity"), ({"ack": None}, "number of a frame"),
     ({"probe": [1]}, "column, row"), ({"take": "exe"}, "png, tif or mha"), ({"look": 1}, '"size" is missing'),
     *(({"look": LOOK | bad}, f'"look": "{next(iter(bad))}" is') for bad in (
         {"size": [0, 1]}, {"size": [4096, 4096]}, {"size": [64, True]}, {"distance": 0}, {"distance": [1]}, {"target": [1, 2]}, {"up": "x"}, {"what": 1},
-        {"cut": [1, 2, 3]}, {"parts": {"x": [1, 2, 3, 4]}}, {"parts": {"0": [1, 2, 3, 256]}}, {"parts": []}, {"number": -1}, {"parallel": 1})), ({"measure": True}, "skiagraph live")])
+        {"cut": [1, 2, 3]}, {"parts": {"x": [1, 2, 3, 4]}}, {"parts": {"0": [1, 2, 3, 256]}}, {"parts": []}, {"number": -1}, {"parallel": 1})), ({"measure": True}, "skiagraph live"),
+    ({"register": 1}, "scene.register"), ({"reconstruct": None}, "sk.reconstruct")])
 def test_malformed_messages_are_refused(hub, message, sentence):
     one = Page(hub)
     frames, files = len(one.frames), len(one.files)
@@ -351,51 +352,114 @@ def test_a_scene_breathes(tmp_path):
     one.wish(play=False)
     assert (one.image() == first).all() and all((part.mesh.vertices == old).all() for part, old in zip(scene, before))
     assert one.pages == 0
+    scene.remove("needle" if "needle" in [part.label for part in scene] else next(iter(scene)).label)
+    one.hub.refresh()  # the breath links the parts of the file, so that it has ended
+    one.say()
+    assert one.pages == 1 and one.last("scene")["scene"]["period"] is None
+    one.check(scene)
+
+
+CONVERSATION = pathlib.Path(__file__).parents[1] / "cli" / "live_conversation.json"
+#: What differs from one run to the next, or is the transport's own: times, numbers of frames, memory of the device at that moment, and
+#: what only one of the two knows.
+OTHERS = {"ms", "stages", "shot", "load_ms", "plan_ms", "device_mib", "geometry", "document", "path", "without", "dose", "warnings"}
+
+
+def client():
+    """The plain client of the command's tests."""
+    path = pathlib.Path(__file__).parents[1] / "cli" / "live_client.py"
+    spec = importlib.util.spec_from_file_location("live_client", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def bare(value):
+    return {key: bare(its) for key, its in value.items() if key not in OTHERS} if isinstance(value, dict) else value
+
+
+def without_times(message):
+    """What goes to a page, as bytes, without what differs from one run to the next."""
+    if isinstance(message, dict):
+        return json.dumps(bare(message)).encode()
+    mark, data = message[:4], bytearray(message)
+    if mark == b"SKLF":
+        data[4:8] = data[40:44] = bytes(4)  # number of the frame, ms
+    elif mark == b"SKLP":
+        data[12:16] = bytes(4)  # ms
+    return bytes(data)
+
+
+class Command:
+    """The same as Page of the command's server."""
+
+    def __init__(self, server, module):
+        self.page, self.module = module.Page(server), module
+        self.page.find(lambda m: isinstance(m, dict) and "shot" in m)
+
+    def ask(self, message, marks):
+        """Sends a message. Its answers, of which there is one that begins with each of the marks, in their order."""
+        self.page.send_raw(1, json.dumps(message).encode())
+        found = {}
+        while len(found) < len(marks):
+            code, data = self.page.receive_raw()
+            if data[:4] == b"SKLF":
+                self.page.send({"ack": struct.unpack_from("<I", data, 4)[0]})
+            answer = json.loads(data) if code == 1 else data
+            mark = mark_of(answer)
+            wish = message.get("wish") if isinstance(message, dict) else None
+            if mark in marks and mark not in found and (wish is None or of_wish(answer) in (None, wish)):
+                found[mark] = without_times(answer)
+        return [found[mark] for mark in marks]
+
+
+def mark_of(answer):
+    return next(iter(answer)) if isinstance(answer, dict) else answer[:4].decode()
+
+
+def of_wish(answer):
+    """The wish that an answer is about; None: it is about none."""
+    if isinstance(answer, dict):
+        return answer["scene"]["state"]["wish"] if "scene" in answer else answer.get("wish")
+    return HEADER.unpack_from(answer)[2] if answer[:4] == b"SKLF" else None
+
+
+def ask(page, message, marks):
+    """The same of a page in a notebook."""
+    counts = len(page.texts), len(page.frames), len(page.files)
+    page.ack()
+    page.say(message)
+    answers = page.texts[counts[0]:] + page.frames[counts[1]:] + page.files[counts[2]:]
+    found = {mark_of(answer): without_times(answer) for answer in answers}
+    return [found[mark] for mark in marks]
 
 
 @pytest.mark.parametrize("radius", [0, 150])  # flat, and curved
-def test_the_command_says_the_same(command, solid, tmp_path, radius):
-    """Frames and texts of `skiagraph live` of the same scene."""
-    path = pathlib.Path(__file__).parents[1] / "cli" / "live_client.py"
-    spec = importlib.util.spec_from_file_location("live_client", path)
-    client = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(client)
+def test_a_conversation_is_the_same_with_the_command(command, solid, tmp_path, radius):
+    """Both transports answer a conversation byte for byte, times and numbers of frames aside."""
     solid.view.radius = radius
     solid.save(tmp_path / "scene.json")
-    scene = sk.Scene(tmp_path / "scene.json")
-    one = Page(hubs.Hub(scene._state))
-    keys = {"poses": {"1": shift(5)}, "settings": {"Source.Position": [3, 0, -900, "mm"]} | ({} if radius else {"Collimation": {"Field": "detector"}})}
-    one.wish(**keys)
-    looks = [{"size": [320, 240], "distance": distance, "grey": [0, 2], "cut": [0, 0, 1, 3], "parts": {"0": [90, 160, 200, 120]}} for distance in (200, 2500)]
+    scene = json.loads((tmp_path / "scene.json").read_text())
+    (tmp_path / "scene.json").write_text(json.dumps(scene | {"Scan": {"NumberOfProjections": 4, "AngleStep": 90}}))
+    one = Page(hubs.Hub(sk.Scene(tmp_path / "scene.json")._state))
+    module = client()
     try:
-        server = client.Server(_command.path(), str(tmp_path / "scene.json"))
+        server = module.Server(_command.path(), str(tmp_path / "scene.json"))
     except RuntimeError as error:
         pytest.skip(str(error))
+    first = one.sent + 1  # of a notebook's page, whose numbers go on from it
     with server:
-        other = client.Page(server)
-        wish = other.wish(**keys)
-        frame, shot, told = None, None, None
-        while frame is None or shot is None or shot["wish"] < wish:
-            message = other.receive()
-            frame = message if isinstance(message, client.Frame) and message.wish >= wish else frame
-            shot = message if isinstance(message, dict) and "shot" in message else shot
-            told = message if isinstance(message, dict) and "scene" in message else told
-        pictures = []
-        for look in looks:
-            other.send({"look": LOOK | look})
-            pictures.append(other.find(lambda m: isinstance(m, bytes) and m[:4] == b"SKLP")[PICTURE.size:])
-        other.close()
-    for look, picture in zip(looks, pictures, strict=True):
-        assert one.picture(**look) == picture, look
-    mine = HEADER.unpack_from(one.frames[-1])
-    assert (frame.columns, frame.rows, frame.low, frame.step, frame.flat, frame.quantity, frame.notes) == (*mine[3:8], *mine[10:])
-    assert list(frame.numbers) == np.frombuffer(one.frames[-1], "<u2", offset=HEADER.size).tolist()
-    assert shot.keys() == one.last("shot").keys() and shot["state"].keys() == one.last("shot")["state"].keys()
-    assert len(shot["view"]["strips"]) == (24 if radius else 2)
-    for key, value in shot["view"].items():
-        assert one.last("shot")["view"][key] == (value if isinstance(value, (str, int)) else pytest.approx(np.array(value), rel=1e-12, abs=1e-9)), key
-    assert one.last("shot")["beam"] == pytest.approx(shot["beam"])
-    assert told is None or told["scene"].keys() == one.last("scene")["scene"].keys()
+        other = Command(server, module)
+        for step in json.loads(CONVERSATION.read_text()):
+            if radius and step.get("flat"):
+                continue
+            message, marks = step["say"], step["answers"]
+            if isinstance(message, dict) and type(message.get("wish")) is int and message["wish"] >= 0:
+                message = message | {"wish": first + message["wish"]}
+            for mark, mine, its in zip(marks, ask(one, message, marks), other.ask(message, marks), strict=True):
+                assert mine == its, (mark, message)
+        other.page.close()
+    assert one.last("shot")["view"]["strips"] and len(one.last("shot")["view"]["strips"]) == (24 if radius else 2)
 
 
 def test_a_large_scene_is_shown_by_fewer_triangles():

@@ -9,11 +9,6 @@
 #include <sys/stat.h>
 #include <time.h>
 
-static int fail(char *sentence) {
-    snprintf(sentence, LIVE_SENTENCE, "%s", skg_last_error());
-    return 0;
-}
-
 /* When a file was last changed; 0: there is none. */
 static int64_t stamp_of(const char *path) {
     struct stat status;
@@ -112,7 +107,7 @@ int live_base_read(live_base *base, char *sentence) {
     skg_status status = settings ? skg_setup_create(base->context, &source, &setup) : SKG_ERR_MEMORY;
     if (status == SKG_OK) status = skg_setup_text_get(setup, &text);
     char *copy = status == SKG_OK ? strdup(text) : NULL;
-    if (status != SKG_OK) fail(sentence);
+    if (status != SKG_OK) live_fail(sentence);
     const int is_noted =
         note_files(base, setup,
                    (int64_t)begun.tv_sec * 1000000000 +

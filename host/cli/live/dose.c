@@ -7,8 +7,8 @@
 #include <math.h>
 #include <string.h>
 
-int live_dose_is_known(const live_scene *scene, const skg_view *view, double phase) {
-    return scene->dose && memcmp(&scene->dose_view, view, sizeof *view) == 0 &&
+int live_dose_is_known(const live_scene *scene, double phase) {
+    return scene->dose && memcmp(&scene->dose_view, &scene->view, sizeof scene->view) == 0 &&
            (scene->dose_phase == phase || (isnan(scene->dose_phase) && isnan(phase)));
 }
 
@@ -31,25 +31,27 @@ static json_t *figures(const skg_dose *dose) {
 /* A newer wish and the end are not kept waiting. */
 static int32_t is_enough(int64_t done, int64_t total, void *user) {
     (void)done, (void)total;
-    return live_hub_has_news(user) || cli_stop_asked();
+    return live_hub_has(user, SKG_LIVE_ASKED_WISH) || cli_stop_asked();
 }
 
-int live_dose_find(live_scene *scene, live_hub *hub, const skg_view *view, double phase) {
+int live_dose_find(live_scene *scene, live_hub *hub, double phase) {
     skg_dose_options options;
     skg_dose *dose = NULL;
+    skg_plan *plan = NULL;
     skg_status status = SKG_OK;
     skg_dose_options_init(&options);
     options.histories = 0;
     json_decref(scene->dose);
     scene->dose = NULL;
-    scene->dose_view = *view, scene->dose_phase = phase;
+    scene->dose_view = scene->view, scene->dose_phase = phase;
     status = skg_progress_create(is_enough, hub, &options.progress);
-    if (status == SKG_OK) status = skg_plan_view_set(scene->plan, view);
-    if (status == SKG_OK) status = skg_dose_create(scene->plan, &options, &dose);
+    if (status == SKG_OK) status = skg_live_plans_whole_get(scene->plans, &plan);
+    if (status == SKG_OK) status = skg_plan_view_set(plan, &scene->view);
+    if (status == SKG_OK) status = skg_dose_create(plan, &options, &dose);
     if (status == SKG_OK) scene->dose = figures(dose);
     skg_dose_release(&dose);
     skg_progress_release(&options.progress);
-    (void)skg_plan_view_set(scene->plan, &scene->session.view); /* which the plan was made with */
+    if (plan) (void)skg_plan_view_set(plan, &scene->session.view); /* which the plan was made with */
     if (!scene->dose && status != SKG_ERR_CANCELLED) scene->dose = json_null();
     return scene->dose != NULL;
 }

@@ -5,11 +5,11 @@
 #include "live/hub.h"
 #include "live/scene.h"
 
-/* Whether the figures of the scene are those of a view and a phase of the breath. */
-int live_dose_is_known(const live_scene *scene, const skg_view *view, double phase);
+/* Whether the figures of the scene are those of what is shown and of a phase of the breath. */
+int live_dose_is_known(const live_scene *scene, double phase);
 
 /* Finds the figures without following photons, into scene->dose: an object, or null where the number of photons is not known or the scene has
  * no such figures. Returns 0, and they stay unknown, if a newer wish or the end comes first. */
-int live_dose_find(live_scene *scene, live_hub *hub, const skg_view *view, double phase);
+int live_dose_find(live_scene *scene, live_hub *hub, double phase);
 
 #endif

@@ -2,8 +2,6 @@
 #include "live/fixed.h"
 
 #include "common/say.h"
-#include "live/frame.h"
-
 #include <math.h>
 #include <stdlib.h>
 
@@ -27,25 +25,21 @@ static int check(const live_scene *scene, const register_image *fixed) {
 static int pack(const register_image *fixed, live_hub *hub) {
     const int64_t count = fixed->view.columns * fixed->view.rows;
     const int is_ratio = fixed->flat || fixed->quantity == SKG_QUANTITY_TRANSMISSION;
-    live_header header = {.mark = {'S', 'K', 'L', 'R'},
-                          .columns = (uint16_t)fixed->view.columns,
-                          .rows = (uint16_t)fixed->view.rows,
-                          .factor = 1,
-                          .quantity = (uint8_t)fixed->quantity};
     float *values = malloc((size_t)count * sizeof *values);
-    unsigned char *bytes = NULL;
-    double largest = 0;
-    size_t size = 0;
+    skg_live_letter *letter = NULL;
+    double largest = 0, flat_field = 0;
     for (int64_t p = 0; p < count && values; p++) {
         values[p] = (float)(fixed->flat ? fixed->values[p] / fixed->flat[p] : fixed->values[p]);
         largest = fmax(largest, fixed->values[p]);
     }
     if (fixed->quantity != SKG_QUANTITY_ATTENUATION)
-        header.flat_field = is_ratio ? 1 : fixed->flat_field > 0 ? fixed->flat_field : largest;
-    const int is_packed = values && live_frame_pack(values, &header, &bytes, &size);
+        flat_field = is_ratio ? 1 : fixed->flat_field > 0 ? fixed->flat_field : largest;
+    const int is_packed =
+        values && skg_live_image_write("SKLR", fixed->view.columns, fixed->view.rows, fixed->quantity,
+                                       flat_field, values, &letter) == SKG_OK;
     free(values);
     if (!is_packed) return cli_error(CLI_DEVICE, "out of host memory for the radiograph");
-    live_hub_radiograph_set(hub, bytes, size);
+    live_hub_radiograph_set(hub, letter);
     return CLI_DONE;
 }
 

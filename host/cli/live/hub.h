@@ -1,12 +1,11 @@
-/* Between the thread that computes and the pages: what pages ask for goes in, frames and sentences go out. Every page has a
- * thread that sends to it, so that a slow one holds up nothing: it gets the newest frame when it has taken the one before,
- * and the frames between are dropped. */
+/* Between the thread that computes and the pages: what pages ask for goes in, letters go out. Every page has a thread that sends to it,
+ * so that a slow one holds up nothing: it gets the newest frame when it has taken the one before, and the frames between are dropped. */
 #ifndef CLI_LIVE_HUB_H
 #define CLI_LIVE_HUB_H
 
 #include "live/wish.h"
 
-enum { LIVE_PAGES_MAX = 8, LIVE_FORMATS = 3 };
+enum { LIVE_PAGES_MAX = 8, LIVE_FORMATS = 3, LIVE_KINDS = SKG_LIVE_ASKED_RECONSTRUCT + 1 };
 
 typedef struct live_hub live_hub;
 typedef struct live_client live_client;
@@ -36,31 +35,25 @@ char *live_hub_page_get(live_hub *hub);
 
 /* For the thread that computes. */
 
-/* What pages have asked for since the last time; of each kind the newest. */
+/* What pages have asked for since the last time. newest: by enum skg_live_asked_kind, but acks, takes and looks; NULL: none */
 typedef struct {
-    int has_wish, has_probe, has_measure, has_register, has_reconstruct;
-    live_wish wish; /* the caller frees it if has_wish */
-    double probe[2];
-    int64_t part;           /* to register; -1: what is under way ends */
-    live_switches switches; /* of the slice to reconstruct */
-    char takes[LIVE_FORMATS][8];
+    skg_live_message *newest[LIVE_KINDS];
+    skg_live_message *takes[LIVE_FORMATS];
     int take_count;
 } live_asked;
 
-/* Waits for something asked, for at most `ms`; sees_looks: or for a look. Returns whether there is something but looks. */
+/* Releases what is left of it. */
+void live_asked_free(live_asked *asked);
+
+/* Waits for something asked, for at most `ms`; sees_looks: or for a look. Returns whether there is something but looks. asked: the
+ * caller frees it */
 int live_hub_wait(live_hub *hub, double ms, int sees_looks, live_asked *asked);
 
-/* Takes the look that has waited longest, which the caller frees. page: for live_hub_picture. Returns whether there was one. */
-int live_hub_look_take(live_hub *hub, live_look *look, int64_t *page);
+/* Takes the look that has waited longest, which the caller releases; NULL: there is none. page: for live_hub_picture */
+skg_live_message *live_hub_look_take(live_hub *hub, int64_t *page);
 
-/* Sends a picture to the page that has asked for it, if it is still there. Takes over the bytes. */
-void live_hub_picture(live_hub *hub, int64_t page, unsigned char *bytes, size_t size);
-
-/* Whether a newer wish waits. */
-int live_hub_has_news(live_hub *hub);
-
-/* Whether another slice is to be reconstructed, or none. */
-int live_hub_has_other_slice(live_hub *hub);
+/* Whether a message of this kind waits. */
+int live_hub_has(live_hub *hub, int kind);
 
 /* Whether a page could take a frame now; without one, frames need not be made. */
 int live_hub_is_thirsty(live_hub *hub);
@@ -71,23 +64,31 @@ double live_hub_idle(live_hub *hub);
 /* The page as HTML. Takes over the text. */
 void live_hub_page_set(live_hub *hub, char *html);
 
-/* A radiograph, which each page that begins later is sent. Takes over the bytes. */
-void live_hub_radiograph_set(live_hub *hub, unsigned char *bytes, size_t size);
+/* What follows takes over its letter or object. A letter that is NULL, for want of memory, does nothing. */
 
-/* What each new page is told first: the scene. */
-void live_hub_greeting_set(live_hub *hub, const char *text);
+/* Sends a picture to the page that has asked for it, if it is still there. */
+void live_hub_picture(live_hub *hub, int64_t page, skg_live_letter *letter);
+
+/* A radiograph, which each page that begins later is sent. */
+void live_hub_radiograph_set(live_hub *hub, skg_live_letter *letter);
+
+/* What each new page is told first: the scene. is_new: the pages that are there, too. */
+void live_hub_scene_tell(live_hub *hub, skg_live_letter *letter, int is_new);
 
 /* Tells all pages something; text that waits behind too much other text is dropped. */
-void live_hub_tell(live_hub *hub, const char *text);
-void live_hub_tell_json(live_hub *hub, json_t *object); /* releases the object */
+void live_hub_tell(live_hub *hub, skg_live_letter *letter);
+void live_hub_tell_json(live_hub *hub, json_t *object);
 
-/* Tells all pages of a frame, and those that begin later; releases the object. */
-void live_hub_shot_tell(live_hub *hub, json_t *object);
+/* Tells all pages that something is refused. */
+void live_hub_refuse(live_hub *hub, const char *sentence);
 
-/* Shows all pages a frame. Takes over the bytes. */
-void live_hub_show(live_hub *hub, int64_t number, unsigned char *bytes, size_t size);
+/* Tells all pages of a frame, and those that begin later. */
+void live_hub_shot_tell(live_hub *hub, skg_live_letter *letter);
+
+/* Shows all pages a frame. */
+void live_hub_show(live_hub *hub, int64_t number, skg_live_letter *letter);
 
 /* Sends a file to the page that may change the scene. */
-void live_hub_give(live_hub *hub, const void *bytes, size_t size);
+void live_hub_give(live_hub *hub, skg_live_letter *letter);
 
 #endif

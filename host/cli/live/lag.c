@@ -22,7 +22,7 @@ int live_lag_changes(const live_lag *lag) {
 
 /* Begins anew if the detector is another one. */
 static skg_status follow(live_lag *lag, const live_scene *scene, int64_t count) {
-    const int32_t quantity = scene->session.options.quantity;
+    const int32_t quantity = scene->wish.says.quantity;
     skg_readout readout;
     skg_readout_init(&readout);
     const skg_status status = skg_setup_readout_get(scene->setup, &readout);
@@ -57,9 +57,9 @@ static skg_status show(live_lag *lag, float *values) {
     return status;
 }
 
-int live_lag_show(live_lag *lag, const live_scene *scene, int64_t count, float *values, char *sentence) {
-    skg_status status = follow(lag, scene, count);
-    if (status == SKG_OK && lag->lag) status = show(lag, values);
+int live_lag_show(live_lag *lag, const live_scene *scene, const skg_live_frame *frame, char *sentence) {
+    skg_status status = follow(lag, scene, frame->channels * frame->columns * frame->rows);
+    if (status == SKG_OK && lag->lag) status = show(lag, frame->values);
     if (status == SKG_OK) return 1;
     snprintf(sentence, LIVE_SENTENCE, "%s",
              status == SKG_ERR_MEMORY ? "out of host memory for the lag" : skg_last_error());

@@ -16,9 +16,9 @@ typedef struct {
     double terms[2 * LIVE_LAG_TERMS]; /* [count][2] */
 } live_lag;
 
-/* Lets `values` of whole image show what the detector holds. A detector with other pixels, terms or quantity begins at rest. Returns 0 with
- * a sentence. */
-int live_lag_show(live_lag *lag, const live_scene *scene, int64_t count, float *values, char *sentence);
+/* Lets a whole image show what the detector holds. A detector with other pixels, terms or quantity begins at rest. Returns 0 with a
+ * sentence. */
+int live_lag_show(live_lag *lag, const live_scene *scene, const skg_live_frame *frame, char *sentence);
 
 /* Whether further frames of the same view would be others. */
 int live_lag_changes(const live_lag *lag);

@@ -113,12 +113,12 @@ static int serve(const cli_arguments *arguments, const flags *given, live_loop *
 int cli_live(const cli_arguments *arguments) {
     live_loop loop = {.base = {.arguments = arguments, .path = arguments->operands[0], .precision = -1}};
     flags given;
+    skg_device_info device;
     live_server *none = NULL;
     int exit_status = read_flags(arguments, &given);
     if (exit_status == CLI_DONE && !live_has_server) return live_server_start(NULL, NULL, &none);
     if (exit_status == CLI_DONE) exit_status = cli_choice(arguments, "--precision", &loop.base.precision);
-    if (exit_status == CLI_DONE)
-        exit_status = cli_open_context(arguments, &loop.base.context, &loop.base.device);
+    if (exit_status == CLI_DONE) exit_status = cli_open_context(arguments, &loop.base.context, &device);
     if (exit_status == CLI_DONE) {
         loop.hub = live_hub_create(live_server_send);
         exit_status =

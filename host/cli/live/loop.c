@@ -9,10 +9,8 @@
 #include "live/describe.h"
 #include "live/dose.h"
 #include "live/fixed.h"
-#include "live/frame.h"
 #include "live/page.h"
 #include "live/paths.h"
-#include "live/picture.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -21,8 +19,8 @@
 
 enum { WARNINGS_MAX = 20 };
 
-/* ms: how long to wait for something asked, how often files are looked at, and what an image may take while something is dragged. */
-static const double PAUSE = 100, LOOK = 500, FLUENT = 40;
+/* ms: how long to wait for something asked, and how often files are looked at. */
+static const double PAUSE = 100, LOOK = 500;
 
 /* ms between two frames of which pages are told all while the scene breathes by itself. */
 static const double TELL = 200;
@@ -39,13 +37,8 @@ static void tell_error(live_loop *loop, int64_t wish, const char *sentence) {
 
 /* Tells pages of the scene, those that are there only if it is another one. */
 static void tell_scene(live_loop *loop, int is_new) {
-    json_t *object = live_describe_scene(&loop->base, &loop->scene, &loop->wish, loop->geometry);
-    char *text = json_dumps(object, JSON_COMPACT | JSON_REAL_PRECISION(17));
-    json_decref(object);
-    if (!text) return;
-    live_hub_greeting_set(loop->hub, text);
-    if (is_new) live_hub_tell(loop->hub, text);
-    free(text);
+    live_hub_scene_tell(loop->hub,
+                        live_describe_scene(&loop->base, &loop->scene, &loop->wish, loop->geometry), is_new);
     loop->is_told = 1;
 }
 
@@ -78,60 +71,67 @@ static int change_scene(live_loop *loop, const live_wish *wish, char *sentence) 
         return 0;
     }
     live_scene_free(&loop->scene);
-    loop->scene = made;
+    live_scene_move(&made, &loop->scene);
     return 1;
 }
 
 /* Tells pages of a frame: all of it, or while the scene breathes by itself often only the phase. */
-static void tell_frame(live_loop *loop, const live_shot *shot) {
+static void tell_frame(live_loop *loop) {
     const double now = cli_now_ms();
-    if (loop->wish.plays && loop->told == loop->wish.number && now - loop->told_ms < TELL) {
-        live_hub_tell_json(loop->hub, live_describe_phase(&loop->wish, loop->number, shot->ms));
+    const int is_brief =
+        loop->wish.says.play && loop->told == loop->wish.says.number && now - loop->told_ms < TELL;
+    skg_live_letter *letter = NULL;
+    (void)skg_live_shot_write(loop->scene.plans, &loop->scene.subject, loop->wish.message, loop->number,
+                              is_brief, &letter);
+    if (is_brief) {
+        live_hub_tell(loop->hub, letter);
         return;
     }
-    loop->told = loop->wish.number;
+    loop->told = loop->wish.says.number;
     loop->told_ms = now;
-    live_hub_shot_tell(loop->hub,
-                       live_describe_shot(&loop->scene, &loop->wish, &shot->view, loop->number, shot->ms));
+    live_hub_shot_tell(loop->hub, letter);
 }
 
-/* How long the whole scatter of a frame took, and what comes next. */
-static void note_scatter(live_loop *loop) {
-    live_scene *scene = &loop->scene;
-    skg_scatter_report report;
-    skg_scatter_report_init(&report);
-    loop->refines = 0;
-    if (loop->wish.dragging || !scene->session.options.scatter) return;
-    const int has = skg_plan_scatter_report_get(scene->shown_plan, &report) == SKG_OK;
-    if (scene->step == LIVE_STEPS)
-        loop->scatter_s = has ? report.seconds : 0;
-    else if (has && report.sigma <= 2 * scene->session.options.scatter->tolerance * report.mean)
-        scene->step = LIVE_STEPS; /* half of the error needs four times as many photons, as a step more */
-    else
-        scene->step++;
-    loop->refines = scene->shown_plan != scene->plan;
+/* The end drops the image that is under way, and so does a newer wish; but its scatter only if the image refines the one that is shown:
+ * wishes that follow each other fast would otherwise show nothing. */
+static int32_t is_outdated(int64_t done, int64_t total, void *user) {
+    const live_loop *loop = user;
+    (void)done;
+    if (cli_stop_asked()) return 1;
+    return (total == 0 || loop->told == loop->wish.says.number) &&
+           live_hub_has(loop->hub, SKG_LIVE_ASKED_WISH);
 }
 
 static int make_frame(live_loop *loop, char *sentence) {
-    live_shot shot;
+    live_scene *scene = &loop->scene;
     const int64_t number = loop->number + 1;
-    loop->is_wanted = 0;
-    if (!live_frame_make(&loop->base, &loop->scene, &loop->wish, &loop->lag, loop->hub, number, &shot,
-                         sentence))
-        return 0;
-    if (shot.is_dropped || !shot.bytes) return 1;
+    skg_progress *progress = NULL;
+    skg_live_letter *letter = NULL;
+    skg_live_frame frame;
+    loop->is_wanted = loop->again = 0;
+    skg_live_frame_init(&frame);
+    skg_status status = skg_progress_create(is_outdated, loop, &progress);
+    if (status == SKG_OK)
+        status = skg_live_frame_make(scene->plans, &scene->subject, loop->wish.message, progress, &frame);
+    skg_progress_release(&progress);
+    loop->is_shown = status == SKG_OK && !frame.dropped;
+    if (status != SKG_OK) return live_fail(sentence);
+    if (frame.dropped) return 1;
+    if (!frame.draft && !live_lag_show(&loop->lag, scene, &frame, sentence)) return 0;
+    if (skg_live_frame_write(scene->plans, number, &letter) != SKG_OK) return live_fail(sentence);
     loop->number = number;
     loop->framed_ms = cli_now_ms();
-    live_hub_show(loop->hub, number, shot.bytes, shot.size);
-    tell_frame(loop, &shot);
-    note_scatter(loop);
+    loop->again = frame.again;
+    if (!isnan(frame.scatter_s)) loop->scatter_s = frame.scatter_s;
+    live_hub_show(loop->hub, number, letter);
+    tell_frame(loop);
     return 1;
 }
 
 int live_loop_begin(live_loop *loop, const char *nonce) {
     char sentence[LIVE_SENTENCE];
     loop->nonce = nonce;
-    live_wish_init(&loop->wish);
+    loop->wish = live_wish_plain();
     loop->base.warnings = json_array();
     cli_progress_begin("preparing the scene", 0);
     int is_made = live_base_read(&loop->base, sentence);
@@ -139,7 +139,11 @@ int live_loop_begin(live_loop *loop, const char *nonce) {
     (void)skg_context_log_set(loop->base.context, keep_warning, loop->base.warnings);
     is_made = is_made && change_scene(loop, &loop->wish, sentence);
     const int exit_status = is_made ? live_fixed_read(&loop->base, &loop->scene, loop->hub) : CLI_DONE;
-    if (exit_status == CLI_DONE && loop->base.fixed) loop->wish.projection = loop->base.fixed->projection;
+    if (is_made && exit_status == CLI_DONE && loop->base.fixed && loop->base.fixed->projection >= 0)
+        is_made = live_wish_change(&loop->wish,
+                                   json_pack("{s:I}", "projection", (json_int_t)loop->base.fixed->projection),
+                                   sentence) &&
+                  live_scene_see(&loop->base, &loop->scene, &loop->wish, sentence);
     is_made = is_made && exit_status == CLI_DONE && make_frame(loop, sentence);
     cli_progress_end();
     if (exit_status != CLI_DONE) return exit_status;
@@ -149,16 +153,22 @@ int live_loop_begin(live_loop *loop, const char *nonce) {
     return CLI_DONE;
 }
 
+/* Whether the plans that there are can show a wish. */
+static int has_plans(const live_loop *loop, const live_wish *wish) {
+    int32_t fits = 0;
+    return skg_live_plans_fit(loop->scene.plans, &loop->scene.subject, wish->message, &fits) == SKG_OK &&
+           fits;
+}
+
 /* Takes over a wish. */
 static void take_wish(live_loop *loop, live_wish *wish) {
     char sentence[LIVE_SENTENCE];
-    const int is_new = !live_scene_fits(&loop->scene, wish);
-    skg_view view;
-    const int is_made = live_paths_check(loop->base.path, wish->settings, sentence) &&
+    const int is_new = !has_plans(loop, wish);
+    const int is_made = live_paths_check(loop->base.path, wish, sentence) &&
                         (is_new ? change_scene(loop, wish, sentence)
-                                : live_scene_view(&loop->base, &loop->scene, wish, &view, sentence));
+                                : live_scene_see(&loop->base, &loop->scene, wish, sentence));
     if (!is_made) {
-        tell_error(loop, wish->number, sentence);
+        tell_error(loop, wish->says.number, sentence);
         live_wish_free(wish);
         return;
     }
@@ -166,7 +176,7 @@ static void take_wish(live_loop *loop, live_wish *wish) {
     loop->wish = *wish;
     loop->is_wanted = 1;
     loop->is_told = 0;
-    live_scene_refine(&loop->scene, loop->scatter_s);
+    (void)skg_live_plans_refine(loop->scene.plans, loop->scatter_s);
     if (is_new && make_page(loop)) tell_scene(loop, 1);
 }
 
@@ -176,7 +186,7 @@ static void read_again(live_loop *loop) {
     loop->looked_ms = cli_now_ms();
     if (!live_base_is_stale(&loop->base)) return;
     if (!live_base_read(&loop->base, sentence) || !change_scene(loop, &loop->wish, sentence)) {
-        tell_error(loop, loop->wish.number, sentence);
+        tell_error(loop, loop->wish.says.number, sentence);
         return;
     }
     loop->is_wanted = 1;
@@ -185,17 +195,19 @@ static void read_again(live_loop *loop) {
 
 /* The next moment of a breath that goes on by itself. */
 static void play(live_loop *loop) {
+    char sentence[LIVE_SENTENCE];
     const double now = cli_now_ms();
-    if (!loop->wish.plays || !loop->scene.motion || isnan(loop->wish.phase)) {
+    double phase = loop->wish.says.phase;
+    if (!loop->wish.says.play || !loop->scene.motion || isnan(phase)) {
         loop->played_ms = 0;
         return;
     }
     if (!live_hub_is_thirsty(loop->hub)) return;
-    if (loop->played_ms > 0)
-        loop->wish.phase = fmod(loop->wish.phase + (now - loop->played_ms) / 1000 / loop->scene.period, 1);
+    if (loop->played_ms > 0) phase = fmod(phase + (now - loop->played_ms) / 1000 / loop->scene.period, 1);
     loop->played_ms = now;
-    loop->is_wanted = 1;
-    live_scene_refine(&loop->scene, loop->scatter_s); /* the first step alone, until it stands */
+    loop->is_wanted = live_wish_change(&loop->wish, json_pack("{s:f}", "phase", phase), sentence);
+    (void)skg_live_plans_refine(loop->scene.plans,
+                                loop->scatter_s); /* the first step alone, until it stands */
 }
 
 static void end_registered(live_loop *loop) {
@@ -215,40 +227,49 @@ static void answer_register(live_loop *loop, int64_t part) {
     else if (part >= 0 &&
              live_registering_begin(&loop->base, &loop->wish, part, loop->hub, &loop->registering, sentence))
         return;
-    json_t *object = json_object();
-    json_object_set_new(object, "refused", cli_json_text(sentence));
-    live_hub_tell_json(loop->hub, object);
+    live_hub_refuse(loop->hub, sentence);
+}
+
+/* A file, of the scene as `image` reads it. */
+static void answer_take(live_loop *loop, const skg_live_message *take) {
+    char sentence[LIVE_SENTENCE];
+    skg_live_letter *letter = NULL;
+    live_scene scene;
+    const int is_made = live_scene_load(&loop->base, &loop->wish, &scene, sentence) &&
+                        live_scene_see(&loop->base, &scene, &loop->wish, sentence) &&
+                        (skg_live_file_write(&scene.subject, loop->wish.message, take, &letter) == SKG_OK ||
+                         live_fail(sentence));
+    if (!is_made) tell_error(loop, loop->wish.says.number, sentence);
+    live_hub_give(loop->hub, letter);
+    live_scene_free(&scene);
+}
+
+static void answer_probe(live_loop *loop, const skg_live_message *probe) {
+    char sentence[LIVE_SENTENCE];
+    skg_live_letter *letter = NULL;
+    if (skg_live_probe_write(&loop->scene.subject, loop->wish.message, probe, &letter) == SKG_OK)
+        live_hub_tell(loop->hub, letter);
+    else
+        tell_error(loop, loop->wish.says.number, (live_fail(sentence), sentence));
 }
 
 static void answer(live_loop *loop, const live_asked *asked) {
-    char sentence[LIVE_SENTENCE];
-    for (int i = 0; i < asked->take_count; i++) {
-        unsigned char *bytes;
-        size_t size;
-        if (live_take(&loop->base, &loop->wish, asked->takes[i], &bytes, &size, sentence))
-            live_hub_give(loop->hub, bytes, size);
-        else
-            tell_error(loop, loop->wish.number, sentence);
-        free(bytes);
-    }
-    if (asked->has_probe && !live_hub_has_news(loop->hub)) {
-        json_t *lengths = live_probe(&loop->base, &loop->scene, &loop->wish, asked->probe, sentence);
-        if (lengths)
-            live_hub_tell_json(loop->hub, lengths);
-        else
-            tell_error(loop, loop->wish.number, sentence);
-    }
-    if (asked->has_register) answer_register(loop, asked->part);
-    if (asked->has_reconstruct && !asked->switches.is_stop)
-        live_reconstruct(&loop->base, &loop->wish, &asked->switches, loop->hub);
-    if (asked->has_measure) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
+    skg_live_message *const *newest = asked->newest;
+    const live_wish part = live_wish_of(newest[SKG_LIVE_ASKED_REGISTER]),
+                    slice = live_wish_of(newest[SKG_LIVE_ASKED_RECONSTRUCT]);
+    for (int i = 0; i < asked->take_count; i++) answer_take(loop, asked->takes[i]);
+    if (newest[SKG_LIVE_ASKED_PROBE] && !live_hub_has(loop->hub, SKG_LIVE_ASKED_WISH))
+        answer_probe(loop, newest[SKG_LIVE_ASKED_PROBE]);
+    if (part.message) answer_register(loop, part.says.number);
+    if (slice.message && !slice.says.stop) live_reconstruct(&loop->base, &loop->wish, &slice.says, loop->hub);
+    if (newest[SKG_LIVE_ASKED_MEASURE]) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
 }
 
 /* Tells pages what a frame gives, if that is not known of the view. */
 static void tell_dose(live_loop *loop) {
     live_scene *scene = &loop->scene;
-    if (!scene->is_shown || live_dose_is_known(scene, &scene->shown, loop->wish.phase)) return;
-    if (!live_dose_find(scene, loop->hub, &scene->shown, loop->wish.phase)) return;
+    if (!loop->is_shown || live_dose_is_known(scene, loop->wish.says.phase)) return;
+    if (!live_dose_find(scene, loop->hub, loop->wish.says.phase)) return;
     json_t *object = json_object();
     json_object_set(object, "dosed", scene->dose);
     live_hub_tell_json(loop->hub, object);
@@ -260,31 +281,28 @@ static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
     if (!loop->is_told) tell_scene(loop, 0);
     if (loop->is_wanted || !live_hub_is_thirsty(loop->hub)) return; /* no page is there */
-    if (loop->refines || live_lag_changes(&loop->lag) ||
-        (loop->scene.frames == 1 && !loop->scene.session.options.scatter))
+    if (loop->again || live_lag_changes(&loop->lag))
         loop->is_wanted = 1; /* with more scatter, with less lag, or once more, for its time */
-    else if (!live_scene_draft(&loop->base, &loop->scene, FLUENT, sentence))
-        tell_error(loop, loop->wish.number, sentence);
-    else if (!loop->wish.dragging)
+    else if (skg_live_plans_draft(loop->scene.plans, &loop->scene.subject) != SKG_OK)
+        tell_error(loop, loop->wish.says.number, (live_fail(sentence), sentence));
+    else if (!loop->wish.says.drag)
         tell_dose(loop);
 }
 
 /* Draws a picture of the 3D view that a page waits for. Images come first. */
 static void draw(live_loop *loop) {
-    char sentence[LIVE_SENTENCE];
-    unsigned char *bytes;
-    size_t size;
     int64_t page;
-    live_look look;
+    skg_live_letter *letter = NULL;
     const double start = cli_now_ms();
-    if (start < loop->picture_ms || !live_hub_look_take(loop->hub, &look, &page)) return;
-    if (!live_picture_make(&loop->scene, &loop->wish, &look, &bytes, &size, sentence)) {
-        json_t *object = json_object();
-        json_object_set_new(object, "refused", cli_json_text(sentence));
-        live_hub_tell_json(loop->hub, object);
+    skg_live_message *look = start < loop->picture_ms ? NULL : live_hub_look_take(loop->hub, &page);
+    if (!look) return;
+    if (skg_live_picture_write(loop->scene.plans, &loop->scene.subject, loop->wish.message, look, &letter) !=
+        SKG_OK) {
+        live_hub_refuse(loop->hub, skg_last_error());
+        (void)skg_live_picture_miss(look, &letter);
     }
-    live_look_free(&look);
-    if (bytes) live_hub_picture(loop->hub, page, bytes, size);
+    skg_live_message_release(&look);
+    live_hub_picture(loop->hub, page, letter);
     const double now = cli_now_ms();
     loop->picture_ms = start - loop->framed_ms < PAUSE ? now + X_RAYS * (now - start) : now;
 }
@@ -303,14 +321,19 @@ void live_loop_run(live_loop *loop, double idle) {
                                       : until > 0 ? fmin(until, PAUSE)
                                                   : PAUSE,
                                       until <= 0, &asked);
-        if (asked.has_wish) take_wish(loop, &asked.wish);
+        if (asked.newest[SKG_LIVE_ASKED_WISH]) {
+            live_wish wish = live_wish_of(asked.newest[SKG_LIVE_ASKED_WISH]);
+            asked.newest[SKG_LIVE_ASKED_WISH] = NULL;
+            take_wish(loop, &wish);
+        }
         if (loop->is_wanted && live_hub_is_thirsty(loop->hub) && !make_frame(loop, sentence))
-            tell_error(loop, loop->wish.number, sentence);
+            tell_error(loop, loop->wish.says.number, sentence);
         draw(loop);
         if (has)
             answer(loop, &asked);
         else if (!is_ready)
             rest(loop);
+        live_asked_free(&asked);
         if (idle > 0 && !loop->registering && live_hub_idle(loop->hub) > idle) {
             cli_note("live: nothing was asked for during %g s; this is the end (--idle)", idle);
             break;
@@ -322,7 +345,7 @@ void live_loop_end(live_loop *loop) {
     live_registering_end(&loop->registering);
     live_lag_free(&loop->lag);
     live_scene_free(&loop->scene);
-    if (loop->wish.settings) live_wish_free(&loop->wish);
+    live_wish_free(&loop->wish);
     live_base_free(&loop->base);
     live_hub_free(loop->hub);
     loop->hub = NULL;

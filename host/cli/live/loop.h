@@ -18,7 +18,8 @@ typedef struct {
     int64_t number;    /* of the last frame */
     int64_t geometry;  /* of the page */
     double scatter_s;  /* that the scatter of a whole frame took; 0: unknown */
-    int refines;       /* 1: the last frame has less scatter than the scene asks for */
+    int again;         /* 1: another frame of the wish is wanted when nothing else is */
+    int is_shown;      /* 1: the last frame was not dropped, and did not fail */
     int is_wanted;     /* 1: a frame of the wish is still to be made */
     int is_told;       /* 1: pages that begin are told of this wish */
     double looked_ms;  /* when the files were last looked at */

@@ -2,8 +2,6 @@
 #include "live/ask.h"
 
 #include "common/encode.h"
-#include "common/progress.h"
-#include "live/frame.h"
 
 #include <math.h>
 #include <stdio.h>
@@ -47,30 +45,32 @@ static int has_key(const live_scene *scene, const char *path) {
     return has;
 }
 
-/* The image of a scene, and the time of the fastest of some. The caller frees the values. */
-static float *render(const live_base *base, live_scene *scene, const live_wish *wish, live_hub *hub,
-                     double *ms, char *sentence) {
-    int dropped = 0, is_outside;
-    skg_view view;
-    skg_output output;
+/* The image of a scene, which lives as long as the scene, and the time of the fastest of some. */
+static const float *render(live_scene *scene, live_hub *hub, double *ms, char *sentence) {
+    skg_live_frame frame;
     *ms = HUGE_VAL;
-    skg_output_init(&output);
-    output.data = scene->values;
-    if (!live_frame_pose(scene, wish, sentence) || !live_scene_view(base, scene, wish, &view, sentence))
-        return NULL;
+    skg_live_frame_init(&frame);
     for (int run = 0; run <= RUNS; run++) { /* the first warms up */
-        const double start = cli_now_ms();
-        if (live_hub_has_news(hub)) return NULL;
-        if (!live_frame_render(scene, wish, scene->plan, &view, NULL, &output, 1, &dropped, &is_outside,
-                               sentence))
-            return NULL;
-        const double took = cli_now_ms() - start;
-        if (run > 0 && took < *ms) *ms = took;
-        if (run > 0 && took > 1000) break;
+        if (live_hub_has(hub, SKG_LIVE_ASKED_WISH)) return NULL;
+        if (skg_live_frame_make(scene->plans, &scene->subject, scene->wish.message, NULL, &frame) != SKG_OK)
+            return live_fail(sentence), NULL;
+        if (run > 0 && frame.ms < *ms) *ms = frame.ms;
+        if (run > 0 && frame.ms > 1000) break;
     }
-    float *values = scene->values;
-    scene->values = NULL;
-    return values;
+    return frame.values;
+}
+
+/* The wish with a dial as it would be instead. Returns 0 with a sentence. */
+static int turn(int dial, live_wish *wish, char *sentence) {
+    const char *text = NULL;
+    if (skg_live_message_text_get(wish->message, &text) != SKG_OK) return live_fail(sentence);
+    json_t *state = json_loads(text, 0, NULL), *settings = json_incref(json_object_get(state, "settings"));
+    json_decref(state);
+    if (dials[dial].key)
+        json_object_set_new(settings, dials[dial].key, json_loads(dials[dial].value, JSON_DECODE_ANY, NULL));
+    return live_wish_change(
+        wish, json_pack("{s:o, s:s, s:b}", "settings", settings, "quantity", "attenuation", "drag", 0),
+        sentence);
 }
 
 /* The root mean square of the difference of two attenuations, where both are finite. */
@@ -100,31 +100,40 @@ static void tell(live_hub *hub, int dial, double ms, double error, const char *s
     live_hub_tell_json(hub, object);
 }
 
+/* Measures a dial. values: result, which the caller frees; NULL: it was not measured */
+static double measure(const live_base *base, int dial, const live_wish *wish, live_hub *hub, float **values,
+                      char *sentence) {
+    live_wish other = live_wish_copy(wish);
+    live_scene with = {0};
+    double ms = (double)NAN;
+    *values = NULL;
+    if (turn(dial, &other, sentence) && live_scene_make(base, &other, &with, sentence)) {
+        const float *image = render(&with, hub, &ms, sentence);
+        const size_t size = (size_t)(with.view.columns * with.view.rows) * sizeof **values;
+        *values = image ? malloc(size) : NULL;
+        if (*values) memcpy(*values, image, size);
+    }
+    live_scene_free(&with);
+    live_wish_free(&other);
+    return ms;
+}
+
 void live_measure(const live_base *base, const live_scene *scene, const live_wish *wish, live_hub *hub) {
     const int64_t pixels = scene->session.view.columns * scene->session.view.rows;
     float *reference = NULL;
-    for (int dial = 0; dial < DIALS && !live_hub_has_news(hub); dial++) {
-        live_wish other = live_wish_copy(wish);
-        live_scene with = {0};
+    for (int dial = 0; dial < DIALS && !live_hub_has(hub, SKG_LIVE_ASKED_WISH); dial++) {
         char sentence[LIVE_SENTENCE] = "";
-        double ms = (double)NAN, error = (double)NAN;
-        const int is_asked = !dials[dial].only_present || has_key(scene, dials[dial].key);
-        other.quantity = SKG_QUANTITY_ATTENUATION;
-        if (dials[dial].key)
-            json_object_set_new(other.settings, dials[dial].key,
-                                json_loads(dials[dial].value, JSON_DECODE_ANY, NULL));
-        float *values = is_asked && live_scene_make(base, &other, &with, sentence)
-                            ? render(base, &with, &other, hub, &ms, sentence)
-                            : NULL;
+        double error = (double)NAN;
+        float *values = NULL;
+        if (dials[dial].only_present && !has_key(scene, dials[dial].key)) continue;
+        const double ms = measure(base, dial, wish, hub, &values, sentence);
+        if (values && reference) error = difference(values, reference, pixels);
+        if (values || *sentence) tell(hub, dial, ms, error, sentence);
         if (dial == 0)
             reference = values;
-        else if (values && reference)
-            error = difference(values, reference, pixels);
-        if (is_asked && (values || *sentence)) tell(hub, dial, ms, error, sentence);
-        if (values != reference) free(values);
-        live_scene_free(&with);
-        live_wish_free(&other);
+        else
+            free(values);
     }
     free(reference);
-    live_hub_tell(hub, "{\"measured\": null}");
+    live_hub_tell_json(hub, json_pack("{s:n}", "measured"));
 }

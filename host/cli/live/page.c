@@ -94,23 +94,3 @@ char *live_page_make(const live_base *base, const live_wish *wish, const char *n
     live_scene_free(&scene);
     return html;
 }
-
-int live_page_view(const live_scene *scene, const skg_view *view, json_t *object) {
-    cli_session session = scene->session;
-    skg_look look;
-    view_places places = {0};
-    view_page page = {0};
-    int exit_status = CLI_DONE;
-    if (view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY)
-        exit_status = begin(scene, &page, &look, &places);
-    else
-        skg_look_init(&look);
-    look.collimation = session.options.collimation;
-    session.view = *view;
-    page.session = &session;
-    page.look = &look;
-    page.places = &places;
-    if (exit_status == CLI_DONE) exit_status = view_page_view(&page, object);
-    free(places.parts);
-    return exit_status;
-}

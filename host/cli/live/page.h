@@ -8,7 +8,4 @@
  * with an error printed. */
 char *live_page_make(const live_base *base, const live_wish *wish, const char *nonce);
 
-/* Adds source, beam and detector as the page draws them. */
-int live_page_view(const live_scene *scene, const skg_view *view, json_t *object);
-
 #endif

@@ -44,13 +44,17 @@ static int check(const char *folder, const json_t *value, char *sentence) {
     return 1;
 }
 
-int live_paths_check(const char *scene, const json_t *settings, char sentence[LIVE_SENTENCE]) {
+int live_paths_check(const char *scene, const live_wish *wish, char sentence[LIVE_SENTENCE]) {
     const char *slash = strrchr(scene, '/');
     char path[PATH_MAX];
+    const char *text = NULL;
+    if (skg_live_message_text_get(wish->message, &text) != SKG_OK) return live_fail(sentence);
+    json_t *state = json_loads(text, 0, NULL);
     snprintf(path, sizeof path, "%.*s", slash ? (int)(slash + 1 - scene) : 1, slash ? scene : ".");
     char *folder = realpath(path, NULL);
     if (!folder) snprintf(sentence, LIVE_SENTENCE, "the folder of the scene cannot be found");
-    const int is = folder && check(folder, settings, sentence);
+    const int is = folder && check(folder, json_object_get(state, "settings"), sentence);
+    json_decref(state);
     free(folder);
     return is;
 }

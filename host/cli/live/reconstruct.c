@@ -4,10 +4,7 @@
 #include "common/encode.h"
 #include "common/interrupt.h"
 #include "common/progress.h"
-#include "live/frame.h"
 #include "live/slice.h"
-
-#include <stdlib.h>
 
 static const double TELL = 100; /* ms between two messages about projections */
 
@@ -26,7 +23,9 @@ static void tell(live_hub *hub, const char *key, json_t *inner) {
 static int32_t hear(int64_t done, int64_t total, void *user) {
     teller *t = user;
     const double now = cli_now_ms();
-    if (live_hub_has_news(t->hub) || live_hub_has_other_slice(t->hub) || cli_stop_asked()) return 1;
+    if (live_hub_has(t->hub, SKG_LIVE_ASKED_WISH) || live_hub_has(t->hub, SKG_LIVE_ASKED_RECONSTRUCT) ||
+        cli_stop_asked())
+        return 1;
     if (now - t->told_ms < TELL) return 0;
     t->told_ms = now;
     json_t *inner = json_object();
@@ -36,7 +35,7 @@ static int32_t hear(int64_t done, int64_t total, void *user) {
     return 0;
 }
 
-static json_t *figures(const live_slice *slice, const live_switches *switches) {
+static json_t *figures(const live_slice *slice, const skg_live_asked *switches) {
     static const char *const axes[] = {"x", "y", "z"};
     json_t *object = json_object();
     json_object_set_new(object, "projections", json_integer(slice->projections));
@@ -48,24 +47,22 @@ static json_t *figures(const live_slice *slice, const live_switches *switches) {
     json_object_set_new(object, "mean_keV", cli_json_number(slice->mean_kev));
     json_object_set_new(object, "seconds", cli_json_number(slice->turn_s));
     json_object_set_new(object, "truncated", cli_json_number(slice->truncated));
-    json_object_set_new(object, "spectrum", json_boolean(switches->has_spectrum));
-    json_object_set_new(object, "noise", json_boolean(switches->has_noise));
-    json_object_set_new(object, "scatter", json_boolean(switches->has_scatter));
-    json_object_set_new(object, "motion", json_boolean(switches->has_motion));
+    json_object_set_new(object, "spectrum", json_boolean(switches->spectrum));
+    json_object_set_new(object, "noise", json_boolean(switches->noise));
+    json_object_set_new(object, "scatter", json_boolean(switches->scatter));
+    json_object_set_new(object, "motion", json_boolean(switches->motion));
     return object;
 }
 
 /* The slice, as a frame that begins with SKLS. */
 static void give(live_hub *hub, const live_slice *slice) {
-    live_header header = {
-        .mark = {'S', 'K', 'L', 'S'}, .columns = LIVE_SLICE_SIZE, .rows = LIVE_SLICE_SIZE, .factor = 1};
-    unsigned char *bytes = NULL;
-    size_t size;
-    if (live_frame_pack(slice->values, &header, &bytes, &size)) live_hub_give(hub, bytes, size);
-    free(bytes);
+    skg_live_letter *letter = NULL;
+    (void)skg_live_image_write("SKLS", LIVE_SLICE_SIZE, LIVE_SLICE_SIZE, SKG_QUANTITY_ENERGY, 0,
+                               slice->values, &letter);
+    live_hub_give(hub, letter);
 }
 
-void live_reconstruct(const live_base *base, const live_wish *wish, const live_switches *switches,
+void live_reconstruct(const live_base *base, const live_wish *wish, const skg_live_asked *switches,
                       live_hub *hub) {
     live_slice slice;
     char sentence[LIVE_SENTENCE] = "";

@@ -4,7 +4,6 @@
 #include "common/encode.h"
 #include "common/progress.h"
 #include "core/maths.h"
-#include "live/frame.h"
 
 #include <pthread.h>
 #include <stdatomic.h>
@@ -26,11 +25,6 @@ struct live_registering {
     atomic_int is_over;
     double told_ms;
 };
-
-static int fail(char *sentence) {
-    snprintf(sentence, LIVE_SENTENCE, "%s", skg_last_error());
-    return 0;
-}
 
 static int32_t tell_step(int64_t done, int64_t total, void *user) {
     live_registering *r = user;
@@ -57,9 +51,9 @@ static int check_view(const live_registering *r, const skg_view *view, char *sen
     const register_image *fixed = r->base.fixed;
     char name[64] = "the scene's own view", shown[64] = "the scene's own view";
     if (fixed->projection >= 0) snprintf(name, sizeof name, "projection %lld", (long long)fixed->projection);
-    if (r->wish.projection >= 0)
-        snprintf(shown, sizeof shown, "projection %lld", (long long)r->wish.projection);
-    if (fixed->projection != r->wish.projection) {
+    if (r->wish.says.projection >= 0)
+        snprintf(shown, sizeof shown, "projection %lld", (long long)r->wish.says.projection);
+    if (fixed->projection != r->wish.says.projection) {
         snprintf(sentence, LIVE_SENTENCE,
                  "%s: is of %s, and the page shows %s; choose the radiograph's to register", fixed->path,
                  name, shown);
@@ -77,11 +71,9 @@ static int check_view(const live_registering *r, const skg_view *view, char *sen
 /* What moves the part over the scene file's pose: the motion that was found after that of the wish. */
 static json_t *pose_json(const live_registering *r, const skg_registration *registration) {
     double motion[16], by[16], pose[16];
-    char key[24];
-    snprintf(key, sizeof key, "%lld", (long long)r->part);
-    const json_t *moved = json_object_get(r->wish.poses, key);
-    for (size_t i = 0; i < 16; i++)
-        by[i] = moved ? json_number_value(json_array_get(moved, i)) : (double)(i % 5 == 0);
+    skg_pose_identity(by);
+    for (int64_t i = 0; i < r->wish.says.pose_count; i++)
+        if (r->wish.says.parts[i] == r->part) memcpy(by, r->wish.says.poses + 16 * i, sizeof by);
     if (skg_registration_motion_get(registration, motion) != SKG_OK) return json_null();
     skg_pose_multiply(motion, by, pose);
     return cli_json_numbers(pose, 16);
@@ -96,8 +88,8 @@ static json_t *found_json(const live_registering *r, const live_scene *scene,
     skg_status status = skg_scene_part_get(scene->session.scene, r->part, &part);
     if (status == SKG_OK) status = register_result_get(registration, &body);
     body.label = part.label;
-    json_t *found =
-        status == SKG_OK ? register_body_json(&body, SKG_REGISTRATION_FREE_POSE) : (fail(sentence), NULL);
+    json_t *found = status == SKG_OK ? register_body_json(&body, SKG_REGISTRATION_FREE_POSE)
+                                     : (live_fail(sentence), NULL);
     if (found) json_object_set_new(found, "seconds", cli_json_number(body.result.seconds));
     if (found) json_object_set_new(found, "pose", pose_json(r, registration));
     json_decref(body.directions);
@@ -110,15 +102,14 @@ static json_t *search(live_registering *r, live_scene *scene, char *sentence) {
     skg_registration *registration = NULL;
     skg_registration_options options;
     skg_radiograph image;
-    skg_view view;
+    const skg_view *view = &scene->view;
     json_t *found = NULL;
-    if (!live_scene_view(&r->base, scene, &r->wish, &view, sentence) || !check_view(r, &view, sentence) ||
-        !live_frame_place(scene, &r->wish, sentence))
-        return NULL;
+    if (!live_scene_see(&r->base, scene, &r->wish, sentence) || !check_view(r, view, sentence)) return NULL;
+    if (skg_live_place(&scene->subject, r->wish.message) != SKG_OK) return live_fail(sentence), NULL;
     skg_registration_options_init(&options);
     options.progress = r->progress;
     register_radiograph(r->base.fixed, &image);
-    image.view = &view; /* the page may have moved source and detector */
+    image.view = view; /* the page may have moved source and detector */
     (void)skg_context_log_set(r->base.context, keep_warning, r); /* what the scene says, pages have heard */
     skg_status status =
         skg_registration_create(s->context, s->scene, s->spectrum, &s->options, &options, &registration);
@@ -128,7 +119,7 @@ static json_t *search(live_registering *r, live_scene *scene, char *sentence) {
     if (status == SKG_OK || status == SKG_ERR_CANCELLED)
         found = found_json(r, scene, registration, sentence);
     else
-        fail(sentence);
+        live_fail(sentence);
     if (!found && status == SKG_ERR_CANCELLED)
         snprintf(sentence, LIVE_SENTENCE, "stopped before the search had begun");
     skg_registration_release(&registration);
@@ -141,7 +132,7 @@ static void *run(void *user) {
     live_scene scene = {0};
     json_t *found = NULL, *object = json_object();
     if (skg_context_create(cli_value(r->base.arguments, "--device"), &r->base.context) != SKG_OK)
-        fail(sentence);
+        live_fail(sentence);
     else if (live_scene_load(&r->base, &r->wish, &scene, sentence))
         found = search(r, &scene, sentence);
     if (!found) {
@@ -160,7 +151,7 @@ static void *run(void *user) {
 }
 
 static void destroy(live_registering *r) {
-    if (r->wish.settings) live_wish_free(&r->wish);
+    live_wish_free(&r->wish);
     skg_progress_release(&r->progress);
     json_decref(r->warnings);
     free(r->base.text);
@@ -183,9 +174,9 @@ int live_registering_begin(const live_base *base, const live_wish *wish, int64_t
                           .text = strdup(base->text),
                           .fixed = base->fixed};
     r->wish = live_wish_copy(wish);
-    int is_begun = r->base.text && r->wish.settings && r->wish.poses && r->warnings;
+    int is_begun = r->base.text && r->wish.message && r->warnings;
     if (!is_begun) snprintf(sentence, LIVE_SENTENCE, "out of host memory");
-    if (is_begun && skg_progress_create(tell_step, r, &r->progress) != SKG_OK) is_begun = fail(sentence);
+    if (is_begun && skg_progress_create(tell_step, r, &r->progress) != SKG_OK) is_begun = live_fail(sentence);
     if (is_begun && pthread_create(&r->thread, NULL, run, r) != 0) {
         snprintf(sentence, LIVE_SENTENCE, "no thread can be started for the registration");
         is_begun = 0;

@@ -3,8 +3,6 @@
 
 #include "common/values.h"
 #include "core/maths.h"
-#include "live/frame.h"
-#include "live/picture.h"
 #include "session/explain.h"
 
 #include <math.h>
@@ -26,7 +24,8 @@ static const double MARGIN = 1.05;
 /* What is computed for a slice. */
 typedef struct {
     live_scene scene;
-    const live_switches *switches;
+    double box[6]; /* of the parts, mm */
+    const skg_live_asked *switches;
     double axis[3], centre[3];
     int64_t factor;  /* pixels of the detector for each that is computed, along a side */
     double share;    /* pixels of the detector for each that is computed */
@@ -66,7 +65,7 @@ const char *live_slice_without_motion(const live_scene *scene) {
 static skg_status make_turn(work *w) {
     const skg_view *view = &w->scene.session.view;
     const int is_infinite = view->projection == SKG_PROJECTION_PARALLEL_FROM_INFINITY;
-    const double *box = w->scene.box;
+    const double *box = w->box;
     double ray[3], to[3];
     skg_scan_options options;
     skg_scan_options_init(&options);
@@ -97,7 +96,7 @@ static skg_status make_scan(work *w, live_slice *slice) {
         skg_view view;
         skg_view_init(&view);
         status = skg_scan_view_get(w->whole, k * w->stride, &view);
-        live_view_coarsen(&view, w->factor);
+        if (status == SKG_OK) status = skg_live_view_coarsen(w->factor, &view);
         memcpy(poses + 12 * k, view.source, sizeof view.source);
         memcpy(poses + 12 * k + 3, view.centre, sizeof view.centre);
         memcpy(poses + 12 * k + 6, view.column_step, sizeof view.column_step);
@@ -139,7 +138,7 @@ static skg_status find_scan(work *w, live_slice *slice) {
 static double find_reach(const work *w) {
     double reach = 0, to[3];
     for (int corner = 0; corner < 8; corner++) {
-        for (int k = 0; k < 3; k++) to[k] = w->scene.box[k + (corner >> k & 1 ? 3 : 0)] - w->centre[k];
+        for (int k = 0; k < 3; k++) to[k] = w->box[k + (corner >> k & 1 ? 3 : 0)] - w->centre[k];
         skg_add_scaled(to, -skg_dot(to, w->axis), w->axis, to);
         reach = fmax(reach, skg_length(to));
     }
@@ -174,10 +173,11 @@ static skg_status begin_slice(work *w, live_slice *slice) {
 /* The beam of the larger pixels, with all energies or as many photons of their mean. */
 static skg_status make_beam(work *w, live_slice *slice) {
     const cli_session *session = &w->scene.session;
-    const int has_spectrum = w->switches->has_spectrum && !live_slice_without_spectrum(&w->scene);
+    const int has_spectrum = w->switches->spectrum && !live_slice_without_spectrum(&w->scene);
     int32_t is_absolute = 0;
     skg_quality quality;
-    skg_status status = cli_flat_field_quality(session, &quality);
+    skg_quality_init(&quality);
+    skg_status status = skg_flat_field_quality_get(session->spectrum, &session->view, &quality);
     if (status == SKG_OK) status = skg_spectrum_absolute_get(session->spectrum, &is_absolute);
     if (status != SKG_OK) return status;
     slice->mean_kev = quality.mean_kev;
@@ -195,8 +195,8 @@ static skg_status make_plan(work *w, live_slice *slice) {
     if (options.scatter) scatter = *options.scatter;
     scatter.tolerance = 0;
     scatter.histories = HISTORIES;
-    options.scatter = w->switches->has_scatter ? &scatter : NULL;
-    options.noise = w->switches->has_noise;
+    options.scatter = w->switches->scatter ? &scatter : NULL;
+    options.noise = w->switches->noise;
     options.electronic_kev = options.noise ? sqrt(w->share) * options.electronic_kev : 0;
     options.quantity = SKG_QUANTITY_ATTENUATION;
     options.bands = 0;
@@ -221,9 +221,11 @@ static int find_moving(work *w, const live_wish *wish, const live_slice *slice, 
     int is_made = all && w->moving;
     if (!is_made) snprintf(sentence, LIVE_SENTENCE, "out of host memory");
     for (int64_t k = 0; is_made && k < slice->projections; k++) {
-        live_wish its = *wish;
-        its.projection = k * w->stride;
-        is_made = live_frame_poses(&w->scene, &its, all, sentence);
+        live_wish its = live_wish_copy(wish);
+        is_made =
+            live_wish_change(&its, json_pack("{s:I}", "projection", (json_int_t)(k * w->stride)), sentence) &&
+            (skg_live_poses_get(&w->scene.subject, its.message, all) == SKG_OK || live_fail(sentence));
+        live_wish_free(&its);
         for (int64_t i = 0; is_made && i < record->moving_count; i++)
             memcpy(w->moving + 16 * (k * record->moving_count + i), all + 16 * record->moving_parts[i],
                    16 * sizeof *all);
@@ -249,13 +251,12 @@ static skg_status add_projections(work *w, const skg_scan_record *record, skg_pr
     skg_scan_run_options options;
     skg_scan_run_options_init(&options);
     options.progress = progress;
-    options.batch =
-        w->switches->has_scatter ? 1 : 4; /* few, so that it is soon heard that they are not wanted */
+    options.batch = w->switches->scatter ? 1 : 4; /* few, so that it is soon heard that they are not wanted */
     if (w->moving) {
         options.moving_count = record->moving_count;
         options.moving_parts = record->moving_parts;
         options.moving_poses = w->moving;
-    } else if (w->switches->has_motion) {
+    } else if (w->switches->motion) {
         options.motion = w->scene.motion;
     }
     const skg_status status = skg_scan_run_each(w->plan, w->scan, &options, add_batch, w);
@@ -278,13 +279,13 @@ static skg_status take_values(const work *w, live_slice *slice) {
 
 static int make(work *w, const live_wish *wish, skg_progress *progress, live_slice *slice, char *sentence) {
     skg_scan_record record;
-    if (!live_picture_box(&w->scene, sentence)) return 0;
-    skg_status status = find_scan(w, slice);
+    skg_status status = skg_live_box_get(&w->scene.subject, w->box);
+    if (status == SKG_OK) status = find_scan(w, slice);
     if (status == SKG_OK) status = begin_slice(w, slice);
-    if (status == SKG_OK && has_moving_parts(&w->scene, &record) && w->switches->has_motion &&
+    if (status == SKG_OK && has_moving_parts(&w->scene, &record) && w->switches->motion &&
         !find_moving(w, wish, slice, &record, sentence))
         return 0;
-    if (!w->moving && !(w->switches->has_motion && w->scene.motion)) slice->turn_s = 0;
+    if (!w->moving && !(w->switches->motion && w->scene.motion)) slice->turn_s = 0;
     if (status == SKG_OK) status = make_plan(w, slice);
     w->image = calloc((size_t)w->pixels + 1, sizeof *w->image);
     if (status == SKG_OK && !w->image) status = SKG_ERR_MEMORY;
@@ -297,12 +298,12 @@ static int make(work *w, const live_wish *wish, skg_progress *progress, live_sli
     return status == SKG_OK;
 }
 
-int live_slice_make(const live_base *base, const live_wish *wish, const live_switches *switches,
+int live_slice_make(const live_base *base, const live_wish *wish, const skg_live_asked *switches,
                     skg_progress *progress, live_slice *slice, char *sentence) {
     work w = {.switches = switches};
     *slice = (live_slice){.at_mm = switches->at_mm};
     const int is_made = live_scene_load(base, wish, &w.scene, sentence) &&
-                        live_frame_place(&w.scene, wish, sentence) &&
+                        (skg_live_place(&w.scene.subject, wish->message) == SKG_OK || live_fail(sentence)) &&
                         make(&w, wish, progress, slice, sentence);
     skg_fdk_release(&w.fdk);
     skg_plan_release(&w.plan);

@@ -24,7 +24,7 @@ const char *live_slice_without_motion(const live_scene *scene);
 
 /* Reconstructs a slice of the scene as a wish has it. A scene without a scan turns once about an axis along the detector's columns. progress: hears
  * of projections, and cancels. Returns 0 with a sentence, also where the library refuses the scan. */
-int live_slice_make(const live_base *base, const live_wish *wish, const live_switches *switches,
+int live_slice_make(const live_base *base, const live_wish *wish, const skg_live_asked *switches,
                     skg_progress *progress, live_slice *slice, char *sentence);
 
 #endif

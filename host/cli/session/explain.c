@@ -44,23 +44,10 @@ int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms) 
                                                                                                : exit_status;
 }
 
-skg_status cli_flat_field_quality(const cli_session *session, skg_quality *quality) {
-    const double *a = session->view.column_step, *b = session->view.row_step;
-    const double across[3] = {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2],
-                              a[0] * b[1] - a[1] * b[0]};
-    skg_spectrum *spectrum = NULL;
-    skg_quality_init(quality);
-    skg_status status = skg_spectrum_create_resolved(session->spectrum, &session->view, &spectrum);
-    if (status == SKG_OK) status = skg_spectrum_quality_get(spectrum, quality);
-    skg_spectrum_release(&spectrum);
-    quality->air_kerma_ugy /= hypot(hypot(across[0], across[1]),
-                                    across[2]); /* it counts the spectrum's photons as if they were per mm2 */
-    return status;
-}
-
 static json_t *flat_field_json(const cli_session *session) {
     skg_quality quality;
-    if (cli_flat_field_quality(session, &quality) != SKG_OK) return json_null();
+    skg_quality_init(&quality);
+    if (skg_flat_field_quality_get(session->spectrum, &session->view, &quality) != SKG_OK) return json_null();
     return json_pack("{s:f, s:f, s:f}", "mean_energy_keV", quality.mean_kev, "photons_per_pixel",
                      quality.photons, "air_kerma_uGy", quality.air_kerma_ugy);
 }
@@ -253,10 +240,11 @@ static void print_overlaps(const skg_plan *plan, const skg_scene *scene) {
 static void print_beam(const cli_session *session) {
     int64_t bins = 0;
     skg_quality quality;
+    skg_quality_init(&quality);
     skg_spectrum_bin_count(session->spectrum, &bins);
     printf("beam       ");
     if (bins > 1) printf("%" PRId64 " energies, mean ", bins);
-    if (cli_flat_field_quality(session, &quality) == SKG_OK)
+    if (skg_flat_field_quality_get(session->spectrum, &session->view, &quality) == SKG_OK)
         printf("%g keV, %g photons per pixel of the flat field, air kerma %.4g uGy\n", quality.mean_kev,
                quality.photons, quality.air_kerma_ugy);
     else

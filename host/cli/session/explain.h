@@ -11,9 +11,6 @@
  * prints the error. */
 int cli_make_plan(const cli_session *session, skg_plan **plan, double *plan_ms);
 
-/* The quality of the flat field in a pixel that faces the beam: photons and energy per pixel, air kerma at the detector. */
-skg_status cli_flat_field_quality(const cli_session *session, skg_quality *quality);
-
 /* The object that `plan --json` prints, and other verbs under the key "plan". */
 json_t *cli_explain_json(const skg_plan *plan, const cli_session *session);
 void cli_explain_print(const skg_plan *plan, const cli_session *session, const cli_prediction *prediction);

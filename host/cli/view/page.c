@@ -6,6 +6,8 @@
 #include "common/say.h"
 #include "core/maths.h"
 
+#include <skiagraph/live.h>
+
 #include <math.h>
 #include <stdlib.h>
 #include <string.h>
@@ -174,64 +176,18 @@ static int parts_json(const view_page *page, blob *to, json_t **made) {
     return exit_status;
 }
 
-/* Flat strips that a page draws of a curved detector, side by side: an odd number, so that the ends of each are those of a narrower
- * detector about the same middle. */
-enum { STRIPS = 23 };
-
-/* The ends of columns that stand side by side from edge to edge, low row and high row: two columns of a flat detector. */
-static skg_status strips_json(const skg_view *view, json_t *strips) {
-    const int count = view->radius > 0 ? STRIPS : 1;
-    for (int s = -count; s <= count; s += 2) {
-        skg_view part = *view;
-        double corners[4][3];
-        part.columns = 1;
-        skg_scale_vector(fabs((double)s) / count * (double)view->columns, view->column_step,
-                         part.column_step);
-        const skg_status status = skg_collimation_corners_get(NULL, &part, 0, corners[0]);
-        if (status != SKG_OK) return status;
-        json_array_append_new(strips, json_pack("[o,o]", cli_json_numbers(corners[s < 0 ? 0 : 1], 3),
-                                                cli_json_numbers(corners[s < 0 ? 3 : 2], 3)));
-    }
-    return SKG_OK;
-}
-
-/* Columns of the detector and its steps, the corners of the beam on its plane and in the jaws, one after the other, and where the beam to
- * each of these starts. */
-int view_page_view(const view_page *page, json_t *object) {
-    static const char *const names[] = {"point", "parallel", "parallel"};
-    const skg_view *view = &page->session->view;
-    const skg_collimation *limits = page->look->collimation;
-    double source[3], up[3], field[4][3], opening[4][3];
-    json_t *strips = json_array(), *ends = json_array(), *starts = json_array(), *jaws = json_array();
-    skg_status status = skg_collimation_corners_get(limits, view, 0, field[0]);
-    if (status == SKG_OK) status = skg_collimation_corners_get(limits, view, 1, opening[0]);
-    if (status == SKG_OK) status = strips_json(view, strips);
-    view_source(view, page->places, source);
-    skg_scale_vector(-1, view->row_step, up);
-    for (int i = 0; status == SKG_OK && i < 4; i++) {
-        double start[3];
-        for (int k = 0; k < 3; k++)
-            start[k] = view->projection == SKG_PROJECTION_POINT ? source[k]
-                                                                : field[i][k] + source[k] - view->centre[k];
-        json_array_append_new(ends, cli_json_numbers(field[i], 3));
-        json_array_append_new(starts, cli_json_numbers(start, 3));
-        if (limits && limits->kind == SKG_COLLIMATION_RECTANGLE)
-            json_array_append_new(jaws, cli_json_numbers(opening[i], 3));
-    }
-    json_object_set_new(object, "projection", json_string(names[view->projection]));
-    json_object_set_new(object, "source", cli_json_numbers(source, 3));
-    json_object_set_new(object, "centre", cli_json_numbers(view->centre, 3));
-    json_object_set_new(object, "up", cli_json_numbers(up, 3));
-    json_object_set_new(object, "columns", json_integer(view->columns));
-    json_object_set_new(object, "rows", json_integer(view->rows));
-    json_object_set_new(object, "strips", strips);
-    json_object_set_new(
-        object, "steps",
-        json_pack("[o,o]", cli_json_numbers(view->column_step, 3), cli_json_numbers(view->row_step, 3)));
-    json_object_set_new(object, "starts", starts);
-    json_object_set_new(object, "field", ends);
-    json_object_set_new(object, "jaws", jaws);
-    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+/* Source, beam and detector, of a source at infinity in front of the parts. NULL with an error printed. */
+static json_t *view_json(const view_page *page) {
+    const uint8_t *text = NULL;
+    skg_live_letter *letter = NULL;
+    double box[6];
+    memcpy(box, page->places->low, 3 * sizeof *box);
+    memcpy(box + 3, page->places->high, 3 * sizeof *box);
+    skg_status status = skg_live_view_write(&page->session->view, page->look->collimation, box, &letter);
+    if (status == SKG_OK) status = skg_live_letter_get(letter, NULL, &text, NULL);
+    json_t *object = status == SKG_OK ? json_loads((const char *)text, 0, NULL) : (cli_fail(status), NULL);
+    skg_live_letter_release(&letter);
+    return object;
 }
 
 static json_t *distances_json(const view_page *page) {
@@ -275,16 +231,15 @@ static json_t *motion_json(const view_page *page) {
 static int scene_json(const view_page *page, blob *to, json_t *object) {
     const skg_look *look = page->look;
     const char *name = strrchr(page->session->path, '/');
-    json_t *box = json_array(), *triangles = json_object(), *view = json_object(), *parts = NULL,
-           *image = NULL;
+    json_t *box = json_array(), *triangles = json_object(), *view = NULL, *parts = NULL, *image = NULL;
     const int has_from = look->from[0] != 0 || look->from[1] != 0 || look->from[2] != 0;
     int exit_status = parts_json(page, to, &parts);
     json_object_set_new(object, "parts", parts);
     if (exit_status == CLI_DONE) exit_status = image_json(page, to, &image);
-    if (exit_status == CLI_DONE) exit_status = view_page_view(page, view);
+    if (exit_status == CLI_DONE && !(view = view_json(page))) exit_status = CLI_DEVICE;
     json_object_set_new(object, "image", image ? image : json_null());
     json_object_set_new(object, "name", cli_json_text(name ? name + 1 : page->session->path));
-    json_object_set_new(object, "view", view);
+    json_object_set_new(object, "view", view ? view : json_null());
     json_object_set_new(object, "distances", distances_json(page));
     json_object_set_new(object, "motion", motion_json(page));
     if (page->sensitivity)

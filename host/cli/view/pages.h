@@ -25,9 +25,6 @@ typedef struct {
  * after a failure. */
 int view_page_texts(const view_page *page, char **scene, char **bytes);
 
-/* Adds what that scene has under "view": source, beam and detector of page->session->view. */
-int view_page_view(const view_page *page, json_t *object);
-
 /* The triangles of a page with so many moments. */
 int64_t view_max_triangles(int64_t frames);
 

@@ -1,6 +1,7 @@
 /** @file
  * Skiagraph: X-ray images of triangle meshes on any OpenCL device. This header includes all that makes them. What moves a scene,
- * scans it or finds a body in radiographs is included by name: breathing.h, scanning.h, registration.h; and so is opencl.h.
+ * scans it, finds a body in radiographs or serves its page is included by name: breathing.h, scanning.h, registration.h, live.h; and so
+ * is opencl.h.
  *
  * Objects are handles. skg_X_create_... makes one, skg_X_retain adds an owner and skg_X_release removes one;
  * handles without a retain function have one owner. Results come last and by pointer. Lengths are in mm,

@@ -51,6 +51,12 @@ SKG_API void skg_plan_release(skg_plan **plan);
 SKG_API skg_status skg_spectrum_create_resolved(const skg_spectrum *spectrum, const skg_view *view,
                                                 skg_spectrum **resolved);
 
+/** Gets the quality of the flat field in a pixel that faces the beam: photons and energy per pixel, air kerma at the detector.
+ *
+ *     errors     as skg_spectrum_create_resolved */
+SKG_API skg_status skg_flat_field_quality_get(const skg_spectrum *spectrum, const skg_view *view,
+                                              skg_quality *quality);
+
 /** Sets the view of frames without their own. Returns SKG_STALE, and changes nothing, if the view has another size than the
  * plan's, if the spectrum is absolute and one of the two is parallel and the other is not, if rays leave
  * the anode (heel), pass a bow-tie filter, lean across a grid or cross an oblique scintillator at angles beyond those of the plan's views, or if its

@@ -13,18 +13,23 @@ from contextlib import contextmanager
 from typing import Any
 
 from .._device import RangeWarning
-from .._interface import Error
+from .._interface import ArgumentError, Error
 from .._library import ffi
 from .._state import State
-from . import describe, page
-from .frame import Camera, Frame, pack, probe, take
-from .look import Look, draw, read_look
+from . import page
+from .core import Core, letter
 from .subject import Subject
-from .wish import Refusal, kind_of, read_ack, read_probe, read_take, read_wish
+from .wish import Message, Wish, read
 
 #: Frames under way to the page: while it shows one, the next is sent.
 _UNTAKEN_MAX = 2
 _VIEWS_MAX = 8
+
+#: What the page of the command asks for and this one does not.
+_ELSEWHERE = {
+    "measure": "the dials are measured by the command: skiagraph live, or scene.cost() here",
+    "register": "parts are registered by the command: skiagraph live --fixed, or scene.register() here",
+    "reconstruct": "slices are reconstructed by the command: skiagraph live, or scene.scan() and sk.reconstruct() here"}
 
 #: Sends content and buffers.
 Send = Callable[[dict[str, Any], list[bytes]], None]
@@ -43,12 +48,11 @@ class Hub:
         self._views: list[str] = []
         self._untaken: list[int] = []
         self._number = self._geometry = 0
-        self._is_wanted = self._drag = self._is_closed = False
+        self._is_wanted = self._is_closed = False
         self._played = 0.0
         self._last: tuple[bytes, dict[str, Any]] | None = None
-        #: The last frame, and the newest look of a view that has not been answered yet.
-        self._frame: Frame | None = None
-        self._look: Look | None = None
+        #: The newest look of a view that has not been answered yet.
+        self._look: Message | None = None
         #: What the library warned of since the page began. The text about the scene has it.
         self._warnings: list[str] = []
         self._has_failed = False
@@ -57,7 +61,7 @@ class Hub:
         self._is_told = False
         with state.calls():
             self._subject = Subject(state)
-            self._camera = Camera(self._subject)
+            self._core = Core(self._subject)
             self._begin()
             self._make()
 
@@ -87,33 +91,30 @@ class Hub:
         self._show_changes()
         for message in messages:
             try:
-                self._take(name, kind_of(message), message)
-            except Refusal as refusal:
+                self._take(name, read(message))
+            except ArgumentError as refusal:
                 self._tell({"refused": str(refusal)}, name)
         self._go_on()
         self._draw(name)
 
-    def _take(self, name: str, kind: str, message: dict[str, Any]) -> None:
-        if kind == "ack":
-            number = read_ack(message["ack"])
+    def _take(self, name: str, message: Message) -> None:
+        if message.kind == "ack":
+            number = message.says["number"]
             if name == self._views[-1] and number in self._untaken:
                 self._untaken = self._untaken[self._untaken.index(number) + 1:]
-        elif kind == "probe":
-            at = read_probe(message["probe"])
-            self._try(lambda: self._tell({"probed": message["probe"], "parts": probe(self._subject, at)}, name))
-        elif kind == "look":
-            self._look = read_look(message["look"])
+        elif message.kind == "probe":
+            self._try(lambda: self._tell(self._core.probe(message), name))
+        elif message.kind == "look":
+            self._look = message
         elif name != self._views[-1]:
             self._tell({"refused": "another page changes this scene; this one only shows it"}, name)
-        elif kind == "wish":
-            wish, drag = read_wish(message)
-            if not self._subject.is_late(wish):
-                self._try(lambda: self._apply(wish, drag), wish.wish)
-        elif kind == "take":
-            ending = read_take(message["take"])
-            self._try(lambda: self.send({"to": name}, [take(self._subject, ending)]))
+        elif isinstance(message, Wish):
+            if not self._subject.is_late(message):
+                self._try(lambda: self._apply(message), message.wish)
+        elif message.kind == "take":
+            self._try(lambda: self.send({"to": name}, [self._core.take(message)]))
         else:
-            self._tell({"refused": "the dials are measured by the command: skiagraph live, or scene.cost() here"}, name)
+            self._tell({"refused": _ELSEWHERE[message.kind]}, name)
 
     def _join(self, name: str) -> None:
         self._views = [*(view for view in self._views if view != name), name][-_VIEWS_MAX:]
@@ -145,6 +146,7 @@ class Hub:
         if self._state.setup == ffi.NULL:
             if not self._is_closed:
                 self._is_closed = True
+                self._core.anew()
                 self._tell({"error": "the scene was closed; this is its last image", "wish": self._subject.wish.wish})
             return
 
@@ -159,7 +161,7 @@ class Hub:
             else:
                 is_new = self._subject.take_over()
                 if is_new:
-                    self._camera.anew()
+                    self._core.anew()
                     self._is_told = False
                 self._tell({"adopted": self._subject.wish.json(), "fresh": is_new})
             self._make()
@@ -168,11 +170,11 @@ class Hub:
 
     # Frames
 
-    def _apply(self, wish: Any, drag: bool) -> None:
+    def _apply(self, wish: Wish) -> None:
         if self._subject.apply(wish):
-            self._camera.anew()
+            self._core.anew()
             self._is_told = False
-        self._is_wanted, self._drag = True, drag
+        self._is_wanted = True
         if not wish.play:
             self._played = 0.0
 
@@ -181,7 +183,7 @@ class Hub:
         self._geometry += 1
         self._warnings.clear()
         self._page = page.html(self._subject)
-        self._camera.anew()
+        self._core.anew()
         self._is_told = False
 
     def _go_on(self) -> None:
@@ -198,17 +200,16 @@ class Hub:
 
     def _make(self) -> None:
         """Makes a frame and sends it to all."""
-        subject, number = self._subject, self._number + 1
+        number = self._number + 1
         with self._state.calls():
-            frame = self._camera.make(self._drag)
-            data = pack(frame, number, subject.wish)
-            shot = describe.shot(subject, subject.view(), frame.plan, number, frame.ms, frame.is_draft)
+            if not self._core.make():
+                return
+            data, shot = self._core.frame(number), self._core.shot(number)
             if not self._is_told:
                 self._is_told = True
-                facts = {"geometry": self._geometry, "warnings": self._warnings, "plan_ms": frame.ms}
-                self._scene = describe.scene(subject, frame.plan, facts)
+                self._scene = self._core.scene(self._geometry, self._warnings)
                 self._tell(self._scene)
-        self._number, self._drag, self._frame = number, False, frame
+        self._number = number
         self._last = data, shot
         self._untaken.append(number)
         self.send({}, [data])
@@ -217,11 +218,15 @@ class Hub:
     def _draw(self, name: str) -> None:
         """Answers the look of a view, with a frame first if one was wanted."""
         look, self._look = self._look, None
-        if look is not None:
-            data, failure = draw(self._subject, self._frame, look)
-            self.send({"to": name}, [data])
-            if failure is not None:
-                self._tell({"refused": str(failure)}, name)
+        if look is None:
+            return
+        try:
+            with self._state.calls():
+                data = self._core.picture(look)
+        except Error as error:
+            data = letter("skg_live_picture_miss", look.handle)
+            self._tell({"refused": str(error)}, name)
+        self.send({"to": name}, [data])
 
     # Texts
 
@@ -235,6 +240,7 @@ class Hub:
         new = {str(warning.message) for warning in said if not issubclass(warning.category, RangeWarning)}.difference(self._warnings)
         if new and self._scene and not self._has_failed:
             self._warnings += sorted(new)
+            self._scene["scene"]["warnings"] = list(self._warnings)
             self._tell(self._scene)
 
     def _try(self, act: Callable[[], Any], wish: int | None = None) -> bool:
@@ -249,4 +255,4 @@ class Hub:
         return True
 
     def _tell(self, message: dict[str, Any], name: str | None = None) -> None:
-        self.send({"text": describe.finite(message), **({"to": name} if name else {})}, [])
+        self.send({"text": message, **({"to": name} if name else {})}, [])

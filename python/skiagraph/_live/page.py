@@ -4,6 +4,7 @@ from __future__ import annotations
 import base64
 import importlib.resources
 import json
+import math
 from typing import Any
 
 import numpy as np
@@ -11,7 +12,7 @@ from numpy.typing import NDArray
 
 from .._interface import UnsupportedError
 from .._library import call, ffi
-from . import describe
+from .core import letter, written
 from .subject import Subject
 
 #: Moments of the breath, between which the page moves vertices in straight lines.
@@ -40,7 +41,7 @@ def html(subject: Subject) -> bytes:
         raise UnsupportedError("the page live.html is not in the package skiagraph; install the package, or build the target "
                                "python_interface")
     text, blob = file.read_text(encoding="utf-8"), _Blob()
-    scene = json.dumps(describe.finite(_scene(subject, blob))).replace("<", "\\u003c")
+    scene = json.dumps(finite(_scene(subject, blob))).replace("<", "\\u003c")
     head, rest = text.split('"SCENE"', 1)
     middle, tail = rest.split("BYTES", 1)
     return "".join((head, scene, middle, base64.b64encode(blob.bytes).decode(), tail)).encode()
@@ -59,10 +60,14 @@ def _scene(subject: Subject, blob: _Blob) -> dict[str, Any]:
     colours = np.empty((len(parts), 4), np.uint8)
     call("skg_look_colours_get", state.handle, ffi.cast("uint8_t *", ffi.from_buffer(colours)))
     made = [_part(part, colour, frames, faces, blob) for part, colour, frames, (_, faces) in zip(parts, colours, moments, origins)]
+    box = np.zeros((2, 3))
     if made:
-        subject.box = (np.min([its["low"] for its in made], axis=0), np.max([its.pop("high") for its in made], axis=0))
+        box[:] = np.min([its["low"] for its in made], axis=0), np.max([its.pop("high") for its in made], axis=0)
+    keep: list[Any] = []
+    jaws = state.plans.options(state.options_setup, {}, keep).collimation
+    view = letter("skg_live_view_write", written(state.require_view()), jaws, ffi.cast("double *", ffi.from_buffer(box)))
     return {"parts": made, "image": None, "name": (state.source.path or "scene").rsplit("/", 1)[-1],
-            "view": describe.view(subject, state.require_view()), "box": [corner.tolist() for corner in subject.box], "path": [],
+            "view": json.loads(view), "box": box.tolist(), "path": [],
             "motion": {"frames": _MOMENTS, "seconds": subject.period} if subject.breathes else None}
 
 
@@ -94,3 +99,14 @@ def _thin(vertices: NDArray[Any], faces: NDArray[Any], share: float) -> tuple[ND
     joined = cell.reshape(-1)[faces]
     a, b, c = joined.T
     return first, joined[(a != b) & (b != c) & (c != a)]
+
+
+def finite(value: Any) -> Any:
+    """The same without numbers that JSON lacks, which become null."""
+    if isinstance(value, float):
+        return value if math.isfinite(value) else None
+    if isinstance(value, dict):
+        return {key: finite(item) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [finite(item) for item in value]
+    return value.item() if isinstance(value, np.generic) else value

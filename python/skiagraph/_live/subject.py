@@ -14,19 +14,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from .. import _save
-from .._interface import ArgumentError, SceneError
+from .._interface import SceneError
 from .._library import call, ffi, filled, integer, number, struct
 from .._state import State, beam_of, view_of
-from .._frames import Batch
 from ..beam import Beam
 from ..mesh import Mesh
 from ..scan import Scan
 from ..view import View
 from .wish import Wish
 
-#: Keys that move source and detector, for which the plans serve that there are.
-_MOVING = {"source.position", "detector.position", "detector.upvector", "detector.rightvector", "detector.columnstep",
-           "detector.rowstep"}
 _OF_PARTS = ("samples", "scenegraph", "breathing")
 
 #: Numbers of wishes, which begin anew, and how many a change elsewhere leaves out: those are late that the page sends before it
@@ -39,20 +35,16 @@ class Subject:
 
     def __init__(self, state: State) -> None:
         self.state = state
-        self.wish = Wish()
+        self.wish = Wish({"wish": 0})
         #: What it took to read the settings, ms.
         self.load_ms = 0.0
-        #: Corners of a box around the parts, once a page was made.
-        self.box = (np.zeros(3), np.zeros(3))
-        self.breathes = _breathes(state)
-        self.period = 0.0
-        if self.breathes:
-            self.period = number("skg_motion_period_get", state.linked())
         self.begin()
 
     def begin(self) -> None:
         """What there is now is the beginning."""
         state = self.state
+        self.breathes = _breathes(state)
+        self.period = number("skg_motion_period_get", state.linked()) if self.breathes else 0.0
         self.document = _save.without_parts(_save.settings_text(state, True))
         _show_mono(self.document, state.require_beam())
         setup = state.light(json.dumps(self.document), [])
@@ -64,10 +56,8 @@ class Subject:
         self._still: list[tuple[Mesh, NDArray[np.float64]]] = []
         if self.breathes and self._breath is None:
             self._still = [(part.mesh, part.mesh.vertices) for part in state.parts()]
-        self.wish = Wish(_later(self.wish.wish), phase=self._breath, quantity=self.wish.quantity, bands=self.wish.bands,
-                         channel=self.wish.channel)
+        self.wish = self.wish.but(wish=_later(self.wish.wish), settings={}, poses={}, phase=self._breath, projection=None, play=False)
         self.surfaces = self._surfaces()
-        self._bounds: NDArray[np.float64] | None = None
         self.note()
 
     # What a wish changes
@@ -78,15 +68,10 @@ class Subject:
 
     def check(self, wish: Wish) -> None:
         """Raises the sentence for what the scene does not have."""
-        for part in wish.moves():
-            if part >= len(self.base):
-                raise ArgumentError(f"the scene has no part {part}")
         if wish.phase is not None and not self.breathes:
             raise SceneError("the scene does not breathe: it has no key Breathing")
         if wish.projection is not None and wish.projection >= len(self.scan or ()):
             raise SceneError(f"the scene has no projection {wish.projection}")
-        if wish.channel >= max(1, len(wish.bands) - 1):
-            raise SceneError(f"\"channel\": the image has no band {wish.channel}")
         for key in wish.settings:
             if key.split(".")[0].strip().lower() in _OF_PARTS:
                 raise SceneError(f"{key}: in a notebook, parts are changed by Python, such as scene[\"liver\"].density = 1.06; the "
@@ -95,9 +80,10 @@ class Subject:
     def apply(self, wish: Wish) -> bool:
         """Makes the scene as the wish has it. Returns whether it needs other plans."""
         self.check(wish)
-        is_new = (wish.quantity, wish.bands) != (self.wish.quantity, self.wish.bands)
+        moved, other = ffi.new("int32_t *"), ffi.new("int32_t *")
+        call("skg_live_wish_compare", self.wish.handle, wish.handle, moved, other)
         if wish.settings != self.wish.settings:
-            is_new = self._set(wish.settings) or is_new
+            self._set(wish.settings, bool(other[0]))
         moves, before = wish.moves(), self.wish.moves()
         for number, part in enumerate(self.state.parts()):
             if number in moves or number in before:
@@ -106,13 +92,12 @@ class Subject:
             self._breathe(wish.phase)
         self.wish = wish
         self.note()
-        return is_new
+        return bool(other[0])
 
-    def _set(self, settings: dict[str, Any]) -> bool:
+    def _set(self, settings: dict[str, Any], is_new: bool) -> None:
         state, start = self.state, time.perf_counter()
         words = [f"{key}={json.dumps(value)}" for key, value in settings.items()]
         setup = state.light(json.dumps(self.document), words)
-        is_new = _fixed(settings) != _fixed(self.wish.settings)
         view, beam, self._scan = view_of(setup), beam_of(setup), _scan_of(setup)
         if is_new:
             state.tune(setup)
@@ -125,7 +110,6 @@ class Subject:
             state.view = view
             state.changed.add("view")
         self.load_ms = 1000 * (time.perf_counter() - start)
-        return is_new
 
     def _breathe(self, phase: float | None) -> None:
         """To a phase; None: to where it was at the beginning."""
@@ -144,7 +128,7 @@ class Subject:
         if self.wish.phase is not None:
             phase = (self.wish.phase + seconds / self.period) % 1
             self._breathe(phase)
-            self.wish = Wish(**{**self.wish.json(), "phase": phase})
+            self.wish = self.wish.but(phase=phase)
             self.note()
 
     def moments(self, count: int) -> Iterator[None]:
@@ -188,7 +172,7 @@ class Subject:
                 moved = part.pose @ np.linalg.inv(base)
                 moved[3] = 0, 0, 0, 1
                 poses[str(number)] = moved.ravel().tolist()
-        self.wish = Wish(**{**self.wish.json(), "wish": _later(self.wish.wish), "poses": poses, "phase": self._phase(), "play": False})
+        self.wish = self.wish.but(wish=_later(self.wish.wish), poses=poses, phase=self._phase(), play=False)
         self.note()
         return False
 
@@ -224,46 +208,9 @@ class Subject:
             return self.state.require_view()
         return self.scan[self.wish.projection]
 
-    def batch(self, view: View) -> Batch:
-        """A frame of this view. In a scan in which parts move, they are where the projection has them."""
-        record, number = struct("skg_scan_record"), self.wish.projection
-        call("skg_setup_record_get", self.state.setup, record)
-        parts = [int(record.moving_parts[i]) for i in range(record.moving_count)]
-        if number is None or not parts:
-            return Batch(1, views=[view])
-        buffer = ffi.buffer(record.moving_poses + 16 * len(parts) * number, 128 * len(parts))
-        poses, moves = np.frombuffer(buffer).reshape(len(parts), 4, 4), self.wish.moves()
-        moved = np.stack([moves[part] @ pose if part in moves else pose for part, pose in zip(parts, poses)])
-        return Batch(1, parts=parts, poses=moved[None], views=[view])
-
-    # For pictures of the 3D view
-
-    def bounds(self) -> NDArray[np.float64]:
-        """The box of the parts before the page moves them, [2][3] mm: axes and beam of pictures stay where they are."""
-        if self._bounds is None:
-            corners = []
-            for part, (a, b, c, _) in zip(self.state.parts(), self.base):
-                x, y, z = part.mesh.vertices.T
-                placed = np.stack([row[0] * x + row[1] * y + row[2] * z + row[3] for row in (a, b, c)])
-                corners += [placed.min(axis=1), placed.max(axis=1)]
-            self._bounds = np.stack([np.min(corners, axis=0), np.max(corners, axis=0)])
-        return self._bounds
-
-    def poses(self) -> NDArray[np.float64]:
-        """Of all parts as the last frame has them, [parts][4][4]."""
-        poses, its = np.stack([part.pose for part in self.state.parts()]), self.batch(self.view())
-        if its.poses is not None:
-            poses[list(its.parts)] = its.poses[0]
-        return poses
-
 
 def _later(number: int) -> int:
     return (number + _SKIPPED) % _NUMBERS
-
-
-def _fixed(settings: dict[str, Any]) -> dict[str, Any]:
-    """The settings without those that move source and detector."""
-    return {key: value for key, value in settings.items() if key.lower() not in _MOVING}
 
 
 def _alike(a: Beam, b: Beam) -> bool:

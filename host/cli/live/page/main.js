@@ -18,13 +18,9 @@ function showSentence(text, stays = false) {
 }
 
 function setDark(on) {
-  document.documentElement.classList.toggle('dark', on);
-  const ground = getComputedStyle(document.documentElement).getPropertyValue('--ground').trim();
-  shot.ground = [1, 3, 5].map(i => parseInt(ground.slice(i, i + 2), 16) / 255);
-  byId('dark').setAttribute('aria-pressed', on);
+  darken(on);
   drawHistogram();
   drawProfile();
-  change();
 }
 
 // The scene as the server has it. Other surfaces need another page.
@@ -71,34 +67,28 @@ function adopt({adopted, fresh}) {
 const ask3D = () => { describe(); change(); byId('undo').disabled = !trail.past.length; byId('redo').disabled = !trail.future.length; };
 
 const keys = {
-  '0': () => lookAs('start'), Home: () => lookAs('start'), '1': () => lookAs('front'), '2': () => lookAs('side'), '3': () => lookAs('top'),
-  '4': () => lookAs('source'), f: () => lookAs('parts'), d: () => byId('dark').click(), i: () => byId('invert').click(),
+  ...keysOfView, d: () => byId('dark').click(), i: () => byId('invert').click(),
   a: () => byId('auto').click(), b: () => byId('keep').click(), l: () => byId('profiles').click(), m: () => byId('measure-3d').click(), c: () => nextCut(), Escape: () => { choose(''); clearTape(); },
   s: () => choose('source'), t: () => choose('detector'), '/': () => byId('find').focus(),
-  '?': () => { const box = byId('key-list'); if (box.open) box.close(); else box.show(); },
   ' ': () => { if (!byId('breath').hidden) byId('play').click(); },
-  '+': () => { zoom(0.9, 0, 0); }, '=': () => { zoom(0.9, 0, 0); }, '-': () => { zoom(1 / 0.9, 0, 0); },
 };
-const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 // With Alt, arrow and page keys move what is chosen: along x, z and y, by 1 mm, with Shift by 10 mm.
 const pushes = {ArrowLeft: [-1, 0, 0], ArrowRight: [1, 0, 0], ArrowUp: [0, 0, 1], ArrowDown: [0, 0, -1], PageUp: [0, 1, 0], PageDown: [0, -1, 0]};
 
 function pressed(event) {
-  const key = event.key.length === 1 ? event.key.toLowerCase() : event.key, isField = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName);
+  const key = pressedKey(event), isField = /^(INPUT|SELECT|TEXTAREA)$/.test(event.target.tagName);
   if ((event.ctrlKey || event.metaKey) && key === 'z' && !isField) {
     if (event.shiftKey) redo(); else undo();
   } else if (event.altKey && pushes[key] && chosen.kind) {
     moveChosen(shift(pushes[key].map(x => x * (event.shiftKey ? 10 : 1))));
   } else if (isField || event.ctrlKey || event.metaKey || event.altKey || (event.target.tagName === 'BUTTON' && key === ' ')) {
     return;
-  } else if (arrows[key]) {
-    const [x, y] = arrows[key];
-    if (event.shiftKey) pan(x * 0.04, y * 0.04); else orbit(x * 0.09, y * 0.09);
-    standing = '';
   } else if (key === 'Enter' && event.target === canvas && tape.on) addEnd(canvas.clientWidth / 2, canvas.clientHeight / 2);
-  else if (keys[key]) keys[key]();
-  else return;
+  else if (!pressArrow(event)) {
+    if (!keys[key]) return;
+    keys[key]();
+  }
   event.preventDefault();
   change();
 }
@@ -115,7 +105,7 @@ function begin3D() {
   measureWhole();
   prepareParts();
   listenToServed();
-  listenToStage();
+  listenToCanvas();
   listenToGizmo();
   listenToCut();
   listenToTape();

@@ -1,6 +1,5 @@
 // The list of parts, and what is chosen: its numbers to type, material and opacity.
 'use strict';
-let rows = [];
 const field = (label, value, act, step = 'any', unit = '') => {
   const row = make('label', label, 'field'), input = make('input');
   Object.assign(input, {type: 'number', step, value});
@@ -30,16 +29,11 @@ function fillParts() {
     return row;
   });
   byId('list').replaceChildren(...rows);
-  byId('find').oninput = () => {
-    const wanted = byId('find').value.toLowerCase();
-    rows.forEach((row, i) => { row.hidden = !scene.parts[i].label.toLowerCase().includes(wanted); });
-  };
+  listenToList(byId('find'), (i, on) => { if (meshes.length) meshes[i].visible = on; showRows(); change(); });
   byId('find').onkeydown = event => {
     const first = rows.findIndex(row => !row.hidden);
     if (event.key === 'Enter' && first >= 0) choose('part', first);
   };
-  for (const [id, on] of [['all', true], ['none', false]])
-    byId(id).onclick = () => { rows.forEach((row, i) => { if (!row.hidden && meshes.length) meshes[i].visible = on; }); showRows(); change(); };
   for (const kind of ['source', 'detector']) byId('choose-' + kind).onclick = () => choose(chosen.kind === kind ? '' : kind);
 }
 

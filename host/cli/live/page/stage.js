@@ -1,7 +1,5 @@
-// The 3D view: the eye, what is chosen, and where parts, source and detector stand now.
+// The 3D view: what is chosen, and where parts, source and detector stand now.
 'use strict';
-let dirty = true, standing = 'start';
-const change = () => { dirty = true; };
 const chosen = {kind: '', part: -1}; // kind: '', 'part', 'source' or 'detector'
 const times = (a, b) => Array.from({length: 16}, (_, i) => [0, 1, 2, 3].reduce((sum, k) => sum + a[4 * (i >> 2) + k] * b[4 * k + (i & 3)], 0));
 const same = [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1];
@@ -18,13 +16,8 @@ function turn(axis, angle) {
 const turnAbout = (centre, axis, angle) => times(shift(centre), times(turn(axis, angle), shift(centre.map(x => -x))));
 
 function resize() {
-  const ratio = Math.min(window.devicePixelRatio || 1, 2);
-  const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
-  if (canvas.width !== width || canvas.height !== height) {
-    canvas.width = width, canvas.height = height;
-    if (standing) lookAs(standing);
-    nextDraw = 0; // the canvas is empty now
-  }
+  resizeTo(Math.min(window.devicePixelRatio || 1, 2));
+  nextDraw = 0; // the canvas may be empty now
   change();
 }
 
@@ -57,19 +50,6 @@ function step3D() {
     nextDraw = began + took + (isFluent ? 0 : Math.min(6 * took, 1000));
   }
   requestAnimationFrame(step3D);
-}
-
-// Where the eye stands: across the beam at first, a little from the source and from above.
-function lookAs(name) {
-  const v = scene.view, up = v.up, aspect = canvas.width / canvas.height;
-  const beam = unit(add(v.centre, -1, v.source)), sides = {front: [0, -1, 0], side: [1, 0, 0], top: [0, 0, 1]};
-  if (sides[name]) look(sides[name], [0, 0, 1]);
-  else if (name === 'source') look(beam.map(x => -x), up);
-  else if (name === 'start') look(add(add(unit(cross(beam, up)), -0.55, beam), 0.42, unit(up)), up);
-  if (name === 'parts') fit(scene.parts.flatMap((part, i) => chosen.part < 0 || chosen.part === i ? boxPoints(part.low, meshes[i].high) : []), aspect);
-  else fit(whole.points, aspect);
-  standing = name;
-  change();
 }
 
 // Source, beam and detector as the server has them for the last image.
@@ -118,24 +98,6 @@ function middleOf() {
   return carry(moveOf(chosen.part), part.low.map((x, k) => (x + mesh.high[k]) / 2));
 }
 
-const fingers = new Map();
-let moved = 0;
-function dragged(event) {
-  const old = fingers.get(event.pointerId), height = canvas.clientHeight;
-  if (!old) return point(event);
-  const dx = event.clientX - old.x, dy = event.clientY - old.y;
-  moved += Math.hypot(dx, dy);
-  if (fingers.size > 1) {
-    const other = [...fingers.entries()].find(([id]) => id !== event.pointerId)[1];
-    const before = Math.hypot(old.x - other.x, old.y - other.y), after = Math.hypot(event.clientX - other.x, event.clientY - other.y);
-    if (after > 0) zoom(before / after, 0, 0);
-  } else if (event.shiftKey || event.buttons & 6) pan(dx / height, dy / height);
-  else orbit(dx / height * Math.PI, dy / height * Math.PI);
-  Object.assign(old, {x: event.clientX, y: event.clientY});
-  standing = '';
-  change();
-}
-
 let lastPoint = 0;
 function point(event) {
   if (event.timeStamp - lastPoint < 60) return;
@@ -159,28 +121,4 @@ function pick(x, y) {
   draw(); // as addEnd
   const mark = markAt(x, y), part = mark ? -1 : partUnder(x, y);
   choose(mark || (part >= 0 ? 'part' : ''), part);
-}
-
-function listenToStage() {
-  canvas.onpointerdown = event => {
-    canvas.setPointerCapture(event.pointerId);
-    fingers.set(event.pointerId, {x: event.clientX, y: event.clientY});
-    if (fingers.size === 1) moved = 0;
-  };
-  canvas.onpointermove = dragged;
-  canvas.onpointerup = canvas.onpointercancel = event => {
-    fingers.delete(event.pointerId);
-    if (event.type === 'pointerup' && moved < 4 && event.button === 0) pick(event.offsetX, event.offsetY);
-  };
-  canvas.oncontextmenu = event => event.preventDefault();
-  canvas.ondblclick = () => lookAs('parts');
-  canvas.addEventListener('wheel', event => {
-    const height = canvas.clientHeight, lines = event.deltaMode === 1 ? 16 : 1;
-    event.preventDefault();
-    zoom(Math.exp(clamp(event.deltaY * lines, -240, 240) * 0.0015), (event.offsetX - canvas.clientWidth / 2) / height, (height / 2 - event.offsetY) / height);
-    standing = '';
-    change();
-  }, {passive: false});
-  document.querySelectorAll('[data-look]').forEach(button => { button.onclick = () => lookAs(button.dataset.look); });
-  new ResizeObserver(resize).observe(canvas);
 }

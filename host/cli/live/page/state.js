@@ -1,8 +1,5 @@
 // What the page asks of the scene: settings on top of the scene file, and what moves parts. Undo goes through older ones.
 'use strict';
-const byId = id => document.getElementById(id);
-const make = (kind, text = '', name = '') => Object.assign(document.createElement(kind), {textContent: text, className: name});
-const number = (x, digits = 4) => x === null || !Number.isFinite(x) ? '-' : String(Number(x.toPrecision(digits)));
 let live = null; // what the server says of the scene
 // As the file has it; with a radiograph, the projection that it was taken from.
 const fresh = () => ({settings: {}, poses: {}, phase: null, projection: live?.fixed?.projection ?? null, quantity: 'attenuation', bands: [], channel: 0, play: false});

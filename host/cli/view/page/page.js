@@ -1,21 +1,8 @@
-// The page beside its picture: lists and controls, and the actions of mouse, fingers and keys.
+// The page beside its picture: lists and controls, and its own keys.
 'use strict';
-const byId = id => document.getElementById(id);
-const make = (kind, text = '', name = '') => Object.assign(document.createElement(kind), {textContent: text, className: name});
-const number = (x, digits = 4) => String(Number(x.toPrecision(digits)));
 const labels = []; // {element, point} at points of the world
-let dirty = true, playing = false, before = 0, rows = [];
-let standing = 'start'; // where the eye was put, until it is moved by hand
-const change = () => { dirty = true; };
-
-function resize() {
-  const ratio = window.devicePixelRatio || 1;
-  const width = Math.max(1, Math.round(canvas.clientWidth * ratio)), height = Math.max(1, Math.round(canvas.clientHeight * ratio));
-  if (canvas.width === width && canvas.height === height) return;
-  canvas.width = width, canvas.height = height;
-  if (standing) lookAs(standing);
-  change();
-}
+let playing = false, before = 0;
+const resize = () => resizeTo(window.devicePixelRatio || 1);
 
 // Draws now; tests call it before they read pixels.
 function draw() {
@@ -51,22 +38,6 @@ function play(on) {
   byId('play').textContent = on ? 'pause' : 'play';
 }
 
-// Where the eye stands at first: across the beam, a little from the source and from above, or as the command was told.
-function lookAs(name) {
-  const v = scene.view, up = v.up, aspect = canvas.width / canvas.height;
-  const beam = unit(add(v.centre, -1, v.source)), sides = {front: [0, -1, 0], side: [1, 0, 0], top: [0, 0, 1]};
-  if (sides[name]) look(sides[name], [0, 0, 1]);
-  else if (name === 'source') look(beam.map(x => -x), up);
-  else if (name === 'start' && scene.from) look(scene.from, scene.up);
-  else if (name === 'start') look(add(add(unit(cross(beam, up)), -0.55, beam), 0.42, unit(up)), up);
-  if (name === 'parts') {
-    const of = shot.chosen >= 0 ? [shot.chosen] : [...meshes.keys()].filter(i => meshes[i].visible);
-    fit((of.length ? of : [...meshes.keys()]).flatMap(i => boxPoints(scene.parts[i].low, meshes[i].high)), aspect);
-  } else fit(whole.points, aspect);
-  standing = name;
-  change();
-}
-
 function press(id, on) {
   byId(id).setAttribute('aria-pressed', on);
   change();
@@ -76,15 +47,8 @@ const toggles = {
   marks: () => press('marks', shot.marks = !shot.marks),
   panel: () => { press('panel', !document.querySelector('aside').classList.toggle('closed')); resize(); },
   sensitive: () => changes.size && colourParts(!isColoured()),
-  dark: () => setDark(!document.documentElement.classList.contains('dark')),
+  dark: () => darken(!document.documentElement.classList.contains('dark')),
 };
-
-function setDark(on) {
-  document.documentElement.classList.toggle('dark', on);
-  const ground = getComputedStyle(document.documentElement).getPropertyValue('--ground').trim();
-  shot.ground = [1, 3, 5].map(i => parseInt(ground.slice(i, i + 2), 16) / 255);
-  press('dark', on);
-}
 
 function showRow(i) {
   const mesh = meshes[i], colour = mesh.colour.slice(0, 3).map(x => Math.round(255 * x));
@@ -172,12 +136,7 @@ function fillPanel() {
   });
   byId('list').append(...listed().map(i => rows[i]));
   rows.forEach((_, i) => showRow(i));
-  byId('filter').oninput = () => {
-    const wanted = byId('filter').value.toLowerCase();
-    rows.forEach((row, i) => { row.hidden = !scene.parts[i].label.toLowerCase().includes(wanted); });
-  };
-  for (const [id, on] of [['all', true], ['none', false]])
-    byId(id).onclick = () => rows.forEach((row, i) => { if (!row.hidden) setVisible(i, on); });
+  listenToList(byId('filter'), setVisible);
   describe();
 }
 
@@ -197,28 +156,6 @@ function fillLabels() {
   addLabel(`${number(d.source_object)} mm to the centre`, add(v.source, d.source_object / 2, unit(add(v.centre, -1, v.source))));
 }
 
-// One finger or the left button turns; two fingers, another button or Shift move; wheel and pinch zoom.
-const fingers = new Map();
-let moved = 0;
-function dragged(event) {
-  const old = fingers.get(event.pointerId), rect = canvas.getBoundingClientRect(), height = rect.height;
-  if (!old) return point(event);
-  const dx = event.clientX - old.x, dy = event.clientY - old.y;
-  moved += Math.hypot(dx, dy);
-  if (fingers.size === 1) {
-    if (event.shiftKey || event.buttons & 6) pan(dx / height, dy / height);
-    else orbit(dx / height * Math.PI, dy / height * Math.PI);
-  } else if (fingers.size === 2) {
-    const other = [...fingers.values()].find(f => f !== old), length = (x, y) => Math.max(Math.hypot(x - other.x, y - other.y), 1);
-    const x = (event.clientX + other.x) / 2 - rect.left, y = (event.clientY + other.y) / 2 - rect.top;
-    pan(dx / height / 2, dy / height / 2);
-    zoom(length(old.x, old.y) / length(event.clientX, event.clientY), (x - rect.width / 2) / height, (height / 2 - y) / height);
-  }
-  old.x = event.clientX, old.y = event.clientY;
-  standing = '';
-  change();
-}
-
 let waiting = null;
 function point(event) {
   if (event.pointerType === 'touch') return;
@@ -235,59 +172,35 @@ function pointAt(x, y) {
   hint.style.transform = `translate(${clamp(x + 14, 0, canvas.clientWidth - hint.offsetWidth - 4)}px, ${y + 16}px)`;
 }
 
-function listenToCanvas() {
-  canvas.onpointerdown = event => {
-    canvas.setPointerCapture(event.pointerId);
-    fingers.set(event.pointerId, {x: event.clientX, y: event.clientY});
-    if (fingers.size === 1) moved = 0;
-    byId('hint').hidden = true;
-  };
-  canvas.onpointermove = dragged;
-  canvas.onpointerup = canvas.onpointercancel = event => {
-    fingers.delete(event.pointerId);
-    if (event.type === 'pointerup' && moved < 4 && event.button === 0) setChosen(partAt(event.offsetX, event.offsetY));
-  };
+const pick = (x, y) => setChosen(partAt(x, y));
+
+function listenToMouse() {
+  listenToCanvas();
+  canvas.addEventListener('pointerdown', () => { byId('hint').hidden = true; });
   canvas.onpointerleave = () => { setUnder(-1); byId('hint').hidden = true; };
-  canvas.oncontextmenu = event => event.preventDefault();
-  canvas.ondblclick = () => lookAs('parts');
-  canvas.addEventListener('wheel', event => {
-    const height = canvas.clientHeight, lines = event.deltaMode === 1 ? 16 : 1;
-    if (bare && document.activeElement !== canvas) return; // the page around it scrolls until the scene is clicked
-    event.preventDefault();
-    zoom(Math.exp(clamp(event.deltaY * lines, -240, 240) * 0.0015), (event.offsetX - canvas.clientWidth / 2) / height, (height / 2 - event.offsetY) / height);
-    standing = '';
-    change();
-  }, {passive: false});
 }
 
-const nearer = factor => { zoom(factor, 0, 0); standing = ''; };
 const keys = {
-  '0': () => lookAs('start'), Home: () => lookAs('start'), '1': () => lookAs('front'), '2': () => lookAs('side'), '3': () => lookAs('top'),
-  '4': () => lookAs('source'), f: () => lookAs('parts'), p: toggles.parallel, m: toggles.marks, s: toggles.sensitive, d: toggles.dark, l: toggles.panel,
-  '+': () => nearer(0.9), '=': () => nearer(0.9), '-': () => nearer(1 / 0.9), Escape: () => setChosen(-1),
+  ...keysOfView, p: toggles.parallel, m: toggles.marks, s: toggles.sensitive, d: toggles.dark, l: toggles.panel, Escape: () => setChosen(-1),
   ' ': () => scene.motion && play(!playing),
-  '?': () => { const box = byId('keys'); if (box.open) box.close(); else box.show(); },
   h: () => shot.chosen >= 0 && setVisible(shot.chosen, !meshes[shot.chosen].visible),
 };
-const arrows = {ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1]};
 
 function listenToKeys() {
   document.addEventListener('keydown', event => {
     if (event.ctrlKey || event.metaKey || event.altKey || /^(text|search|range)$/.test(event.target.type)) return;
-    const arrow = arrows[event.key], act = keys[event.key.length === 1 ? event.key.toLowerCase() : event.key];
     if (event.target.tagName === 'BUTTON' && event.key === ' ') return;
-    if (arrow && event.shiftKey) pan(arrow[0] * 0.04, arrow[1] * 0.04);
-    else if (arrow) orbit(arrow[0] * 0.09, arrow[1] * 0.09);
-    else if (act) act();
-    else return;
-    if (arrow) standing = '';
+    const act = keys[pressedKey(event)];
+    if (!pressArrow(event)) {
+      if (!act) return;
+      act();
+    }
     event.preventDefault();
     change();
   });
 }
 
 // In a frame of another page, NAME.html?bare: no list and no buttons, and the parts fill the picture.
-let bare = false;
 function setBare(on) {
   document.documentElement.classList.toggle('bare', bare = on);
   resize();
@@ -304,16 +217,14 @@ function begin() {
   fillPanel();
   fillLegend();
   fillLabels();
-  listenToCanvas();
+  listenToMouse();
   listenToKeys();
-  document.querySelectorAll('[data-look]').forEach(button => { button.onclick = () => lookAs(button.dataset.look); });
   for (const id of Object.keys(toggles)) byId(id).onclick = toggles[id];
   byId('help').onclick = keys['?'];
-  setDark(dark.matches);
-  dark.addEventListener('change', () => setDark(dark.matches));
+  darken(dark.matches);
+  dark.addEventListener('change', () => darken(dark.matches));
   camera.parallel = scene.parallel;
   press('parallel', camera.parallel);
-  new ResizeObserver(resize).observe(canvas);
   resize();
   lookAs('start');
   setBare(location.search === '?bare');
