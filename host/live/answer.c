@@ -1,4 +1,4 @@
-/* What pages ask for besides images: path lengths under the cursor, and files. */
+/* Answers to pages besides images: path lengths under the cursor, and files. */
 #include "live/plans.h"
 
 #include "core/maths.h"

@@ -1,4 +1,4 @@
-/* What pages are told of a scene and its images. */
+/* The texts by which pages learn of a scene and its images. */
 #include "live/plans.h"
 
 #include "core/maths.h"
@@ -104,7 +104,7 @@ static json_t *warnings_json(const skg_live_facts *facts) {
     return list;
 }
 
-/* What the transport knows of the scene. */
+/* Adds the facts that the transport knows of the scene. */
 static void put_facts(const skg_live_facts *facts, json_t *inner) {
     json_object_set_new(inner, "document", skg_live_parsed(facts->document));
     json_object_set_new(inner, "warnings", warnings_json(facts));
@@ -188,7 +188,7 @@ static json_t *scatter_json(const skg_plan *plan) {
     return object;
 }
 
-/* What a page is told of an image besides number, wish, ms and phase. */
+/* Adds the facts of an image besides number, wish, ms and phase. */
 static void put_shot(skg_live_plans *plans, const skg_live_subject *subject, const skg_live_message *wish,
                      json_t *object) {
     const int has_scatter = subject->options->scatter && !(plans->header.notes & SKG_LIVE_DRAFT);

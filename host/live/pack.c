@@ -9,7 +9,7 @@
 
 enum { LANES = 8 };
 
-/* What is known of the values so far, in lanes, which compilers turn into vectors. */
+/* Bounds of the values so far, in lanes, which compilers turn into vectors. */
 typedef struct {
     float low[LANES], high[LANES];
     float beyond[LANES]; /* 0: all are finite */

@@ -9,7 +9,7 @@
 #include <math.h>
 #include <string.h>
 
-/* What a page receives as a picture: this, in the order of the processor, and [rows][columns][4] red, green, blue and 255. */
+/* The head of a picture, in the order of the processor; [rows][columns][4] red, green, blue and 255 follow. */
 typedef struct {
     char mark[4];           /* "SKLP" */
     uint32_t number;        /* of the look */
@@ -17,7 +17,7 @@ typedef struct {
     float ms;
 } header;
 
-/* What the arrays of a look point to. */
+/* Storage of the arrays of a look. */
 typedef struct {
     uint8_t *colours, *image, background[3];
     double *poses, box[6];

@@ -115,7 +115,7 @@ skg_status skg_live_plans_fit(const skg_live_plans *plans, const skg_live_subjec
     SKG_NEEDS(fits);
     SKG_TRY(skg_live_subject_read(theirs, &subject));
     SKG_TRY(skg_live_wish_compare(plans->wish, wish, &moved, &other));
-    /* What is tabulated for the rays of a view is made anew. */
+    /* Tables over the rays of a view are made anew with another view. */
     const skg_plan_options *options = subject.options;
     if (options->grid || options->oblique || options->heel || options->bowtie) other |= moved;
     *fits = plans->whole && !other && !(plans->is_posed && isnan(wish->asked.phase));

@@ -14,7 +14,7 @@ enum {
     SKG_LIVE_REFINES = 8   /* an image with more photons of scatter follows */
 };
 
-/* What a page receives as a frame: this, in the order of the processor, and [rows][columns] numbers of 16 bits. A value is
+/* The head of a frame, in the order of the processor; [rows][columns] numbers of 16 bits follow. A value is
  * low + step * number. */
 typedef struct {
     char mark[4];    /* "SKLF" */

@@ -58,11 +58,11 @@ named=$(echo "$sources" | awk 'FILENAME == "-" { for (name = $0; ; sub(/^[^\/]*\
         if (!(name in there) && name !~ /^skiagraph\//) print FILENAME ":" FNR " " name
     } }' - $(echo "$sources" | grep -E '^(lib|host|kernels|tests|bench)/.*\.(c|h|cl|clh)$'))
 [ -z "$named" ] || { echo "These files are named and are not there:"; echo "$named"; status=1; }
-# A comment begins with the thing that it is about. The rooms of `live` are left out.
+# A comment begins with the thing that it is about.
 # shellcheck disable=SC2046 # a word a file
 pronouns=$(awk -f tests/house/openings.awk $(find lib host kernels tests bench materials examples python docs cmake -type f \
     \( -name '*.[ch]' -o -name '*.cl' -o -name '*.clh' -o -name '*.hpp' -o -name '*.py' -o -name '*.js' -o -name '*.sh' -o -name '*.awk' -o \
-    -name '*.cmake' -o -name CMakeLists.txt \) | grep -v '/build/\|/venv/\|^host/cli/live/\|^python/skiagraph/_live/'))
+    -name '*.cmake' -o -name CMakeLists.txt \) | grep -v '/build/\|/venv/'))
 [ -z "$pronouns" ] || { echo "These comments begin with a word that names nothing; say what they are about:"; echo "$pronouns"; status=1; }
 # Structs of at most 40 members; more have a reason in structs.txt.
 # shellcheck disable=SC2013,SC2046 # a word a file and a line

@@ -1,4 +1,4 @@
-/* What pages of a scene have in common: messages, wishes and their plans, images, texts. The transports are tested in tests/cli and
+/* The core of live: messages, wishes and their plans, images, texts. The transports are tested in tests/cli and
  * tests/python. */
 #include "suite.h"
 #include "support/run.h"
@@ -10,7 +10,7 @@
 
 enum { SIDE = 24 };
 
-/* What a page receives before the numbers of a frame (docs/live.md). */
+/* The head of a frame, before its numbers (docs/live.md). */
 typedef struct {
     char mark[4];
     uint32_t number, wish;

@@ -379,7 +379,7 @@ def bare(value):
 
 
 def without_times(message):
-    """What goes to a page, as bytes, without what differs from one run to the next."""
+    """A message to a page as bytes, without numbers that differ from one run to the next."""
     if isinstance(message, dict):
         return json.dumps(bare(message)).encode()
     mark, data = message[:4], bytearray(message)
@@ -391,7 +391,7 @@ def without_times(message):
 
 
 class Command:
-    """The same as Page of the command's server."""
+    """A page of the command's server, with the calls of a notebook's."""
 
     def __init__(self, server, module):
         self.page, self.module = module.Page(server), module
@@ -425,7 +425,7 @@ def of_wish(answer):
 
 
 def ask(page, message, marks):
-    """The same of a page in a notebook."""
+    """Sends a message to a page in a notebook, and gets the answers as from the command's."""
     counts = len(page.texts), len(page.frames), len(page.files)
     page.ack()
     page.say(message)

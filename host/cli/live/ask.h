@@ -1,4 +1,4 @@
-/* What pages ask for that takes long: what accuracy costs, and slices. */
+/* Requests of pages that take long: the costs of accuracy, and slices. */
 #ifndef CLI_LIVE_ASK_H
 #define CLI_LIVE_ASK_H
 

@@ -1,4 +1,4 @@
-/* What pages are told of a scene: what the command knows of it besides the library. */
+/* The description of a scene for pages: facts that the command knows and the library does not. */
 #include "live/describe.h"
 
 #include "common/encode.h"

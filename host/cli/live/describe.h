@@ -1,4 +1,4 @@
-/* What pages are told of a scene. */
+/* The description of a scene for pages. */
 #ifndef CLI_LIVE_DESCRIBE_H
 #define CLI_LIVE_DESCRIBE_H
 

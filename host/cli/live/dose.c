@@ -1,4 +1,4 @@
-/* What a frame of a page gives, from the library's dose of the plan without photons that are followed. */
+/* Dose of a frame of a page, from the library's dose of the plan without photons that are followed. */
 #include "live/dose.h"
 
 #include "common/encode.h"

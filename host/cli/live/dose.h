@@ -1,4 +1,4 @@
-/* What a frame of a page gives: air kerma, kerma-area product, exposure index. */
+/* Dose of a frame of a page: air kerma, kerma-area product, exposure index. */
 #ifndef CLI_LIVE_DOSE_H
 #define CLI_LIVE_DOSE_H
 

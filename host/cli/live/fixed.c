@@ -5,7 +5,7 @@
 #include <math.h>
 #include <stdlib.h>
 
-/* What the library says of it: values that are not finite, an image that is the same everywhere. */
+/* Refuses a radiograph that the library refuses: values that are not finite, an image that is the same everywhere. */
 static int check(const live_scene *scene, const register_image *fixed) {
     const cli_session *s = &scene->session;
     skg_registration *registration = NULL;

@@ -35,7 +35,7 @@ char *live_hub_page_get(live_hub *hub);
 
 /* For the thread that computes. */
 
-/* What pages have asked for since the last time. newest: by enum skg_live_asked_kind, but acks, takes and looks; NULL: none */
+/* Messages from pages since the last time. newest: by enum skg_live_asked_kind, but acks, takes and looks; NULL: none */
 typedef struct {
     skg_live_message *newest[LIVE_KINDS];
     skg_live_message *takes[LIVE_FORMATS];
@@ -64,7 +64,7 @@ double live_hub_idle(live_hub *hub);
 /* The page as HTML. Takes over the text. */
 void live_hub_page_set(live_hub *hub, char *html);
 
-/* What follows takes over its letter or object. A letter that is NULL, for want of memory, does nothing. */
+/* The next functions take over their letter or object. A letter that is NULL, for want of memory, does nothing. */
 
 /* Sends a picture to the page that has asked for it, if it is still there. */
 void live_hub_picture(live_hub *hub, int64_t page, skg_live_letter *letter);
@@ -72,7 +72,7 @@ void live_hub_picture(live_hub *hub, int64_t page, skg_live_letter *letter);
 /* A radiograph, which each page that begins later is sent. */
 void live_hub_radiograph_set(live_hub *hub, skg_live_letter *letter);
 
-/* What each new page is told first: the scene. is_new: the pages that are there, too. */
+/* Sets the scene, which each new page is told first. is_new: the pages that are there, too. */
 void live_hub_scene_tell(live_hub *hub, skg_live_letter *letter, int is_new);
 
 /* Tells all pages something; text that waits behind too much other text is dropped. */

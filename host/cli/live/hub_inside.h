@@ -1,4 +1,4 @@
-/* What the hub holds. For pages.c and post.c. */
+/* The members of the hub, for pages.c and post.c. */
 #ifndef CLI_LIVE_HUB_INSIDE_H
 #define CLI_LIVE_HUB_INSIDE_H
 

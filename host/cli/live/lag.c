@@ -38,7 +38,7 @@ static skg_status follow(live_lag *lag, const live_scene *scene, int64_t count) 
     return skg_lag_create(count, readout.lag_count, readout.lag, &lag->lag);
 }
 
-/* What is held of signals is held of transmissions, since a pixel's flat field is the same in all frames. */
+/* Adds held signal to transmissions, which it is a share of as of signals, since a pixel's flat field is the same in all frames. */
 static skg_status show(live_lag *lag, float *values) {
     const int is_log = lag->quantity == SKG_QUANTITY_ATTENUATION;
     float *shown = malloc((size_t)lag->values * sizeof *shown), low = HUGE_VALF, high = -HUGE_VALF, off = 0;

@@ -6,7 +6,7 @@
 
 enum { LIVE_LAG_TERMS = 8 };
 
-/* What the detector holds of the frames before. It outlives views, poses and settings that leave detector and quantity as they are. All zero:
+/* Signal that the detector holds from the frames before. It outlives views, poses and settings that leave detector and quantity as they are. All zero:
  * none. */
 typedef struct {
     skg_lag *lag; /* NULL: at rest, or the detector has none */

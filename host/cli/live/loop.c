@@ -276,7 +276,7 @@ static void tell_dose(live_loop *loop) {
     tell_scene(loop, 0); /* of pages that begin */
 }
 
-/* What can wait until nothing is asked for. */
+/* Does the work that can wait until nothing is asked for. */
 static void rest(live_loop *loop) {
     char sentence[LIVE_SENTENCE];
     if (!loop->is_told) tell_scene(loop, 0);

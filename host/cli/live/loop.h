@@ -1,4 +1,4 @@
-/* What the thread that computes does: takes wishes, makes frames, answers. */
+/* The loop of the thread that computes: takes wishes, makes frames, answers. */
 #ifndef CLI_LIVE_LOOP_H
 #define CLI_LIVE_LOOP_H
 

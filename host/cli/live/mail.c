@@ -1,4 +1,4 @@
-/* What waits to be sent to a page. */
+/* Letters that wait to be sent to a page. */
 #include "live/mail.h"
 
 #include <stddef.h>

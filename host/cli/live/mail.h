@@ -1,4 +1,4 @@
-/* What waits to be sent to a page. */
+/* Letters that wait to be sent to a page. */
 #ifndef CLI_LIVE_MAIL_H
 #define CLI_LIVE_MAIL_H
 

@@ -1,4 +1,4 @@
-/* What stands for the server where CivetWeb is missing: a sentence. */
+/* A sentence in place of the server, where CivetWeb is missing. */
 #include "live/server.h"
 
 #include "common/say.h"

@@ -68,7 +68,7 @@ int live_client_can_take(const live_client *client) {
     return client->frame.letter && client->untaken < UNTAKEN_MAX;
 }
 
-/* What is sent next: texts and files, then a frame, then a picture. NULL: nothing. */
+/* Takes the letter to send next: texts and files, then a frame, then a picture. NULL: nothing. */
 static skg_live_letter *take_letter(live_client *client) {
     skg_live_letter *letter = live_mail_take(&client->mail);
     if (!letter && live_client_can_take(client)) {

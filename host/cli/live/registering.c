@@ -68,7 +68,7 @@ static int check_view(const live_registering *r, const skg_view *view, char *sen
     return 0;
 }
 
-/* What moves the part over the scene file's pose: the motion that was found after that of the wish. */
+/* The part's motion over the scene file's pose: the one that was found, after that of the wish. */
 static json_t *pose_json(const live_registering *r, const skg_registration *registration) {
     double motion[16], by[16], pose[16];
     skg_pose_identity(by);

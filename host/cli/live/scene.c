@@ -103,7 +103,7 @@ static skg_status read_motion(const live_base *base, live_scene *scene) {
     return status == SKG_OK ? skg_motion_period_get(scene->motion, &scene->period) : status;
 }
 
-/* What the library is told of the scene. */
+/* Points the library's subject at the scene. */
 static void point(live_scene *scene) {
     const cli_session *session = &scene->session;
     skg_live_subject *subject = &scene->subject;

@@ -39,7 +39,7 @@ int live_server_send(void *connection, int binary, const void *bytes, size_t siz
                               bytes, size) > 0;
 }
 
-/* Who compares tokens learns nothing from the time that it takes. */
+/* Compares tokens in a time that tells nothing of the right one. */
 static int is_token(const live_server *server, const char *given) {
     unsigned difference = strlen(given) != strlen(server->token);
     for (size_t i = 0; i < LIVE_TOKEN - 1 && given[i]; i++)
@@ -172,7 +172,7 @@ static void lose_page(const struct mg_connection *connection, void *user) {
     if (client) live_hub_leave(client);
 }
 
-/* What CivetWeb would write to a log concerns single connections: nobody waits for it. */
+/* Drops CivetWeb's log: its sentences concern single connections, and nobody waits for them. */
 static int drop_sentence(const struct mg_connection *connection, const char *sentence) {
     (void)connection;
     (void)sentence;

@@ -21,7 +21,7 @@ static const double TURN_S = 60;
 /* The slice shows the box of the parts and so much of its radius more. */
 static const double MARGIN = 1.05;
 
-/* What is computed for a slice. */
+/* Data of a slice under way. */
 typedef struct {
     live_scene scene;
     double box[6]; /* of the parts, mm */

@@ -21,7 +21,7 @@ extern "C" {
 /** A message of a page. It never changes, and its owners are counted atomically. */
 typedef struct skg_live_message skg_live_message;
 
-/** What a message asks for. */
+/** Kinds of messages, by their request. */
 enum skg_live_asked_kind {
     /** The whole state that is wanted. */
     SKG_LIVE_ASKED_WISH = 0,
@@ -31,7 +31,7 @@ enum skg_live_asked_kind {
     SKG_LIVE_ASKED_PROBE = 2,
     /** A file of the image. */
     SKG_LIVE_ASKED_TAKE = 3,
-    /** What the dials cost. */
+    /** The costs of the dials. */
     SKG_LIVE_ASKED_MEASURE = 4,
     /** A picture of the 3D view. */
     SKG_LIVE_ASKED_LOOK = 5,
@@ -41,7 +41,7 @@ enum skg_live_asked_kind {
     SKG_LIVE_ASKED_RECONSTRUCT = 7
 };
 
-/** What a message says. The library fills it; prepare with skg_live_asked_init. Its pointers are valid as long as the message. */
+/** Content of a message. The library fills it; prepare with skg_live_asked_init. Its pointers are valid as long as the message. */
 typedef struct {
     /** Set by skg_live_asked_init. */
     int32_t size;
@@ -133,7 +133,7 @@ SKG_API skg_status skg_live_message_text_get(const skg_live_message *wish, const
 SKG_API skg_status skg_live_wish_compare(const skg_live_message *a, const skg_live_message *b, int32_t *moved,
                                          int32_t *other);
 
-/** What goes to pages: a text, or bytes. It never changes, and its owners are counted atomically. */
+/** A message to pages: a text, or bytes. It never changes, and its owners are counted atomically. */
 typedef struct skg_live_letter skg_live_letter;
 
 /** Makes a letter of bytes, which are copied.
@@ -170,7 +170,7 @@ typedef struct {
     skg_scene *scene;
     /** The beam. */
     skg_spectrum *spectrum;
-    /** What the scene asks for. Quantity and bands are those of the wish, and the stages are timed. */
+    /** Options of the scene. Quantity and bands are those of the wish, and the stages are timed. */
     const skg_plan_options *options;
     /** Source and detector without the projection of the wish. */
     const skg_view *view;
@@ -265,7 +265,7 @@ typedef struct {
     float *values;
     /** From the pose to the image, ms. */
     double ms;
-    /** That its scatter took, s, if it is as the scene asks for it; otherwise NaN. */
+    /** Time of its scatter, s, if that is as the scene asks for it; otherwise NaN. */
     double scatter_s;
 } skg_live_frame;
 
@@ -309,7 +309,7 @@ SKG_API skg_status skg_live_shot_write(skg_live_plans *plans, const skg_live_sub
                                        const skg_live_message *wish, int64_t number, int32_t brief,
                                        skg_live_letter **letter);
 
-/** What a transport knows besides of a scene. Prepare with skg_live_facts_init; texts that are NULL are told as null. */
+/** Facts of a scene that a transport knows besides. Prepare with skg_live_facts_init; texts that are NULL are told as null. */
 typedef struct {
     /** Set by skg_live_facts_init. */
     int32_t size;
@@ -321,13 +321,13 @@ typedef struct {
     const char *path;
     /** The scene file as it is now, JSON. */
     const char *document;
-    /** What the library has warned of. */
+    /** Warnings of the library so far. */
     const char *const *warnings;
     /** Number of these sentences. */
     int64_t warning_count;
-    /** That reading took, ms. */
+    /** Time of reading, ms. */
     double load_ms;
-    /** What a frame gives, JSON. */
+    /** Dose of a frame, JSON. */
     const char *dose;
     /** The radiograph over the image, JSON. */
     const char *fixed;

@@ -1,4 +1,4 @@
-"""What pages of the command and of notebooks have in common: the library makes images, chooses their plans, and writes what pages are
+"""The core that pages of the command and of notebooks share: the library makes images, chooses their plans, and writes what pages are
 told. Private."""
 from __future__ import annotations
 

@@ -102,7 +102,7 @@ def _thin(vertices: NDArray[Any], faces: NDArray[Any], share: float) -> tuple[ND
 
 
 def finite(value: Any) -> Any:
-    """The same without numbers that JSON lacks, which become null."""
+    """A value for JSON: numbers that JSON lacks become null."""
     if isinstance(value, float):
         return value if math.isfinite(value) else None
     if isinstance(value, dict):

@@ -41,7 +41,7 @@ class Subject:
         self.begin()
 
     def begin(self) -> None:
-        """What there is now is the beginning."""
+        """Takes the scene as it is now for the beginning."""
         state = self.state
         self.breathes = _breathes(state)
         self.period = number("skg_motion_period_get", state.linked()) if self.breathes else 0.0
@@ -60,7 +60,7 @@ class Subject:
         self.surfaces = self._surfaces()
         self.note()
 
-    # What a wish changes
+    # Changes by a wish
 
     def is_late(self, wish: Wish) -> bool:
         """Whether it was sent before the page could know of the last change elsewhere."""
@@ -141,7 +141,7 @@ class Subject:
         if self.breathes:
             self._breathe(phase)
 
-    # What was changed elsewhere
+    # Changes elsewhere
 
     def note(self) -> None:
         """Remembers how the scene is, so that a change elsewhere is seen."""
@@ -183,7 +183,7 @@ class Subject:
         return state.require_view()._key(), id(state.require_beam()), poses, matter, self._phase(), self._surfaces()
 
     def _surfaces(self) -> list[Any]:
-        """What the 3D view shows. Of a scene that breathes, vertices move with the breath."""
+        """Identity of the geometry in the 3D view. Of a scene that breathes, vertices move with the breath."""
         state = self.state
         return [(part.label, id(part.mesh), part.mesh._changed if self.breathes else part.mesh.version) for part in state.parts()]
 

@@ -78,7 +78,7 @@ def _kind() -> Any:
 
 
 def _running_loop() -> asyncio.AbstractEventLoop | None:
-    """That of the kernel; None: there is no kernel."""
+    """The event loop of the kernel; None: there is no kernel."""
     try:
         return asyncio.get_running_loop()
     except RuntimeError:

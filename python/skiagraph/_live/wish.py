@@ -1,4 +1,4 @@
-"""What a page asks for: the messages of docs/live.md, which the library reads. Private."""
+"""Messages of a page (docs/live.md), which the library reads. Private."""
 from __future__ import annotations
 
 import json
@@ -50,7 +50,7 @@ class Wish(Message):
         return state
 
     def but(self, **changes: Any) -> Wish:
-        """The same with other values of some keys, and nothing being dragged."""
+        """A wish with other values of some keys, and nothing being dragged."""
         return Wish({**self.json(), **changes})
 
 

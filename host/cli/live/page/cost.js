@@ -1,4 +1,4 @@
-// What the image costs: its time by stages, the effects that are on, and what each dial would change, as it was measured.
+// Cost of the image: its time by stages, the effects that are on, and what each dial would change, as it was measured.
 'use strict';
 const rates = [];
 

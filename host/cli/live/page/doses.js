@@ -1,4 +1,4 @@
-// What frames give: of one, for a second at the rate of the last two, and summed up over all since the sum was reset.
+// Dose of the frames: of one, for a second at the rate of the last two, and summed up over all since the sum was reset.
 'use strict';
 // figures: of a frame, null where the scene has none. sums: of the frames that were counted.
 const doses = {figures: null, frames: 0, sums: {}};

@@ -9,7 +9,7 @@ function isCompared(frame) {
     ['columns', 'rows'].every(side => Math.max(1, Math.floor(fixed.frame[side] / frame.factor)) === frame[side]);
 }
 
-// What attenuation the full colour stands for: 2 at the left end of the slider, 0.02 at the right one.
+// The attenuation of the full colour: 2 at the left end of the slider, 0.02 at the right one.
 const fullColour = () => 2 * 0.01 ** fixed.share;
 
 // Model less radiograph: blue where the model attenuates less, red where more; the colours are those of the page of `register --report`.
@@ -75,7 +75,7 @@ const short = x => Math.abs(x) < 1e-3 && x !== 0 ? x.toExponential(1) : number(x
 // [name, unit that is shown, how many of them one is]
 const freedomNames = [['shift x', 'mm', 1], ['shift y', 'mm', 1], ['shift z', 'mm', 1], ['turn x', '\u00b0', 180 / Math.PI], ['turn y', '\u00b0', 180 / Math.PI], ['turn z', '\u00b0', 180 / Math.PI]];
 
-// What was found: the pose becomes a wish as that of a drag, but for a part that is not where it was found.
+// Takes the pose that a registration has found as a wish, like that of a drag, but for a part that has moved meanwhile.
 function showFound({registered: found}) {
   registerEnded();
   byId('freedoms').replaceChildren();

@@ -52,7 +52,7 @@ function takeScene(message) {
   showPlan();
   changed();
 }
-// What was changed outside of the page: its state is another. fresh: and older states are about another document.
+// Takes a state that was changed outside of the page. fresh: and older states are about another document.
 function adopt({adopted, fresh}) {
   const {wish, ...kept} = adopted;
   if (fresh) trail.past = [];
@@ -93,7 +93,7 @@ function pressed(event) {
   change();
 }
 
-// What this browser needs to draw by itself.
+// Compiles shaders and makes meshes, so that this browser draws by itself.
 function prepareGL() {
   if (detector) return;
   Object.keys(shaders).forEach(compile);

@@ -1,4 +1,4 @@
-// What the server says goes to `hear`, frames to `show`, and wishes go the other way.
+// The connection: texts from the server go to `hear`, frames to `show`, and wishes go the other way.
 'use strict';
 // shot: the newest message about a frame.
 const net = {channel: null, role: '', sent: 0, shown: 0, shot: null, hear: {}, show: null, picture: null, file: null, waits: false, timer: 0};

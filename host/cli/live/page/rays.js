@@ -1,4 +1,4 @@
-// What a ray from the eye meets, by its intersections with the triangles: what is pointed at, whoever draws the view.
+// Hits of a ray from the eye, by its intersections with the triangles: finds the part under the mouse, whoever draws the view.
 'use strict';
 // The ray through a CSS pixel: its start, and its direction, of length 1 along the view.
 function rayAt(x, y) {

@@ -1,4 +1,4 @@
-// What the page asks of the scene: settings on top of the scene file, and what moves parts. Undo goes through older ones.
+// The page's wish: settings on top of the scene file, and what moves parts. Undo goes through older ones.
 'use strict';
 let live = null; // what the server says of the scene
 // As the file has it; with a radiograph, the projection that it was taken from.

@@ -1,4 +1,4 @@
-// What is taken away: the scene file, the command line, a Python script, and files of the image.
+// Downloads: the scene file, the command line, a Python script, and files of the image.
 'use strict';
 function save(name, bytes, type = 'application/octet-stream') {
   const link = make('a');

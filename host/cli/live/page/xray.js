@@ -3,7 +3,7 @@
 const xray = {frame: null, ends: [0, 1], before: null, low: 0, high: 1, auto: true, inverted: false, split: 0.5, at: null, probed: '', stamp: 0};
 const film = byId('film'), pen = film.getContext('2d', {alpha: false});
 
-// What is shown of a number: -ln(I/I0), so that dense matter is white.
+// The shown value of a number: -ln(I/I0), so that dense matter is white.
 function shownOf(frame, n) {
   const value = frame.low + frame.step * n;
   return frame.flat > 0 ? -Math.log(Math.max(value, 1e-30 * frame.flat) / frame.flat) : value;

@@ -1,4 +1,4 @@
-// What mouse, fingers, wheel and keys do with the 3D view, where the eye is put, and the list of parts: of this page and of that of `live`.
+// Mouse, fingers, wheel and keys on the 3D view, places for the eye, and the list of parts: for the pages of `view` and of `live`.
 // Each of them says what a place of the canvas does, point(event) under the mouse and pick(x, y) clicked, and has a resize().
 'use strict';
 const byId = id => document.getElementById(id);
