@@ -281,7 +281,7 @@ def doses(path):
 
 
 def slices(path):
-    """A slice is reconstructed beside the frames; what is newer ends it, and so does the end."""
+    """A slice is reconstructed beside the frames and the 3D view; what is newer ends it, and so does the end."""
     scene = {**SCENE, "Scan": {"NumberOfProjections": 90, "FinalAngle": 360}}
     scene["Samples"] = [{"Label": "ball", "Sphere": [12, 20, "mm"], "Material": ["mu", 0.2]}]
     put(path, json.dumps(scene))
@@ -323,6 +323,9 @@ def slices(path):
         page.wish(settings=water)
         page.send({"reconstruct": {**switches, "scatter": True}})
         page.text("reconstructing")
+        page.send({"look": LOOK})
+        came = page.find(lambda m: isinstance(m, bytes) and m[:4] == b"SKLP" or isinstance(m, dict) and "reconstructed" in m)
+        assert isinstance(came, bytes), came  # the view is drawn while the slice is under way
         assert server.end(60) == 0
 
 

@@ -9,8 +9,8 @@
 void live_measure(const live_base *base, const live_scene *scene, const live_wish *wish, live_hub *hub);
 
 /* Reconstructs a slice of the scene as a wish has it, and tells pages how far that is and what came out. Ends when a newer wish or another
- * slice is asked for. */
+ * slice is asked for. meanwhile: is called after each projection. */
 void live_reconstruct(const live_base *base, const live_wish *wish, const skg_live_asked *switches,
-                      live_hub *hub);
+                      live_hub *hub, void (*meanwhile)(void *user), void *user);
 
 #endif

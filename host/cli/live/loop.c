@@ -253,6 +253,29 @@ static void answer_probe(live_loop *loop, const skg_live_message *probe) {
         tell_error(loop, loop->wish.says.number, (live_fail(sentence), sentence));
 }
 
+/* Draws a picture of the 3D view that a page waits for. Images come first. */
+static void draw(live_loop *loop) {
+    int64_t page;
+    skg_live_letter *letter = NULL;
+    const double start = cli_now_ms();
+    skg_live_message *look = start < loop->picture_ms ? NULL : live_hub_look_take(loop->hub, &page);
+    if (!look) return;
+    if (skg_live_picture_write(loop->scene.plans, &loop->scene.subject, loop->wish.message, look, &letter) !=
+        SKG_OK) {
+        live_hub_refuse(loop->hub, skg_last_error());
+        (void)skg_live_picture_miss(look, &letter);
+    }
+    skg_live_message_release(&look);
+    live_hub_picture(loop->hub, page, letter);
+    const double now = cli_now_ms();
+    loop->picture_ms = start - loop->framed_ms < PAUSE ? now + X_RAYS * (now - start) : now;
+}
+
+/* Draws while something takes long. */
+static void draw_meanwhile(void *user) {
+    draw(user);
+}
+
 static void answer(live_loop *loop, const live_asked *asked) {
     skg_live_message *const *newest = asked->newest;
     const live_wish part = live_wish_of(newest[SKG_LIVE_ASKED_REGISTER]),
@@ -261,7 +284,8 @@ static void answer(live_loop *loop, const live_asked *asked) {
     if (newest[SKG_LIVE_ASKED_PROBE] && !live_hub_has(loop->hub, SKG_LIVE_ASKED_WISH))
         answer_probe(loop, newest[SKG_LIVE_ASKED_PROBE]);
     if (part.message) answer_register(loop, part.says.number);
-    if (slice.message && !slice.says.stop) live_reconstruct(&loop->base, &loop->wish, &slice.says, loop->hub);
+    if (slice.message && !slice.says.stop)
+        live_reconstruct(&loop->base, &loop->wish, &slice.says, loop->hub, draw_meanwhile, loop);
     if (newest[SKG_LIVE_ASKED_MEASURE]) live_measure(&loop->base, &loop->scene, &loop->wish, loop->hub);
 }
 
@@ -287,24 +311,6 @@ static void rest(live_loop *loop) {
         tell_error(loop, loop->wish.says.number, (live_fail(sentence), sentence));
     else if (!loop->wish.says.drag)
         tell_dose(loop);
-}
-
-/* Draws a picture of the 3D view that a page waits for. Images come first. */
-static void draw(live_loop *loop) {
-    int64_t page;
-    skg_live_letter *letter = NULL;
-    const double start = cli_now_ms();
-    skg_live_message *look = start < loop->picture_ms ? NULL : live_hub_look_take(loop->hub, &page);
-    if (!look) return;
-    if (skg_live_picture_write(loop->scene.plans, &loop->scene.subject, loop->wish.message, look, &letter) !=
-        SKG_OK) {
-        live_hub_refuse(loop->hub, skg_last_error());
-        (void)skg_live_picture_miss(look, &letter);
-    }
-    skg_live_message_release(&look);
-    live_hub_picture(loop->hub, page, letter);
-    const double now = cli_now_ms();
-    loop->picture_ms = start - loop->framed_ms < PAUSE ? now + X_RAYS * (now - start) : now;
 }
 
 void live_loop_run(live_loop *loop, double idle) {

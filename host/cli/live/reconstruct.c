@@ -11,6 +11,8 @@ static const double TELL = 100; /* ms between two messages about projections */
 typedef struct {
     live_hub *hub;
     double told_ms;
+    void (*meanwhile)(void *user);
+    void *user;
 } teller;
 
 static void tell(live_hub *hub, const char *key, json_t *inner) {
@@ -19,13 +21,14 @@ static void tell(live_hub *hub, const char *key, json_t *inner) {
     live_hub_tell_json(hub, object);
 }
 
-/* A newer wish, another slice and the end are not kept waiting. */
+/* Between two projections. A newer wish, another slice and the end are not kept waiting. */
 static int32_t hear(int64_t done, int64_t total, void *user) {
     teller *t = user;
     const double now = cli_now_ms();
     if (live_hub_has(t->hub, SKG_LIVE_ASKED_WISH) || live_hub_has(t->hub, SKG_LIVE_ASKED_RECONSTRUCT) ||
         cli_stop_asked())
         return 1;
+    t->meanwhile(t->user);
     if (now - t->told_ms < TELL) return 0;
     t->told_ms = now;
     json_t *inner = json_object();
@@ -63,10 +66,10 @@ static void give(live_hub *hub, const live_slice *slice) {
 }
 
 void live_reconstruct(const live_base *base, const live_wish *wish, const skg_live_asked *switches,
-                      live_hub *hub) {
+                      live_hub *hub, void (*meanwhile)(void *user), void *user) {
     live_slice slice;
     char sentence[LIVE_SENTENCE] = "";
-    teller t = {.hub = hub};
+    teller t = {.hub = hub, .meanwhile = meanwhile, .user = user};
     skg_progress *progress = NULL;
     json_t *inner = NULL;
     if (skg_progress_create(hear, &t, &progress) != SKG_OK) return;
