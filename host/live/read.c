@@ -257,6 +257,16 @@ static skg_status read_reconstruct(json_t *value, skg_live_message *message) {
             return skg_fail(SKG_ERR_ARGUMENT, "\"reconstruct\": \"%s\" is neither true nor false", names[i]);
         *ours[i] = json_is_true(is_on);
     }
+    const char *key;
+    json_t *unused;
+    json_object_foreach(value, key, unused) {
+        int is_known = strcmp(key, "at") == 0;
+        for (size_t i = 0; i < sizeof names / sizeof *names; i++) is_known |= strcmp(key, names[i]) == 0;
+        if (!is_known)
+            return skg_fail(
+                SKG_ERR_ARGUMENT,
+                "\"reconstruct\" has no key \"%.40s\", but spectrum, noise, scatter, motion and at", key);
+    }
     asked->at_mm = json_number_value(at);
     return (!at || json_is_number(at)) && fabs(asked->at_mm) <= 1e6
                ? SKG_OK

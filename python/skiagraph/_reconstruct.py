@@ -94,6 +94,19 @@ def _options(view: View, size: Any, voxel: float | None, filter: str, axis: Any,
     return options
 
 
+def _warn_beyond(options: Any, along_mm: Any) -> None:
+    """Warns of slices across the axis that lie beyond the rows of the detector where they meet the axis."""
+    axis = np.array(list(options.axis)) / np.linalg.norm(list(options.axis))
+    k = int(np.abs(axis).argmax())
+    count = int(options.voxels[k])
+    places = options.middle[k] + (np.arange(count) - 0.5 * (count - 1)) * options.voxel_mm
+    at, tiny = (places - options.centre[k]) / axis[k], 1e-6 * options.voxel_mm
+    beyond = int(((at < along_mm[0] - tiny) | (at > along_mm[1] + tiny)).sum())
+    if beyond:
+        warn(f"{beyond} of {count} slices lie beyond the rows of the detector, which sees the axis from {along_mm[0]:.4g} to {along_mm[1]:.4g} mm "
+             "of the centre of rotation; voxels there hold 0 or too little")
+
+
 def _compute(scan: Scan, reader: Any, images: NDArray[np.float32] | None, options: Any) -> NDArray[np.float32]:
     fdk = make("skg_fdk_create", "skg_fdk", scan._handle, options)
     try:
@@ -109,6 +122,7 @@ def _compute(scan: Scan, reader: Any, images: NDArray[np.float32] | None, option
             warn(f"projections are truncated: in {100 * seen['truncated']:.3g} % of the rows the shadow goes beyond the detector, and "
                  f"values are not to be trusted near {seen['covered_mm']:.4g} mm from the axis, nor elsewhere without "
                  "truncation=\"extrapolate\"")
+        _warn_beyond(options, seen["along_mm"])
         volume = ffi.new("float **")
         call("skg_fdk_volume_get", fdk, volume)
         shape = tuple(int(options.voxels[k]) for k in (2, 1, 0))

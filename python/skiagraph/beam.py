@@ -160,6 +160,8 @@ class Beam:
 
 
 def _filters(layers: Layers, keep: list[Any]) -> Any:
+    if not isinstance(layers, Mapping):
+        raise ArgumentError(f"filters is {type(layers).__name__}; give the mm of each material, {{'Al': 2.5}}")
     made = struct("skg_filter", len(layers))
     for i, (material, thickness) in enumerate(layers.items()):
         keep.append(as_material(material))

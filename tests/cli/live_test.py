@@ -308,12 +308,15 @@ def slices(path):
         assert noisy != value and figures["noise"] is True
         frame = page.frame(page.wish(poses={"0": [1, 0, 0, 40, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]}))
         assert frame.wish == 1 and middle(page)[0] < 0.19  # the middle of the box is no longer that of the ball
-        for bad in ({}, {**switches, "noise": 1}, {**switches, "at": "1"}, [], True):
+        page.send({"reconstruct": {**switches, "at": 100}})
+        assert "sees slices from" in page.text("reconstructed")["reconstructed"]["error"]
+        for bad in ({}, {**switches, "noise": 1}, {**switches, "at": "1"}, {**switches, "At": 1}, [], True):
             page.send({"reconstruct": bad})
             assert "reconstruct" in page.text("refused")["refused"], bad
-        page.wish(settings={"Scan.FinalAngle": 90})
-        page.send({"reconstruct": switches})
-        assert "180 degrees" in page.text("reconstructed")["reconstructed"]["error"]
+        for settings, said in (({"Scan.FinalAngle": 90}, "180 degrees"), ({"Scan.NumberOfProjections": 1}, "two or more projections")):
+            page.wish(settings=settings)
+            page.send({"reconstruct": switches})
+            assert said in page.text("reconstructed")["reconstructed"]["error"]
         for newer in (lambda: page.wish(settings={}), lambda: page.send({"reconstruct": None})):
             page.wish(settings=water)
             page.send({"reconstruct": {**switches, "scatter": True}})

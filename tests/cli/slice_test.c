@@ -151,10 +151,15 @@ START_TEST(a_scan_is_thinned) {
     ck_assert_double_eq_tol(slice.at_mm, 10, 1e-9); /* rounding of doubles */
     const double per_cm = truth(slice.mean_kev);
     ck_assert_double_eq_tol(centre_of(&slice), per_cm, 0.02 * per_cm); /* of the method with 96 columns */
-    reconstruct(
-        "{\"Scan\": {\"NumberOfProjections\": 90, \"FinalAngle\": 360}, \"Samples.water.Material\": [\"mu\", 0.3]}",
-        (skg_live_asked){.at_mm = 40}, &slice);
+    static const char flat[] =
+        "{\"Scan\": {\"NumberOfProjections\": 90, \"FinalAngle\": 360},"
+        " \"Samples.water.Material\": [\"mu\", 0.3], \"Samples.water.Cylinder\": [64, 20, 50, \"mm\"]}";
+    char sentence[LIVE_SENTENCE] = "";
+    reconstruct(flat, (skg_live_asked){.at_mm = 16}, &slice);
     ck_assert_double_lt(centre_of(&slice), 0.05); /* beyond the cylinder's end */
+    ck_assert(!make(flat, (skg_live_asked){.at_mm = 40}, NULL, &slice, sentence));
+    ck_assert_msg(strstr(sentence, "it sees slices from -19.17 to 19.17 mm"), "%s",
+                  sentence); /* 23 / 2 rows of 2.5 mm, as seen at the axis */
 }
 END_TEST
 

@@ -215,6 +215,27 @@ START_TEST(a_page_breathes) {
 }
 END_TEST
 
+/* A part that jumps keeps its shape: the distances between its vertices. */
+static const char jumping_script[] =
+    "const part = scene.parts.find(q => q.label === 'needle'), count = 3 * part.vertices, all = positionsOf(part);\n"
+    "check('jumps', part.jumps && scene.parts.some(q => q.frames > 1 && !q.jumps));\n"
+    "const at = (f, i) => all[f * count + i] * part.step[i % 3], moved = f => [0, 1, 2].map(k => at(f, k) - at(0, k));\n"
+    "const far = (f, v) => size([0, 1, 2].map(k => at(f, 3 * v + k) - at(f, k))); // from the first vertex\n"
+    "const off = f => { let most = 0;\n"
+    "  for (let v = 0; v < part.vertices; v++) most = Math.max(most, Math.abs(far(f, v) - far(0, v)));\n"
+    "  return most; };\n"
+    "const last = part.frames - 1; check('it has moved', size(moved(last)) > 100, String(moved(last)));\n"
+    "check('a shape as it was', off(last) < 4 * Math.max(...part.step), String(off(last)));\n"; /* four roundings of 16 bits */
+
+START_TEST(a_part_jumps) {
+    need_browser();
+    ck_run(0, "thorax -o . --triangles 10000 --quiet");
+    ck_run(0, "view thorax.json --set Breathing.Events='[{\"Needle\":[[0.3,-20],[0.301,110]]}]' --seconds 1 "
+              "--set Detector.NumberOfPixels=[80,80] -o a.html --quiet");
+    if (!work(jumping_script)) skip_test("the browser has no WebGL 2");
+}
+END_TEST
+
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up, tear_down);
     tcase_add_test(tests, a_page_can_be_turned);
@@ -222,6 +243,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_page_without_sensitivity);
     tcase_add_test(tests, a_curved_detector_is_drawn_curved);
     tcase_add_test(tests, a_page_breathes);
+    tcase_add_test(tests, a_part_jumps);
 }
 
 SKG_SUITE_MAIN("view_page", add_tests)

@@ -129,3 +129,8 @@ def test_responses_by_a_table(scene):
     np.testing.assert_allclose(scene.image(response=recorded), scene.image() / 2, rtol=1e-6)  # single precision
     with pytest.raises(sk.ArgumentError, match="lists alike"):
         sk.Response([10, 100], [5])
+
+
+def test_filters_are_named():
+    with pytest.raises(sk.ArgumentError, match="give the mm of each material"):
+        sk.Beam.tube(100, [("Al", 2.5)])

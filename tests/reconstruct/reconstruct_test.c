@@ -243,6 +243,11 @@ START_TEST(a_displaced_detector) {
     reconstruct();
     ck_smooth();
     const skg_fdk_report report = seen();
+    /* half the height of the detector between the middles of its rows, as seen at the axis */
+    const double half = 0.5 * (ROWS - 1) * (_i == 2 ? 0.33 : 0.5 * 400 / 600);
+    for (int k = 0; k < 2; k++)
+        ck_assert_double_eq_tol(report.along_mm[k], k ? half : -half,
+                                1e-9 * half); /* rounding of some products, 1e7 times epsilon */
     ck_assert_int_eq(report.displaced, 1);
     ck_assert_double_eq(report.truncated, 0);
     ck_assert(report.overlap_mm > 15 && report.overlap_mm < 25 && report.covered_mm > field_mm);

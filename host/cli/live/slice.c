@@ -36,6 +36,7 @@ typedef struct {
     skg_spectrum *spectrum;
     skg_plan *plan;
     skg_fdk *fdk;
+    skg_fdk_report seen;
     double *moving; /* [projections][parts that move][16] their poses; NULL: none moves */
     float *image;   /* [pixels] */
     int64_t pixels;
@@ -118,7 +119,7 @@ static skg_status make_scan(work *w, live_slice *slice) {
 static skg_status find_scan(work *w, live_slice *slice) {
     const skg_view *view = &w->scene.session.view;
     skg_status status = SKG_OK;
-    if (w->scene.projections > 1) {
+    if (w->scene.projections > 0) {
         status = skg_setup_scan_get(w->scene.setup, &w->whole);
         if (status == SKG_OK) status = skg_scan_retain(w->whole);
     } else {
@@ -149,9 +150,8 @@ static double find_reach(const work *w) {
  * reconstructed. */
 static skg_status begin_slice(work *w, live_slice *slice) {
     skg_fdk_options options;
-    skg_fdk_report report;
     skg_fdk_options_init(&options);
-    skg_fdk_report_init(&report);
+    skg_fdk_report_init(&w->seen);
     memcpy(options.axis, w->axis, sizeof options.axis);
     memcpy(options.centre, w->centre, sizeof options.centre);
     memcpy(options.middle, w->centre, sizeof options.middle);
@@ -160,14 +160,26 @@ static skg_status begin_slice(work *w, live_slice *slice) {
         if (fabs(w->axis[k]) > fabs(w->axis[slice->across])) slice->across = k;
     }
     skg_status status = skg_fdk_create(w->scan, &options, &w->fdk);
-    if (status == SKG_OK) status = skg_fdk_report_get(w->fdk, &report);
+    if (status == SKG_OK) status = skg_fdk_report_get(w->fdk, &w->seen);
     skg_fdk_release(&w->fdk);
-    const double half = fmin(report.covered_mm, MARGIN * find_reach(w));
+    const double half = fmin(w->seen.covered_mm, MARGIN * find_reach(w));
     options.voxel_mm = slice->voxel_mm = 2 * half / LIVE_SLICE_SIZE;
     for (int k = 0; k < 3; k++) options.voxels[k] = k == slice->across ? 1 : LIVE_SLICE_SIZE;
     options.middle[slice->across] += w->switches->at_mm;
     slice->at_mm = options.middle[slice->across];
     return status == SKG_OK ? skg_fdk_create(w->scan, &options, &w->fdk) : status;
+}
+
+/* Returns 0 with a sentence where the slice lies beyond the rows of the detector, whose voxels would hold 0 or too little. */
+static int is_seen(const work *w, const live_slice *slice, char *sentence) {
+    const double along = w->axis[slice->across] / skg_length(w->axis), *seen = w->seen.along_mm;
+    const double at = w->switches->at_mm / along;
+    if (at >= seen[0] && at <= seen[1]) return 1;
+    const double ends[2] = {seen[0] * along, seen[1] * along};
+    snprintf(sentence, LIVE_SENTENCE,
+             "at %.4g mm there are no rows of the detector; it sees slices from %.4g to %.4g mm",
+             w->switches->at_mm, fmin(ends[0], ends[1]), fmax(ends[0], ends[1]));
+    return 0;
 }
 
 /* The beam of the larger pixels, with all energies or as many photons of their mean. */
@@ -282,6 +294,7 @@ static int make(work *w, const live_wish *wish, skg_progress *progress, live_sli
     skg_status status = skg_live_box_get(&w->scene.subject, w->box);
     if (status == SKG_OK) status = find_scan(w, slice);
     if (status == SKG_OK) status = begin_slice(w, slice);
+    if (status == SKG_OK && !is_seen(w, slice, sentence)) return 0;
     if (status == SKG_OK && has_moving_parts(&w->scene, &record) && w->switches->motion &&
         !find_moving(w, wish, slice, &record, sentence))
         return 0;

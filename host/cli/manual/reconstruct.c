@@ -43,8 +43,8 @@ static const char *const text[] = {
     "folder (flat-00000.tif, NAME_flat_0000.tif); without them the flat field is that of the header, of scan.txt, or the WhiteLevel of the .xtekct.",
     "The volume holds attenuation coefficients in 1/cm. It is centred on the centre of rotation, and its axes are those "
     "of the scene.",
-    "--json prints {projections, size, voxel_mm, range, displaced, covered_mm, truncated, seconds, file}; range has the least and the largest value, "
-    "truncated the share of the rows that are cut off.",
+    "--json prints {projections, size, voxel_mm, range, displaced, covered_mm, truncated, along_mm, seconds, file}; range has the least and the largest value, "
+    "truncated the share of the rows that are cut off, along_mm the range of the axis that the rows of all projections see.",
     NULL};
 
 static const cli_flag *const flags[] = {&reconstruct_output, &reconstruct_geometry,

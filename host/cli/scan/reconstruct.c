@@ -10,7 +10,9 @@
 
 #include <skiagraph/scanning.h>
 
+#include "core/maths.h"
 #include <inttypes.h>
+
 #include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -151,9 +153,35 @@ static void note_crop(const cli_arguments *arguments, const reconstruction *r) {
         cli_value(arguments, "--size"), width, seen, seen / (double)r->options.voxels[0]);
 }
 
+/* Slices of the volume across the axis of rotation that lie beyond the rows of the detector where they meet the axis. */
+static int64_t slices_beyond(const reconstruction *r, int64_t *all) {
+    const skg_fdk_options *o = &r->options;
+    const double *axis = o->axis, *seen = r->report.along_mm;
+    int64_t beyond = 0;
+    int k = 0;
+    for (int i = 1; i < 3; i++)
+        if (fabs(axis[i]) > fabs(axis[k])) k = i;
+    const double along = axis[k] / skg_length(axis), tiny = 1e-6 * o->voxel_mm;
+    *all = o->voxels[k];
+    for (int64_t i = 0; i < *all; i++) {
+        const double place = o->middle[k] + ((double)i - 0.5 * (double)(*all - 1)) * o->voxel_mm;
+        const double at = (place - o->centre[k]) / along;
+        beyond += at < seen[0] - tiny || at > seen[1] + tiny;
+    }
+    return beyond;
+}
+
 /* Says what the detector did not see. */
 static void warn(const reconstruction *r) {
     const skg_fdk_report *seen = &r->report;
+    int64_t slices = 0;
+    const int64_t beyond = slices_beyond(r, &slices);
+    if (beyond > 0)
+        cli_warn(
+            "%" PRId64 " of %" PRId64
+            " slices lie beyond the rows of the detector, which sees the axis from %.4g to %.4g mm of the "
+            "centre of rotation; voxels there hold 0 or too little",
+            beyond, slices, seen->along_mm[0], seen->along_mm[1]);
     if (seen->displaced)
         cli_note(
             "the detector is displaced: rays are weighted for it, and %.4g mm about the axis are covered",
@@ -194,6 +222,7 @@ static int print(const cli_arguments *arguments, const reconstruction *r) {
         json_object_set_new(object, "displaced", json_boolean(r->report.displaced));
         json_object_set_new(object, "covered_mm", cli_json_number(r->report.covered_mm));
         json_object_set_new(object, "truncated", cli_json_number(r->report.truncated));
+        json_object_set_new(object, "along_mm", cli_json_numbers(r->report.along_mm, 2));
         json_object_set_new(object, "seconds", cli_json_number(r->seconds));
         json_object_set_new(object, "file", cli_json_text(r->place));
         return cli_json_print(object);

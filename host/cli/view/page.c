@@ -40,13 +40,18 @@ static size_t place_of(const blob *of, const void *block) {
     return (size_t)((const unsigned char *)block - of->bytes);
 }
 
+/* The largest unit of changes of 8 bits, mm. Half of it is the error; parts that jump further than 127 of it have changes of 16 bits. */
+static const double UNIT_MAX = 0.1;
+
 /* A part's positions as a page has them: those of the first frame as 16 bits between the least and the largest of all frames, and of each
- * later frame the changes from the one before, 8 bits of a unit of its own along each axis. */
+ * later frame the changes from the one before: 8 bits of a unit of its own along each axis, or 16 bits, whose sums wrap around. */
 typedef struct {
     double low[3], step[3]; /* mm; of 16 bits */
     int unit[3];            /* steps */
+    int has_jumps;          /* 1: changes of 16 bits */
     uint16_t *first;        /* [vertices][3] */
     int8_t *changes;        /* [frames - 1][vertices][3] */
+    uint16_t *jumps;        /* likewise */
 } places_packed;
 
 static int packed_at(const view_shape *shape, const places_packed *p, int64_t i) {
@@ -72,7 +77,22 @@ static void find_steps(const view_shape *shape, int64_t frames, places_packed *p
         most[i % 3] = change > most[i % 3] ? change : most[i % 3];
     }
     /* One less than the largest number: what was rounded off in the frame before comes on top. */
-    for (int k = 0; k < 3; k++) p->unit[k] = most[k] / (INT8_MAX - 1) + 1;
+    p->has_jumps = 0;
+    for (int k = 0; k < 3; k++) {
+        p->unit[k] = most[k] / (INT8_MAX - 1) + 1;
+        p->has_jumps |= p->unit[k] > 1 && p->unit[k] * p->step[k] > UNIT_MAX;
+    }
+}
+
+static void add_jumps(const view_shape *shape, int64_t frames, places_packed *p) {
+    const int64_t frame = 3 * shape->surface.vertices;
+    for (int64_t i = 0; i < frames * frame; i++) {
+        const int now = packed_at(shape, p, i);
+        if (i < frame)
+            p->first[i] = (uint16_t)now;
+        else
+            p->jumps[i - frame] = (uint16_t)(now - packed_at(shape, p, i - frame));
+    }
 }
 
 /* Changes are from what a reader has of the frame before, so that what is rounded off does not add up. */
@@ -96,11 +116,13 @@ static int add_positions(const view_shape *shape, int64_t frames, json_t *object
     places_packed p;
     find_steps(shape, frames, &p);
     const size_t first = (size_t)frame * sizeof *p.first, changes = (size_t)(frame * (frames - 1));
-    unsigned char *block = add_block(to, first + changes);
+    unsigned char *block = add_block(to, first + (p.has_jumps ? sizeof *p.jumps : 1) * changes);
     if (!block) return 0;
     p.first = (uint16_t *)(void *)block;
+    p.jumps = (uint16_t *)(void *)(block + first);
     p.changes = (int8_t *)(block + first);
-    add_changes(shape, frames, &p);
+    (p.has_jumps ? add_jumps : add_changes)(shape, frames, &p);
+    json_object_set_new(object, "jumps", json_boolean(p.has_jumps));
     json_object_set_new(object, "positions", json_integer((json_int_t)place_of(to, block)));
     json_object_set_new(object, "low", cli_json_numbers(p.low, 3));
     json_object_set_new(object, "step", cli_json_numbers(p.step, 3));

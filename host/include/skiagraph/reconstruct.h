@@ -73,6 +73,9 @@ typedef struct {
     /** The share of the rows that were added so far whose values do not fall to 5 % of the largest of the projection at an edge of the
      * detector that has to show air: truncated ones. */
     double truncated;
+    /** Range of the axis that the rows of all projections see, mm from the centre of rotation along the axis. Voxels beyond it hold 0 or too
+     * little. */
+    double along_mm[2];
 } skg_fdk_report;
 
 SKG_INIT(skg_fdk_report)

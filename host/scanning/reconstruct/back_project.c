@@ -81,26 +81,44 @@ static void back_project_line(skg_fdk *fdk, const pixel_map *map, double scale, 
     }
 }
 
+/* Where a curved detector about the source sees a point. Returns the distance of the point from the detector's axis. */
+static double find_on_curve(const skg_view *v, const skg_curvature *curve, double *point, double *column,
+                            double *row) {
+    skg_add_scaled(point, -1, v->source, point);
+    const double across = skg_dot(point, curve->across), depth = -skg_dot(point, curve->normal);
+    const double far = hypot(across, depth), down = skg_dot(point, curve->down) * curve->radius / far;
+    *column = 0.5 * (double)(v->columns - 1) + atan2(across, depth) / curve->angle;
+    *row = 0.5 * (double)(v->rows - 1) + (down + curve->along) / curve->height;
+    return far;
+}
+
 /* Adds a row of voxels of a projection by a curved detector about the source: a voxel is seen by its angle about the detector's axis, and
  * weighs by the inverse square of its distance from that axis (Kak and Slaney 1988, sections 3.4.2 and 3.6; H. Turbell, thesis 1001,
  * Linkoping 2001, on cylindrical detectors). */
 static void back_project_fan(skg_fdk *fdk, const skg_orbit_pose *pose, double scale, int64_t y, int64_t z) {
     const skg_fdk_options *o = &fdk->options;
-    const skg_view *v = &pose->view;
-    const double middle[2] = {0.5 * (double)(v->columns - 1), 0.5 * (double)(v->rows - 1)};
     float *to = fdk->volume + (z * o->voxels[1] + y) * o->voxels[0];
     skg_curvature curve;
-    skg_curvature_find(v, NULL, &curve);
+    skg_curvature_find(&pose->view, NULL, &curve);
     for (int64_t x = 0; x < o->voxels[0]; x++) {
-        double point[3] = {skg_fdk_place(o, 0, x), skg_fdk_place(o, 1, y), skg_fdk_place(o, 2, z)};
-        skg_add_scaled(point, -1, v->source, point);
-        const double across = skg_dot(point, curve.across), depth = -skg_dot(point, curve.normal);
-        const double far = hypot(across, depth), down = skg_dot(point, curve.down) * curve.radius / far;
-        const double column = middle[0] + atan2(across, depth) / curve.angle;
-        const double row = middle[1] + (down + curve.along) / curve.height;
-        const double ratio = far / pose->radius;
+        double point[3] = {skg_fdk_place(o, 0, x), skg_fdk_place(o, 1, y), skg_fdk_place(o, 2, z)}, column,
+               row;
+        const double ratio = find_on_curve(&pose->view, &curve, point, &column, &row) / pose->radius;
         to[x] += (float)(scale * image_at(fdk, column, row) / (ratio * ratio));
     }
+}
+
+double skg_fdk_row_of(const skg_orbit_pose *pose, const double *point) {
+    double at[3] = {point[0], point[1], point[2]}, column, row;
+    if (pose->fan_step > 0) {
+        skg_curvature curve;
+        skg_curvature_find(&pose->view, NULL, &curve);
+        (void)find_on_curve(&pose->view, &curve, at, &column, &row);
+        return row;
+    }
+    pixel_map map;
+    find_map(pose, &map);
+    return at_point(map.row, at) / at_point(map.w, at);
 }
 
 typedef struct {

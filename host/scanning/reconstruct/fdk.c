@@ -149,6 +149,24 @@ void skg_fdk_report_init_sized(void *report, int32_t size) {
     skg_struct_init(report, size, &defaults, sizeof defaults);
 }
 
+/* The range of the axis within the rows of all projections. Rows are taken to be linear along the axis, as they are where it runs along the
+ * detector. */
+static skg_status find_along(const skg_fdk *fdk, double along[2]) {
+    along[0] = -HUGE_VAL, along[1] = HUGE_VAL;
+    for (int64_t k = 0; k < fdk->projections; k++) {
+        skg_orbit_pose pose = {0};
+        double next[3];
+        SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, &fdk->orbit, k, &pose));
+        skg_add_scaled(fdk->options.centre, 1 / skg_length(fdk->options.axis), fdk->options.axis, next);
+        const double row = skg_fdk_row_of(&pose, fdk->options.centre),
+                     step = skg_fdk_row_of(&pose, next) - row;
+        const double first = -row / step, last = ((double)(fdk->rows - 1) - row) / step;
+        along[0] = fmax(along[0], fmin(first, last));
+        along[1] = fmin(along[1], fmax(first, last));
+    }
+    return SKG_OK;
+}
+
 skg_status skg_fdk_report_get(const skg_fdk *fdk, skg_fdk_report *report) {
     SKG_NEEDS(fdk);
     SKG_NEEDS(report);
@@ -157,10 +175,11 @@ skg_status skg_fdk_report_get(const skg_fdk *fdk, skg_fdk_report *report) {
     SKG_TRY(skg_orbit_pose_get(fdk->scan, &fdk->options, orbit, 0, &pose));
     const double least = fmin(-orbit->low, orbit->high), most = fmax(-orbit->low, orbit->high);
     const double rows = (double)fdk->rows * (double)fdk->added;
-    const skg_fdk_report ours = {.displaced = orbit->displaced != 0,
-                                 .covered_mm = skg_orbit_radius(&pose, orbit->displaced ? most : least),
-                                 .overlap_mm = skg_orbit_radius(&pose, least),
-                                 .truncated = rows > 0 ? (double)fdk->truncated / rows : 0};
+    skg_fdk_report ours = {.displaced = orbit->displaced != 0,
+                           .covered_mm = skg_orbit_radius(&pose, orbit->displaced ? most : least),
+                           .overlap_mm = skg_orbit_radius(&pose, least),
+                           .truncated = rows > 0 ? (double)fdk->truncated / rows : 0};
+    SKG_TRY(find_along(fdk, ours.along_mm));
     return skg_struct_write(&ours, sizeof ours, "skg_fdk_report", report);
 }
 

@@ -31,6 +31,9 @@ static inline double skg_fdk_place(const skg_fdk_options *o, int k, int64_t inde
 /* Weights and filters the rows of a projection, into fdk->image (filter_image.c). */
 skg_status skg_fdk_filter(skg_fdk *fdk, const skg_orbit_pose *pose, const float *image);
 
+/* The row in which a projection sees a point, counted from 0, also beyond the detector (back_project.c). */
+double skg_fdk_row_of(const skg_orbit_pose *pose, const double *point);
+
 /* Adds the filtered projection to the volume (back_project.c). */
 skg_status skg_fdk_back_project(skg_fdk *fdk, const skg_orbit_pose *pose);
 

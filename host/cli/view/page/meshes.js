@@ -5,16 +5,16 @@ const text = atob(document.getElementById('bytes').textContent.trim()), bytes = 
 for (let i = 0; i < text.length; i++) bytes[i] = text.charCodeAt(i);
 const CREASE = Math.SQRT1_2; // faces that differ by more than 45 degrees
 
-// [vertices][3] of 16 bits and [frames - 1][vertices][3] changes of 8, [triangles][3], and [columns x rows] greys, as they lie in the bytes.
+// [vertices][3] of 16 bits and [frames - 1][vertices][3] changes of 8, or of 16 where a part jumps, [triangles][3], and [columns x rows] greys, as they lie in the bytes.
 const shorts = (at, count) => new Uint16Array(bytes.buffer, at, count);
 const cornersOf = part => part.wide ? new Uint32Array(bytes.buffer, part.corners, 3 * part.shown) : shorts(part.corners, 3 * part.shown);
 
 // [frames][vertices][3] of 16 bits.
 function positionsOf(part) {
   const count = 3 * part.vertices, all = new Uint16Array(count * part.frames);
-  const changes = new Int8Array(bytes.buffer, part.positions + 2 * count, count * (part.frames - 1));
+  const changes = new (part.jumps ? Uint16Array : Int8Array)(bytes.buffer, part.positions + 2 * count, count * (part.frames - 1));
   all.set(shorts(part.positions, count));
-  for (let i = count; i < all.length; i++) all[i] = all[i - count] + changes[i - count] * part.unit[i % 3];
+  for (let i = count; i < all.length; i++) all[i] = all[i - count] + changes[i - count] * (part.jumps ? 1 : part.unit[i % 3]); // jumps wrap around
   return all;
 }
 
