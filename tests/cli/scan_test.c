@@ -434,6 +434,12 @@ START_TEST(a_volume_has_the_coefficients) {
     ck_run(0, "reconstruct scan.h5 -o crop.mha --size 24"); /* of .5 mm x 400 / 600 */
     ck_assert_msg(strstr(complained, "--size 24 crops: the volume is 8 mm wide, of 79.") != NULL, "%s",
                   complained);
+    ck_assert_msg(
+        strstr(complained,
+               "8 of 24 slices lie beyond the rows of the detector, which sees the axis from -2.5 to 2.5 mm"),
+        "%s", complained);
+    ck_run(0, "reconstruct scan.h5 -o low.mha --size 24 --voxel 0.2"); /* to 2.3 mm */
+    ck_assert_msg(strstr(complained, "slices lie beyond") == NULL, "%s", complained);
     ck_run_fails(2, "volume.png is no .mha; give -o FILE.mha", "reconstruct scan.h5 -o volume.png");
     ck_run(0, "scan body.json -o scan.h5 --packed packed.h5 --packed-grey16 --quiet");
     ck_run(0, "reconstruct packed.h5 -o grey.mha --size 48 --voxel 1.2 --filter hann --json");
