@@ -40,7 +40,8 @@ static size_t place_of(const blob *of, const void *block) {
     return (size_t)((const unsigned char *)block - of->bytes);
 }
 
-/* The largest unit of changes of 8 bits, mm. Half of it is the error; parts that jump further than 127 of it have changes of 16 bits. */
+/* The largest unit of changes of 8 bits, mm. The error is half of it, and up to all of it at the ends of the part's range; parts that jump further
+ * than 126 of it have changes of 16 bits. */
 static const double UNIT_MAX = 0.1;
 
 /* A part's positions as a page has them: those of the first frame as 16 bits between the least and the largest of all frames, and of each

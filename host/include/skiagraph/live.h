@@ -164,7 +164,7 @@ typedef struct {
     int32_t size;
     /** 1: the breath stands where the wish has it. 0: a frame poses it. */
     int32_t posed;
-    /** Of the scene. */
+    /** The context of the scene's plans. */
     skg_context *context;
     /** The parts. */
     skg_scene *scene;
@@ -176,7 +176,7 @@ typedef struct {
     const skg_view *view;
     /** Source and detector as the wish has them; NULL: `view`. */
     const skg_view *shown;
-    /** Whose parts move from one projection to the next; NULL: none does. */
+    /** The set-up whose parts move from one projection to the next; NULL: none does. */
     const skg_setup *setup;
     /** The scan; NULL: there is none. */
     const skg_scan *scan;
@@ -263,7 +263,7 @@ typedef struct {
     int64_t rows;
     /** [channel][row][column], valid until the next image; skg_live_frame_write writes what it then holds. */
     float *values;
-    /** From the pose to the image, ms. */
+    /** Time from the pose to the image, ms. */
     double ms;
     /** Time of its scatter, s, if that is as the scene asks for it; otherwise NaN. */
     double scatter_s;
