@@ -133,6 +133,10 @@ static void skg_count_outside(const skg_strip *strip, const skg_pixels *pixels) 
     skg_count(most, 0, strip->args.layout.columns - strip->column, strip->negative + 1);
 }
 
+/* Exponents of so many nodes are kept for the logarithm, which takes the greatest of all off each; a GPU computes them again, because it
+ * would keep them in memory. */
+#define SKG_KEPT (SKG_WIDE > 1 ? 8 : 1)
+
 /* shown = sum over nodes of weight * 2^power. For the logarithm it is divided by 2^highest, so that nothing underflows. */
 static void skg_add_nodes(const skg_strip *strip, skg_pixels *pixels) {
     skg_realv power[SKG_RUNS];
@@ -141,12 +145,18 @@ static void skg_add_nodes(const skg_strip *strip, skg_pixels *pixels) {
     SKG_EACH_CHANNEL SKG_EACH_RUN pixels->spread[c][r] = (skg_realv)(0);
 #endif
     const int logarithm = SKG_SHOWN_OF(strip) == SKG_SHOW_LOGARITHM;
+    skg_realv kept[SKG_KEPT][SKG_RUNS]; /* exponents of nodes */
+    SKG_EACH_RUN kept[0][r] = pixels->highest[r];
     for (int n = 1; logarithm && n < strip->args.nodes; n++) {
         skg_exponents(strip->coefficients + n * SKG_PLANE_COUNT, pixels, power);
         SKG_EACH_RUN pixels->highest[r] = power[r] > pixels->highest[r] ? power[r] : pixels->highest[r];
+        if (n < SKG_KEPT) SKG_EACH_RUN kept[n][r] = power[r];
     }
     for (int n = 0; n < strip->args.nodes; n++) {
-        skg_exponents(strip->coefficients + n * SKG_PLANE_COUNT, pixels, power);
+        if (logarithm && n < SKG_KEPT)
+            SKG_EACH_RUN power[r] = kept[n][r];
+        else
+            skg_exponents(strip->coefficients + n * SKG_PLANE_COUNT, pixels, power);
         if (logarithm) SKG_EACH_RUN power[r] -= pixels->highest[r];
         SKG_EACH_RUN {
             const skg_realv passed = skg_exp2_v(power[r]);

@@ -114,22 +114,25 @@ static int find_range(fluoroscopy *f, const sequence *s) {
     return exit_status;
 }
 
-/* Times the sequence without writing: the next pose is computed while the device makes the image. */
+/* Times the sequence without writing: while the device makes an image, the next pose is computed, and given to it before that image is
+ * waited for. */
 static int run_sequence(fluoroscopy *f, sequence *s) {
-    skg_job *job = NULL;
+    skg_job *jobs[2] = {NULL, NULL};
     const double start = cli_now_ms();
-    int exit_status = sequence_pose(f, s, 0);
-    s->pose_ms = cli_now_ms() - start;
+    int exit_status = CLI_DONE;
+    s->pose_ms = 0;
     cli_progress_begin("timing without writing, frames", s->frames);
     for (int64_t i = 0; i < s->frames && exit_status == CLI_DONE; i++) {
-        exit_status = fluoroscopy_start_image(f, (int)(i % 2), &job);
-        if (exit_status != CLI_DONE) break;
         const double posing = cli_now_ms();
-        if (i + 1 < s->frames) exit_status = sequence_pose(f, s, i + 1);
+        exit_status = sequence_pose(f, s, i);
         s->pose_ms += cli_now_ms() - posing;
-        int waited = fluoroscopy_wait_image(f, &job);
+        if (exit_status == CLI_DONE) exit_status = fluoroscopy_start_image(f, (int)(i % 2), &jobs[i % 2]);
+        if (exit_status == CLI_DONE && i > 0) exit_status = fluoroscopy_wait_image(f, &jobs[(i + 1) % 2]);
+        cli_progress_step(i);
+    }
+    for (int k = 0; k < 2; k++) {
+        const int waited = jobs[k] ? fluoroscopy_wait_image(f, &jobs[k]) : CLI_DONE;
         if (exit_status == CLI_DONE) exit_status = waited;
-        cli_progress_step(i + 1);
     }
     s->sequence_ms = cli_now_ms() - start;
     cli_progress_end();
