@@ -78,46 +78,65 @@ __kernel void skg_hits_clear(skg_hits_args args, __global int2 *spans, __global 
     }
 }
 
-/* Each work-item takes every get_global_size(1)-th row of one triangle. runs: of the competitors' triangles, each the number of
+/* The part of a run of competitors' triangles. */
+typedef struct {
+    skg_range range;
+    skg_real reference;
+    int slot, background;
+} skg_rival;
+
+/* Lists the hits of one triangle in every get_global_size(1)-th row. */
+static void skg_list_triangle(const skg_hits_args *args, const skg_lists *lists, __global const int *corners,
+                              __global const skg_real4 *projected, __global int *spans, const skg_rival *rival, int triangle) {
+    const skg_range *range = &rival->range;
+    const int background = rival->background;
+    skg_real4 a, b, c;
+    skg_box box;
+    skg_corners(corners, projected, range, triangle, &a, &b, &c);
+    if (!skg_bounds(range, a, b, c, skg_window(range, args->window[0], args->window[1], args->window[2], args->window[3]), &box)) return;
+    int row = box.j0 + (int)get_global_id(1);
+    while (row < box.j1 && skg_is_apart(&box, spans, range, row, background)) row += (int)get_global_size(1);
+    if (row >= box.j1) return; /* most, before their face is worked out */
+    skg_face f;
+    skg_face_of(range, a, b, c, &f);
+    for (; row < box.j1; row += (int)get_global_size(1)) {
+        __global int *span = spans + 2 * (range->pixel_j + row);
+        const skg_box seen = skg_between_winners(&box, span, range->pixel_i, background);
+        if (seen.i0 >= seen.i1) continue;
+        skg_line line;
+        skg_row(&f, (skg_real)row, &line);
+        const int enters = skg_negative(&f, &line) != 0;
+        const int first = (range->pixel_j + row) * args->layout.columns + range->pixel_i;
+        const int2 columns = skg_columns_of(&line, &seen);
+        if (args->task == SKG_HITS_COUNT && columns.x < columns.y) {
+            atomic_min(span, range->pixel_i + columns.x);
+            atomic_max(span + 1, range->pixel_i + columns.y);
+        }
+        for (int column = columns.x; column < columns.y; column++)
+            if (skg_is_listed(lists, first + column, background) && skg_hit(&line, (skg_real)column))
+                skg_list(lists, rival->slot, first + column, skg_depth(&f, &line, (skg_real)column), rival->reference, enters);
+    }
+}
+
+/* A work-item of a CPU takes SKG_HITS_TRIANGLES triangles, of a GPU some rows of one. runs: of the competitors' triangles, each the number of
  * the first triangle, its part and its slot, of winners first; those from chosen[0] to chosen[1] - 1 are listed. spans: of each row the columns,
  * from and to, where winners may be; they grow while winners are counted. */
 __kernel void skg_hits_list(skg_hits_args args, __global const int *corners, __global const skg_real4 *projected,
                             __global const skg_part_entry *parts, __global const int *runs,
                             __global int *spans, SKG_LIST_ARGUMENTS) {
     const skg_lists lists = {slots, shifts, counts, starts, hits, args.task};
-    int run = args.chosen[0];
-    const int item = (int)get_global_id(0) + runs[3 * run];
-    while (run + 1 < args.chosen[1] && item >= runs[3 * (run + 1)]) run++;
-    const int number = runs[3 * run + 1], slot = runs[3 * run + 2], background = run >= args.winners;
-    if (item - runs[3 * run] >= parts[number].triangles) return;
-    skg_range range;
-    skg_range_of(parts, number, &range);
-    const skg_real reference = parts[number].reference;
-    skg_real4 a, b, c;
-    skg_box box;
-    skg_corners(corners, projected, &range, range.first + item - runs[3 * run], &a, &b, &c);
-    if (!skg_bounds(&range, a, b, c, skg_window(&range, args.window[0], args.window[1], args.window[2], args.window[3]), &box)) return;
-    int row = box.j0 + (int)get_global_id(1);
-    while (row < box.j1 && skg_is_apart(&box, spans, &range, row, background)) row += (int)get_global_size(1);
-    if (row >= box.j1) return; /* most, before their face is worked out */
-    skg_face f;
-    skg_face_of(&range, a, b, c, &f);
-    for (; row < box.j1; row += (int)get_global_size(1)) {
-        __global int *span = spans + 2 * (range.pixel_j + row);
-        const skg_box seen = skg_between_winners(&box, span, range.pixel_i, background);
-        if (seen.i0 >= seen.i1) continue;
-        skg_line line;
-        skg_row(&f, (skg_real)row, &line);
-        const int enters = skg_negative(&f, &line) != 0;
-        const int first = (range.pixel_j + row) * args.layout.columns + range.pixel_i;
-        const int2 columns = skg_columns_of(&line, &seen);
-        if (args.task == SKG_HITS_COUNT && columns.x < columns.y) {
-            atomic_min(span, range.pixel_i + columns.x);
-            atomic_max(span + 1, range.pixel_i + columns.y);
-        }
-        for (int column = columns.x; column < columns.y; column++)
-            if (skg_is_listed(&lists, first + column, background) && skg_hit(&line, (skg_real)column))
-                skg_list(&lists, slot, first + column, skg_depth(&f, &line, (skg_real)column), reference, enters);
+    const int each = SKG_CPU ? SKG_HITS_TRIANGLES : 1;
+    int run = args.chosen[0], item = each * (int)get_global_id(0) + runs[3 * run];
+    for (const int end = item + each; item < end && run < args.chosen[1]; run++) {
+        const int number = runs[3 * run + 1], first = runs[3 * run], last = min(end, first + parts[number].triangles);
+        skg_rival rival;
+        if (item >= last) continue;
+        skg_range_of(parts, number, &rival.range);
+        rival.reference = parts[number].reference;
+        rival.slot = runs[3 * run + 2];
+        rival.background = run >= args.winners;
+        for (; item < last; item++)
+            skg_list_triangle(&args, &lists, corners, projected, spans, &rival, rival.range.first + item - first);
     }
 }
 

@@ -215,6 +215,9 @@ typedef struct {
 #define SKG_HITS_COUNT_BACKGROUND 1
 #define SKG_HITS_LIST 2
 
+/* Triangles of competitors that a work-item of a CPU lists. */
+#define SKG_HITS_TRIANGLES 64
+
 /* The length of the ray to pixel (i, j) is |centre + i column + j row| mm; with a parallel beam |centre|. i and j count from
  * the pixel of `centre`. */
 #define SKG_RAY_MEMBERS(real)                                                                                \

@@ -164,7 +164,9 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
     const int64_t count = task == SKG_HITS_COUNT              ? triangles[0]
                           : task == SKG_HITS_COUNT_BACKGROUND ? triangles[1]
                                                               : triangles[0] + triangles[1];
-    const skg_work_size work = {2, {count, run->context->device->info.gpu ? ROWS_AT_ONCE : 1}, {GROUP, 1}};
+    const skg_work_size gpu = {2, {count, ROWS_AT_ONCE}, {GROUP, 1}},
+                        cpu = {1, {(count + SKG_HITS_TRIANGLES - 1) / SKG_HITS_TRIANGLES}, {1}};
+    const skg_work_size *work = run->context->device->info.gpu ? &gpu : &cpu;
     skg_hits_args args = scalars_of(run, task);
     args.chosen[0] = task == SKG_HITS_COUNT_BACKGROUND ? args.winners : 0;
     args.chosen[1] = task == SKG_HITS_COUNT ? args.winners : (SKG_INT)run->pass->priority.count;
@@ -178,7 +180,7 @@ static skg_status list_hits(const hits_run *run, SKG_INT task) {
         LIST_ARGUMENTS(HITS_LIST, run->memory),
     };
     if (count == 0) return SKG_OK;
-    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_list", "priority", &work, arguments,
+    return SKG_LAUNCH_ONCE(run->context, run->program, "skg_hits_list", "priority", work, arguments,
                            &run->staging->log);
 }
 
