@@ -161,11 +161,23 @@ static double density_of(const skg_scene_part_data *part) {
     return !part->volume ? part->material->density : part->volume->values == SKG_VOLUME_MU ? 0 : 1;
 }
 
+/* Warns of parts whose volume lines have not found to a hundredth. */
+static void doubt_masses(const skg_scene *scene, const double *volumes, const double *errors) {
+    for (int64_t i = 0; i < scene->count; i++)
+        if (errors[i] > 0.01 * volumes[i])
+            skg_log(
+                scene->context, SKG_LOG_WARNING,
+                "dose: the mass of %s, and with it its dose, is known to %.2g %% only, because other parts "
+                "displace much of it",
+                scene->parts[i].label, 100 * errors[i] / volumes[i]);
+}
+
 static skg_status find_masses(const skg_recipe *recipe, const skg_forest *tree, skg_progress *progress,
                               skg_dose *dose) {
-    double *volumes = NULL;
-    SKG_TRY(skg_alloc(dose->parts, sizeof *volumes, "dose", &volumes));
-    const skg_status status = skg_dose_volumes(recipe, tree, progress, volumes);
+    double *volumes = NULL; /* then their errors */
+    SKG_TRY(skg_alloc(2 * dose->parts, sizeof *volumes, "dose", &volumes));
+    const skg_status status = skg_dose_volumes(recipe, tree, progress, volumes, volumes + dose->parts);
+    if (status == SKG_OK) doubt_masses(recipe->scene, volumes, volumes + dose->parts);
     for (int64_t i = 0; i < dose->parts && status == SKG_OK; i++) {
         const double density = density_of(&recipe->scene->parts[i]), mm3_per_cm3 = 1e3;
         dose->part[i] =

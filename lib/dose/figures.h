@@ -114,9 +114,26 @@ void skg_dose_found_free(skg_dose_found *found);
 
 /* --- Masses. */
 
-/* The volume of each part, without those inside it, mm3; of leaky parts NAN; of cells of a volume, times g/cm3. */
+/* The volume of each part, without those inside it, mm3; of leaky parts NAN; of cells of a volume, times g/cm3.
+ *
+ * errors   [parts] result: what the volumes may be off by, where parts compete */
 skg_status skg_dose_volumes(const skg_recipe *recipe, const skg_forest *tree, skg_progress *progress,
-                            double *volumes);
+                            double *volumes, double *errors);
+
+/* A box in which the rules may leave parts other volumes than those of their surfaces less those of the parts inside. */
+typedef struct {
+    double low[3], high[3];
+} skg_dose_window;
+
+/* Finds the boxes, the thinnest first. The caller frees *windows. */
+skg_status skg_dose_windows_find(const skg_rules *rules, const skg_forest *tree, int64_t *count,
+                                 skg_dose_window **windows);
+
+/* Adds to the volumes what the rules make of them in the boxes, each place once, by parallel lines through each box; and to `errors` the
+ * squares of what that may be off by. */
+skg_status skg_dose_windows_add(const skg_rules *rules, const skg_forest *tree, int64_t count,
+                                const skg_dose_window *windows, skg_progress *progress, double *volumes,
+                                double *errors);
 
 /* --- Exposure of the detector */
 

@@ -50,6 +50,7 @@ typedef struct {
     const skg_scene *scene;
     int32_t competing, clip, unite; /* competing: 1: priorities, clip or unite decide */
     int32_t cells;                  /* 1: there are volumes of cells */
+    int32_t alone, reserved;        /* 0, or 1 + the number of the only part that is there */
 } skg_rules;
 
 /* The rules that a plan has. */

@@ -114,11 +114,20 @@ static skg_status add_piece(const skg_rules *rules, double from, double to, skg_
     return add_presence(way, -1, world);
 }
 
+/* Drops the crossings of other parts than the only one that is there. */
+static void leave_alone(const skg_rules *rules, skg_way *way) {
+    int64_t count = 0;
+    for (int64_t i = 0; i < way->crossing_count; i++)
+        if (way->crossings[i].part + 1 == rules->alone) way->crossings[count++] = way->crossings[i];
+    way->crossing_count = count;
+}
+
 skg_status skg_way_find(const skg_forest *tree, const skg_rules *rules, const double from[3],
                         const double direction[3], double reach, skg_way *way) {
     double at = 0;
     SKG_TRY(reserve(rules, way));
     SKG_TRY(skg_way_cross(tree, from, direction, way));
+    if (rules->alone) leave_alone(rules, way);
     way->piece_count = way->presence_count = 0;
     /* Where it begins, what it leaves later. */
     for (int64_t i = 0; i < way->crossing_count; i++)

@@ -483,6 +483,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, the_exposure_index_is_100_for_each_ugy_of_rqa5);
     add_stays(tests);
     add_sums(tests);
+    add_masses(tests);
     add_cells_tests(tests);
     tcase_add_test(tests, figures_do_not_depend_on_threads);
     tcase_add_test(tests, what_cannot_be_known_is_refused);

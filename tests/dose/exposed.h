@@ -65,9 +65,10 @@ static inline subject open_box(double x, double y, double z, const char *materia
     return s;
 }
 
-/* Adds the tests of what stays in parts (stays.c) and in cells (cells.c), and of exposures together (sums.c). */
+/* Adds the tests of what stays in parts (stays.c), of masses (masses.c), of cells (cells.c), and of exposures together (sums.c). */
 void add_stays(TCase *tests);
 void add_sums(TCase *tests);
+void add_masses(TCase *tests);
 void add_cells_tests(TCase *tests);
 
 #endif
