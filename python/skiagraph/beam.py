@@ -81,6 +81,8 @@ class Beam:
         keep: list[Any] = []
         tube, log = struct("skg_tube"), Log()
         layers = filters or {}
+        if mas is not None and not float(mas) > 0:
+            raise ArgumentError(f"mas is {mas!r}; give a load above 0 mA s, or leave it out")
         given = {**fields, "kvp": kvp, "angle_deg": target_angle, "mas": mas}
         fill(tube, "skg_tube", given, keep, "the field of a tube")
         if layers:

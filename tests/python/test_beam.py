@@ -26,6 +26,12 @@ def made(scene):
     return own
 
 
+@pytest.mark.parametrize("mas", [0, -1, float("nan")])
+def test_a_load_of_nothing_is_refused(mas):
+    with pytest.raises(sk.ArgumentError, match="above 0 mA s"):
+        sk.Beam.tube(80, mas=mas)
+
+
 @pytest.mark.parametrize("distance, spacing", [(1000, 1), (500, 0.5), (2000, 0.2), (300, 3)])
 def test_a_tube_is_that_of_the_file(distance, spacing):
     scene = sk.Scene(described(distance, spacing))

@@ -139,6 +139,12 @@ def test_a_world_is_written_and_read_again(tmp_path):
     assert gvxr.getAmbientColour("bone") == (1, 0.5, 0.25, 1) and gvxr.isOuterSurface("skin")
 
 
+@pytest.mark.parametrize("mas", [0, -2, float("nan")])
+def test_a_load_of_nothing_is_refused(mas):
+    with pytest.raises(ValueError, match="above 0"):
+        gvxr.setmAs(mas)
+
+
 def test_a_tube_is_written_and_read_again(tmp_path):
     gvxr.setSourcePosition(0, -40, 0, "cm")
     gvxr.setDetectorPosition(0, 10, 0, "cm")

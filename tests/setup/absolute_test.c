@@ -103,6 +103,28 @@ static double flat_field_of(const skg_plan *with) {
     return channel.flat_field;
 }
 
+/* A load of 0 is none, and is refused, not left out; times and currents without a unit are taken with a warning. */
+START_TEST(a_load_of_nothing_is_refused) {
+    static const char *const wrong[] = {"\"mAs\": 0", "\"mAs\": -1",
+                                        "\"ExposureTime\": [0, \"ms\"], \"Current\": [100, \"mA\"]",
+                                        "\"ExposureTime\": [20, \"ms\"], \"Current\": 0"};
+    char beam[200];
+    const char *const settings[] = {beam};
+    write_file("scene.json", good);
+    for (size_t k = 0; k < sizeof wrong / sizeof *wrong; k++) {
+        snprintf(beam, sizeof beam, "Source.Beam={\"kVp\": 80, \"Filter\": [[\"Al\", 3]], %s}", wrong[k]);
+        skg_setup_release(&setup);
+        ck_skg_fails(skg_setup_load(context, path, 1, settings, &setup), SKG_ERR_BEAM,
+                     "which gives no photons");
+    }
+    snprintf(beam, sizeof beam,
+             "Source.Beam={\"kVp\": 80, \"ExposureTime\": 50, \"Current\": [100, \"mA\"]}");
+    skg_setup_release(&setup);
+    ck_skg(skg_setup_load(context, path, 1, settings, &setup));
+    ck_assert_ptr_nonnull(strstr(log_text, "has no unit, and counts in s; write [50, \"s\"]"));
+}
+END_TEST
+
 /* Image and numbers of a tube and of the file that describes it, with the options of both left alone. */
 START_TEST(a_tube_is_the_tube_of_the_file) {
     static const int32_t quantities[] = {SKG_QUANTITY_ENERGY, SKG_QUANTITY_PHOTONS, SKG_QUANTITY_FLUENCE,
@@ -245,6 +267,7 @@ END_TEST
 
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, open_device, close_device);
+    tcase_add_test(tests, a_load_of_nothing_is_refused);
     tcase_add_loop_test(tests, a_tube_is_the_tube_of_the_file, 0, CASES);
     tcase_add_test(tests, photons_follow_the_view);
     tcase_add_test(tests, noise_follows_the_view);

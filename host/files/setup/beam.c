@@ -62,16 +62,29 @@ static skg_status read_file(skg_setup_reader *reader, const skg_json_object *bea
     return skg_json_at(node, skg_spectrum_load(path, unit, &reader->setup->spectrum));
 }
 
-/* A number, or [number, unit] with one of the names given. */
+/* A number in the first of the units given, which a warning says, or [number, unit] with one of them. */
 static skg_status read_quantity(const skg_json_node *node, const char *what, const char *const *units,
                                 const double *values, int64_t count, double *quantity) {
     int64_t choice = 0;
-    if (!json_is_array(node->value)) return skg_json_number(node, quantity);
+    if (!json_is_array(node->value)) {
+        SKG_TRY(skg_json_number(node, quantity));
+        return skg_json_remark(node, "has no unit, and counts in %s; write [%g, \"%s\"]", units[0], *quantity,
+                               units[0]);
+    }
     skg_json_node number = skg_json_element(node, 0), unit = skg_json_element(node, 1);
     SKG_TRY(skg_json_number(&number, quantity));
     SKG_TRY(skg_json_choice(&unit, what, units, count, &choice));
     *quantity *= values[choice];
     return SKG_OK;
+}
+
+/* A load of 0 would leave nothing to see; in the struct of a tube it means that none is known. */
+static skg_status no_load(const skg_json_node *node, double mas) {
+    return skg_json_fail(
+        node, SKG_ERR_BEAM,
+        "makes a load of %g mAs, which gives no photons; give one above 0, or leave it out for the photons of "
+        "1 mAs per mm2 at 1 m",
+        mas);
 }
 
 /* mAs, or exposure time (s) times tube current (mA). *given: 0 where there is neither. */
@@ -85,6 +98,7 @@ static skg_status read_mas(const skg_json_object *beam, double *mas, int32_t *gi
     double t = 0, i = 0;
     *given = node.value || (time.value && current.value);
     if (node.value) SKG_TRY(skg_json_number(&node, mas));
+    if (node.value && !(*mas > 0)) return no_load(&node, *mas);
     if (!time.value || !current.value) {
         if (node.value || (!time.value && !current.value)) return SKG_OK;
         return skg_json_fail(time.value ? &time : &current, SKG_ERR_FORMAT,
@@ -92,6 +106,7 @@ static skg_status read_mas(const skg_json_object *beam, double *mas, int32_t *gi
     }
     SKG_TRY(read_quantity(&time, "unit of time", times, seconds, 7, &t));
     SKG_TRY(read_quantity(&current, "unit of tube current", currents, milliamperes, 6, &i));
+    if (!(t * i > 0)) return no_load(t > 0 ? &current : &time, t * i);
     if (node.value && fabs(*mas - t * i) > 1e-3 * fabs(*mas)) /* numbers of files are rounded */
         return skg_json_fail(&node, SKG_ERR_FORMAT,
                              "%g mAs, but exposure time and tube current make %g; leave out what is wrong",

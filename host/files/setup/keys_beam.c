@@ -72,7 +72,7 @@ static const skg_json_key beam[] = {
     SKG_KEY("TubeAngle", "number 0<..", "of the anode, degrees; 12 by default"),
     SKG_KEY("Anode", "text", "symbol of the element; W by default"),
     SKG_KEY("Model", "words Ebel, Birch", "of the tube's spectrum; Ebel by default"),
-    SKG_KEY("mAs", "number 0..", "photon numbers are then counted per solid angle at the source"),
+    SKG_KEY("mAs", "number 0<..", "photon numbers are then counted per solid angle at the source"),
     SKG_KEY("ExposureTime", "time", "with the tube's current, instead of mAs"),
     SKG_KEY("X-ray tube current", "current", "with ExposureTime, instead of mAs"),
     SKG_ALSO("Current", "X-ray tube current"),

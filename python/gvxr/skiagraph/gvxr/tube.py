@@ -49,7 +49,9 @@ def getTubeAngle() -> float:
 
 
 def setmAs(an_mAs: float) -> None:
-    """0 and less: the exposure is not known."""
+    """-1: the exposure is not known, as at the beginning; others above 0."""
+    if not (an_mAs > 0 or an_mAs == -1):
+        raise ArgumentError(f"setmAs({an_mAs!r}): give mA s above 0, or -1 where the exposure is not known")
     world.tube.pop("factor", None)
     world.tube["mAs"] = float(an_mAs)
 
