@@ -141,7 +141,7 @@ def test_a_world_is_written_and_read_again(tmp_path):
 
 @pytest.mark.parametrize("mas", [0, -2, float("nan")])
 def test_a_load_of_nothing_is_refused(mas):
-    with pytest.raises(ValueError, match="above 0"):
+    with pytest.raises(sk.ArgumentError, match="above 0"):
         gvxr.setmAs(mas)
 
 
