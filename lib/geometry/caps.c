@@ -96,25 +96,56 @@ static void trace(tracing *t, int32_t start, skg_caps *caps) {
     t->on_path[t->path[0]] = 0;
 }
 
+/* Adds a loop; corners in a row that are the same vertex are one. */
+static void add_loop(const int32_t corners[4], skg_caps *caps) {
+    int64_t end = caps->first[caps->loops], count = 0;
+    for (int k = 0; k < 4; k++)
+        if (corners[k] != corners[(k + 1) % 4]) caps->vertices[end + count++] = corners[k];
+    if (count < 3) return;
+    caps->first[++caps->loops] = end + count;
+}
+
+/* Bridges cracks: each open edge moves to the vertices that stand for its ends, and a loop closes the strip in between. Returns how many
+ * open edges there are then. Mesh and strips together are closed but for these, whatever stands for what. */
+static int64_t bridge(const int32_t *stands_for, edge *edges, int64_t count, skg_caps *caps) {
+    int64_t kept = 0;
+    for (int64_t e = 0; e < count; e++) {
+        const edge old = edges[e], now = {stands_for[old.from], stands_for[old.to]};
+        const int32_t strip[4] = {old.from, old.to, now.to, now.from};
+        if (now.from != old.from || now.to != old.to) add_loop(strip, caps);
+        if (now.from != now.to) edges[kept++] = now;
+    }
+    return keep_open(edges, kept);
+}
+
+static skg_status make_room(const skg_mesh *mesh, int64_t count, tracing *t, skg_caps *caps) {
+    SKG_TRY(skg_alloc(mesh->vertices, sizeof *t->next, "open edges", &t->next));
+    SKG_TRY(skg_alloc(mesh->vertices, sizeof *t->on_path, "open edges", &t->on_path));
+    SKG_TRY(skg_alloc(count + 1, sizeof *t->path, "open edges", &t->path));
+    SKG_TRY(skg_alloc(2 * count + 1, sizeof *caps->first, "caps",
+                      &caps->first)); /* a strip for each, and loops */
+    return skg_alloc(5 * count, sizeof *caps->vertices, "caps", &caps->vertices);
+}
+
 skg_status skg_caps_find(const skg_mesh *mesh, skg_caps *caps) {
     tracing t = {0};
     edge *edges = NULL;
+    int32_t *stands_for = NULL;
     skg_status status = SKG_OK;
     *caps = (skg_caps){0};
     SKG_TRY_CLEANUP(list_edges(mesh, &edges, &t.count));
     t.edges = edges;
     t.count = keep_open(edges, t.count);
-    SKG_TRY_CLEANUP(skg_alloc(mesh->vertices, sizeof *t.next, "open edges", &t.next));
-    SKG_TRY_CLEANUP(skg_alloc(mesh->vertices, sizeof *t.on_path, "open edges", &t.on_path));
-    SKG_TRY_CLEANUP(skg_alloc(t.count + 1, sizeof *t.path, "open edges", &t.path));
-    SKG_TRY_CLEANUP(skg_alloc(t.count + 1, sizeof *caps->first, "caps", &caps->first));
-    SKG_TRY_CLEANUP(skg_alloc(t.count, sizeof *caps->vertices, "caps", &caps->vertices));
+    SKG_TRY_CLEANUP(make_room(mesh, t.count, &t, caps));
+    SKG_TRY_CLEANUP(skg_rims_weld(mesh, t.count, &edges->from, &stands_for));
+    t.count = bridge(stands_for, edges, t.count, caps);
     for (int64_t v = 0; v < mesh->vertices; v++) t.next[v] = t.count;
     for (int64_t e = t.count; e-- > 0;) t.next[edges[e].from] = e;
     for (int64_t e = 0; e < t.count; e++)
         while (unused(&t, edges[e].from)) trace(&t, edges[e].from, caps);
 cleanup:
     skg_free(&edges);
+    skg_free(&stands_for);
     skg_free(&t.next);
     skg_free(&t.on_path);
     skg_free(&t.path);

@@ -6,7 +6,8 @@
 #include "mesh/mesh.h"
 
 /* --- Caps that close a leaky mesh: a fan over each loop of open edges, about the mean of the loop. *
- * Mesh and caps together are closed as a sum of signed triangles, whatever is wrong with the mesh, so that the
+ * Cracks come first: vertices at rims that nearly touch stand for each other (rims.c), each open edge moves to them, and a strip closes
+ * the way that it went. Plane patches of a surface that nobody welded would else be closed by their own reverse, and vanish. Mesh and caps together are closed as a sum of signed triangles, whatever is wrong with the mesh, so that the
  * signed hits of every ray cancel. A plane loop is capped by exactly the area that it bounds. A missing triangle
  * and any plane hole are therefore closed exactly, and the gap at a T-junction gets the sliver that is missing.
  * A flipped triangle bounds its loop twice, and the two triangles of its caps outweigh it. Over a loop that is
@@ -19,7 +20,16 @@ typedef struct {
 } skg_caps;
 
 skg_status skg_caps_find(const skg_mesh *mesh, skg_caps *caps);
+
+/* Finds vertices at rims that stand for each other, because less than a crack is between them; the caller frees *stands_for.
+ *
+ * edges        [count][2] open edges, sorted by their start
+ * stands_for   result: [vertices of the mesh] of those at rims the vertex that stands for it, often itself; else -1 */
+skg_status skg_rims_weld(const skg_mesh *mesh, int64_t count, const int32_t *edges, int32_t **stands_for);
 void skg_caps_release(skg_caps *caps);
+
+/* Finds the pieces that enclose nothing with their caps, as a plane sheet does: how many, and their area in mm2, of one side. */
+skg_status skg_caps_sheets(const skg_mesh *mesh, const skg_caps *caps, int64_t *count, double *area);
 
 /* --- Rays through a leaky mesh, traced again on the host in double, through the mesh and its caps. */
 

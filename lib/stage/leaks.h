@@ -52,8 +52,8 @@ skg_leaky_args skg_leaky_scalars(const skg_leaky_batch *batch);
         SKG_ARGUMENT(kernel, used, (batch)->raster->used.memory),                                            \
         SKG_ARGUMENT(kernel, table, (batch)->memory->table.memory)
 
-/* The caps of a leaky part, made at the first call. index: into the leaky parts. */
-skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh,
+/* The caps of a leaky part, made at the first call, which warns of pieces that they leave nothing of. index: into the leaky parts. */
+skg_status skg_leaky_caps(const skg_leaky_batch *batch, int64_t index, const skg_mesh *mesh,
                           const skg_caps **caps);
 
 /* --- Stage `leaky`: meshes that are not closed. *

@@ -2,6 +2,10 @@
 #include "stage/leaks.h"
 #include "stage/raster_private.h"
 
+#include <skiagraph/plan.h>
+
+#include <inttypes.h>
+
 skg_status skg_leaky_memory_create(skg_context *context, int64_t count, skg_leaky_memory *memory) {
     *memory = (skg_leaky_memory){.count = count};
     SKG_TRY(skg_alloc(count, sizeof *memory->caps, "caps", &memory->caps));
@@ -34,9 +38,24 @@ skg_leaky_args skg_leaky_scalars(const skg_leaky_batch *batch) {
     return (skg_leaky_args){.layout = batch->raster->layout, .parts = (SKG_INT)batch->parts};
 }
 
-skg_status skg_leaky_caps(skg_leaky_memory *memory, int64_t index, const skg_mesh *mesh,
+static skg_status find_caps(const skg_leaky_batch *batch, const skg_mesh *mesh, skg_caps *caps) {
+    int64_t sheets = 0;
+    double area = 0;
+    SKG_TRY(skg_caps_find(mesh, caps));
+    SKG_TRY(skg_caps_sheets(mesh, caps, &sheets, &area));
+    if (sheets > 0)
+        skg_log(batch->raster->context, SKG_LOG_WARNING,
+                "%s: %" PRId64
+                " of its pieces, of %.4g mm2, enclose nothing when their open edges are closed, so that rays "
+                "that are traced again do not see them; close the mesh, or take the repair \"neighbours\"",
+                mesh->name, sheets, area);
+    return SKG_OK;
+}
+
+skg_status skg_leaky_caps(const skg_leaky_batch *batch, int64_t index, const skg_mesh *mesh,
                           const skg_caps **caps) {
-    if (!memory->caps[index].first) SKG_TRY(skg_caps_find(mesh, &memory->caps[index]));
-    *caps = &memory->caps[index];
+    skg_caps *own = &batch->memory->caps[index];
+    if (!own->first) SKG_TRY(find_caps(batch, mesh, own));
+    *caps = own;
     return SKG_OK;
 }

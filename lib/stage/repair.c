@@ -164,7 +164,7 @@ static skg_status trace_part(const tracing *t, int64_t part) {
     const skg_mesh *mesh = pass->scene->parts[number].mesh;
     const skg_caps *caps = NULL;
     cl_int extent[4];
-    SKG_TRY(skg_leaky_caps(t->batch->memory, t->batch->indices[part], mesh, &caps));
+    SKG_TRY(skg_leaky_caps(t->batch, t->batch->indices[part], mesh, &caps));
     skg_extent_pixels(&pass->camera, &pass->extents[number], extent);
     const int64_t first = extent[0], end = extent[1] < layout->rows ? extent[1] : layout->rows;
     if (first >= end) return SKG_OK;

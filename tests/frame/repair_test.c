@@ -3,11 +3,19 @@
 #include "frame/soup.h"
 
 #include <math.h>
+#include <stdlib.h>
 #include <string.h>
 
 /* Terms are rounded to 2^-50 of the longest sum, lengths of rays are 1,200 mm: 1e-9 mm is a thousand
  * roundings. */
 static const double DOUBLE_TOLERANCE = 1e-9;
+
+static int sheets; /* pieces that a warning has said to enclose nothing */
+static void keep_sheets(int32_t level, const char *message, void *user) {
+    const char *of = strstr(message, ": ");
+    (void)user;
+    if (level == SKG_LOG_WARNING && of && strstr(message, "enclose nothing")) sheets = atoi(of + 2);
+}
 
 /* The soup with and without repair against the closed one. change: mm by which neighbours may differ. */
 static void check_repairs(const soup *broken, const soup *closed, double change) {
@@ -145,6 +153,44 @@ static void fill_windowed(soup *s, int windows) {
     }
 }
 
+/* The box as six plane patches, each `gap` mm outside its face: none has an edge in common with another. */
+static void fill_patches(soup *s, double gap) {
+    static soup box;
+    fill_windowed(&box, 0);
+    *s = (soup){.triangles = box.triangles};
+    for (int64_t i = 0; i < 3 * box.triangles; i++) {
+        const int64_t face = i / 27 / 2, axis = face / 2, side = face % 2, at = s->vertices;
+        for (int k = 0; k < 3; k++) s->positions[3 * at + k] = box.positions[3 * box.corners[i] + k];
+        s->positions[3 * at + axis] += side ? gap : -gap;
+        s->corners[i] = (int32_t)s->vertices++;
+    }
+}
+
+/* Loops of plane patches would be closed by the patches' own reverse; cracks are bridged first. Wide ones are not, which a warning says. */
+START_TEST(plane_patches_that_nobody_welded) {
+    static const double gaps[] = {1e-7, 1e-4, 0.02, 1};
+    static soup closed, patches;
+    static picture truth, exact;
+    const double gap = gaps[_i];
+    wish w = {.precision = SKG_PRECISION_DOUBLE, .repair = SKG_REPAIR_EXACT};
+    int64_t through = 0;
+    fill_windowed(&closed, 0);
+    fill_patches(&patches, gap);
+    take(&closed, NULL, &w, &truth);
+    ck_skg(skg_context_log_set(context, keep_sheets, NULL));
+    take(&patches, NULL, &w, &exact);
+    for (int64_t i = 0; i < SIDE * SIDE; i++) {
+        const double mm = truth.mm[i / SIDE][i % SIDE];
+        if (mm < 60 || mm > 60.2) continue; /* from the face in front to that behind */
+        through++;
+        if (gap < 1)
+            ck_assert_double_eq_tol(exact.mm[i / SIDE][i % SIDE], mm, 2 * gap * mm / 60 + DOUBLE_TOLERANCE);
+    }
+    ck_assert_int_gt(through, 1000);
+    ck_assert_int_eq(sheets, gap < 1 ? 0 : 6);
+}
+END_TEST
+
 /* Counts of hits cannot detect such rays: "neighbours" and "none" leave the hole black, "exact" has the full box. */
 START_TEST(in_through_one_hole_and_out_through_another) {
     static soup closed, broken;
@@ -259,6 +305,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, a_t_junction);
     tcase_add_test(tests, a_cut);
     tcase_add_test(tests, holes_that_coincide);
+    tcase_add_loop_test(tests, plane_patches_that_nobody_welded, 0, 4);
     tcase_add_test(tests, in_through_one_hole_and_out_through_another);
     tcase_add_test(tests, neighbours_are_the_means_of_squares);
     tcase_add_test(tests, strategies_agree);

@@ -41,9 +41,11 @@ enum skg_repair {
      * valid pixels (Vidal and Villard 2016, section 3.2.7). Without any valid pixel the part is left out. */
     SKG_REPAIR_NEIGHBOURS = 1,
     /** The ray is traced again on the host, in double precision, through the mesh with every loop of open
-     * edges closed by a fan about the loop's mean; so is every ray that passes such a cap. Exact if the loops
+     * edges closed by a fan about the loop's mean; so is every ray that passes such a cap. Cracks are bridged
+     * first, up to .002 of the diagonal and a quarter of the mean open edge: plane patches that nobody welded
+     * are one surface. Exact if the loops
      * are plane: missing triangles, plane holes, cracks at T-junctions, single inverted triangles. Otherwise
-     * it is one of many possible surfaces. Submitting waits until the leaky parts are rastered. */
+     * it is one of many possible surfaces; a warning tells of pieces that then enclose nothing. Submitting waits until the leaky parts are rastered. */
     SKG_REPAIR_EXACT = 2
 };
 
