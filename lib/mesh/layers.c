@@ -208,8 +208,9 @@ static skg_status find_hits(column_search *s, uint8_t (*between)[2]) {
     return SKG_OK;
 }
 
-/* Where surfaces touch, a column leaves one before it enters the other; between hits at one depth there is nothing. */
-static int64_t winding_of(column_hit *hits, int64_t count) {
+/* Where surfaces touch, a column leaves one before it enters the other; between hits at one depth there is nothing. inside: grows by how far
+ * the column is inside, and inside more than once. */
+static int64_t winding_of(column_hit *hits, int64_t count, double inside[2]) {
     int64_t winding = 0, most = 0;
     for (int64_t i = 1; i < count; i++) {
         const column_hit moving = hits[i];
@@ -220,13 +221,16 @@ static int64_t winding_of(column_hit *hits, int64_t count) {
     for (int64_t i = 0; i + 1 < count; i++) {
         winding += hits[i].sign;
         const int64_t times = winding < 0 ? -winding : winding;
-        if (hits[i + 1].depth > hits[i].depth && times > most) most = times;
+        const double depth = hits[i + 1].depth - hits[i].depth;
+        if (depth > 0 && times > most) most = times;
+        for (int k = 0; k < 2; k++) inside[k] += times > k ? depth : 0;
     }
     return most;
 }
 
-/* The largest magnitude of the winding number along the columns. */
-static skg_status find_winding(column_search *s, int64_t *most) {
+/* The largest magnitude of the winding number along the columns; twice: the share of their way inside that is inside more than once. */
+static skg_status find_winding(column_search *s, int64_t *most, double *twice) {
+    double inside[2] = {0, 0};
     const int64_t columns = (int64_t)s->side * s->side;
     column_hit *sorted = NULL;
     int64_t *first = NULL;
@@ -241,9 +245,10 @@ static skg_status find_winding(column_search *s, int64_t *most) {
     for (int64_t c = 0; c < columns; c++) first[c + 2] += first[c + 1];
     for (int64_t i = 0; i < s->count; i++) sorted[first[s->hits[i].column + 1]++] = s->hits[i];
     for (int64_t c = 0; c < columns; c++) {
-        const int64_t times = winding_of(sorted + first[c], first[c + 1] - first[c]);
+        const int64_t times = winding_of(sorted + first[c], first[c + 1] - first[c], inside);
         *most = times > *most ? times : *most;
     }
+    *twice = inside[0] > 0 ? inside[1] / inside[0] : 0;
 cleanup:
     skg_free(&between);
     skg_free(&first);
@@ -251,9 +256,10 @@ cleanup:
     return status;
 }
 
-static skg_status sample_winding(const skg_mesh *mesh, int64_t *most) {
+static skg_status sample_winding(const skg_mesh *mesh, int64_t *most, double *twice) {
     column_search s = {.mesh = mesh, .side = mesh->triangles < FEW ? SIDE_OF_FEW : SIDE};
     *most = 0;
+    *twice = 0;
     for (int k = 0; k < 2; k++) {
         const double step = ((double)mesh->highest[k] - (double)mesh->lowest[k]) / s.side;
         if (!(step > 0)) return SKG_OK;
@@ -261,7 +267,7 @@ static skg_status sample_winding(const skg_mesh *mesh, int64_t *most) {
         s.low[k] = (double)mesh->lowest[k] + (k ? 0.4142135623730951 : 0.7320508075688772) * step;
         s.inverse[k] = 1 / step;
     }
-    const skg_status status = find_winding(&s, most);
+    const skg_status status = find_winding(&s, most, twice);
     skg_free(&s.hits);
     return status;
 }
@@ -277,7 +283,7 @@ skg_status skg_mesh_count_layers(skg_mesh *mesh) {
     int64_t boxes = 1;
     if (mesh->first_bad >= 0) return SKG_OK; /* no frame shows it */
     if (mesh->pieces > 1) SKG_TRY(count_boxes(mesh, &boxes));
-    if (is_due(mesh)) SKG_TRY(sample_winding(mesh, &mesh->winding));
+    if (is_due(mesh)) SKG_TRY(sample_winding(mesh, &mesh->winding, &mesh->twice_inside));
     mesh->layers = boxes * mesh->multiplicity;
     if (mesh->winding > mesh->layers) mesh->layers = mesh->winding;
     return SKG_OK;

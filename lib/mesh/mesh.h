@@ -40,6 +40,7 @@ struct skg_mesh {
     int64_t run_count;
     float *boxes;                 /* [pieces][6] with runs, their bounds as lowest and highest */
     int64_t winding;              /* the largest winding number along columns, when these were last swept */
+    double twice_inside;          /* the share of these columns' way inside that is inside more than once */
     double unit_mm, file_unit_mm; /* as skg_mesh_unit.mm and .file_mm */
     int32_t unit_from;            /* enum skg_unit_from */
     skg_mesh_piece *groups;       /* named ones of the file, in the order of their triangles */

@@ -80,6 +80,20 @@ static void warn_of_duplicates(const skg_mesh *mesh, const char *label, int32_t 
         mesh->closed ? ", or \"Repair\": \"union\" in a scene file counts them once" : "");
 }
 
+/* Surfaces that cross themselves without being of several components, which nestings compare. Small folds are left out. */
+static void warn_of_crossing(const skg_mesh *mesh, const skg_mesh_nesting *nesting, const char *label,
+                             const skg_context *context) {
+    static const double FOLDS = 1e-3;
+    if (!mesh->closed || mesh->twice_inside < FOLDS || mesh->health.duplicate_triangles > 0 ||
+        nesting->inverted + nesting->overlapping + nesting->leaving > 0)
+        return;
+    skg_log(
+        context, SKG_LOG_WARNING,
+        "part %s: its surface crosses itself: about %.2g %% of its inside is inside more than once, where lengths count as often. "
+        "\"Repair\": \"union\" in a scene file counts it once",
+        label, 100 * mesh->twice_inside);
+}
+
 skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_nesting *nestings,
                                 const skg_scene *scene, int32_t unite, const skg_context *context) {
     for (int64_t i = 0; i < meshes->count; i++) {
@@ -88,6 +102,7 @@ skg_status skg_plan_meshes_warn(const skg_plan_meshes *meshes, const skg_mesh_ne
         skg_mesh_nesting nesting = nestings[i];
         while (meshes->of_part[part] != i) part++;
         warn_of_duplicates(meshes->meshes[i], scene->parts[part].label, unite, context);
+        if (!unite) warn_of_crossing(meshes->meshes[i], &nesting, scene->parts[part].label, context);
         if (unite) nesting.overlapping = nesting.leaving = 0; /* they are settled */
         SKG_TRY(skg_mesh_nesting_describe(&nesting, sizeof text, text));
         if (!*text) continue;

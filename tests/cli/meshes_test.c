@@ -242,6 +242,29 @@ START_TEST(overlaps_within_a_mesh) {
 }
 END_TEST
 
+/* A prism over a star whose outline crosses itself: its middle is inside twice. One whose outline does not is nothing to speak of. */
+START_TEST(surfaces_that_cross_themselves) {
+    for (int star = 0; star < 2; star++) {
+        char text[2048] = "v 0 0 -10\nv 0 0 10\n";
+        for (int k = 0; k < 10; k++) {
+            const double angle = (star ? 2 : 1) * acos(-1) * 2 / 5 * (k % 5);
+            snprintf(text + strlen(text), sizeof text - strlen(text), "v %.9f %.9f %d\n", 10 * cos(angle),
+                     10 * sin(angle), k < 5 ? -10 : 10);
+        }
+        for (int k = 0; k < 5; k++) {
+            const int a = 3 + k, b = 3 + (k + 1) % 5;
+            snprintf(text + strlen(text), sizeof text - strlen(text), "f %d %d %d %d\nf 1 %d %d\nf 2 %d %d\n",
+                     a, b, b + 5, a + 5, b, a, a + 5, b + 5);
+        }
+        write_text("prism.obj", text);
+        ck_run(0, "lbuffer prism.obj --material Al -o l.mha --json");
+        ck_assert((strstr(complained, "crosses itself") != NULL) == star);
+        ck_run(0, "lbuffer prism.obj --material Al -o l.mha --json --set Repair=union");
+        ck_assert_ptr_null(strstr(complained, "crosses itself"));
+    }
+}
+END_TEST
+
 /* 2 x 2 x 2 cells of 10 mm in the middle: seven of HU 40, one of air. */
 static void write_volume(void) {
     static const char header[] =
@@ -346,6 +369,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, inverted_components_are_turned);
     tcase_add_test(tests, what_is_inverted_is_said_once);
     tcase_add_test(tests, overlaps_within_a_mesh);
+    tcase_add_test(tests, surfaces_that_cross_themselves);
     tcase_add_test(tests, volumes_are_parts);
     tcase_add_loop_test(tests, bad_volumes_are_refused, 0, sizeof bad_volumes / sizeof *bad_volumes);
     tcase_add_test(tests, files_bring_their_units_and_groups);
