@@ -57,6 +57,16 @@ static skg_status check_finite(const char *call, const skg_adjoint *a, const dou
     return SKG_OK;
 }
 
+/* Sums of faces are integers, whose scale has an end in single precision (scales.c). */
+static skg_status check_size(const char *call, double most) {
+    static const double LEAST = 1e-30, MOST = 1e30;
+    if (!(most > 0) || (most >= LEAST && most <= MOST)) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_ARGUMENT,
+        "%s: the largest magnitude of the adjoint is %g; give the loss in a unit in which it is %g to %g, or 0",
+        call, most, LEAST, MOST);
+}
+
 /* The bits of a double that is not finite, shifted by one, are at least these. */
 static const uint64_t INFINITE = (uint64_t)0x7ff << 53;
 
@@ -67,13 +77,15 @@ static skg_status take_values(skg_gradient_work *gradient, const void *from) {
     const float *floats = from;
     double *to = gradient->adjoint;
     int infinite = 0;
+    double most = 0;
     for (int64_t i = 0; i < count; i++) {
         uint64_t bits;
         to[i] = doubles ? doubles[i] : (double)floats[i];
         memcpy(&bits, &to[i], sizeof bits);
         infinite |= bits << 1 >= INFINITE;
+        most = fabs(to[i]) > most ? fabs(to[i]) : most;
     }
-    return infinite ? check_finite(gradient->call, a, to) : SKG_OK;
+    return infinite ? check_finite(gradient->call, a, to) : check_size(gradient->call, most);
 }
 
 skg_status skg_adjoint_read(skg_job *job) {

@@ -257,6 +257,15 @@ START_TEST(bad_submissions) {
     ck_skg_fails(skg_plan_gradient_submit(plan, NULL, &given, &wanted, &job), SKG_ERR_ARGUMENT,
                  "the adjoint has 1 channels of 23 x 24 (rows x columns), the image 1 of 24 x 24");
     given = adjoint_of(adjoint);
+    for (int k = 0; k < 2; k++) {
+        static double extreme[SIDE * SIDE];
+        for (int i = 0; i < SIDE * SIDE; i++) extreme[i] = adjoint[i] * (k ? 1e40 : 1e-40);
+        given = adjoint_of(extreme);
+        ck_skg_fails(skg_plan_gradient_submit(plan, NULL, &given, &wanted, &job), SKG_ERR_ARGUMENT,
+                     "give the loss in a unit in which it is 1e-30 to 1e+30, or 0");
+        ck_assert_ptr_null(job);
+    }
+    given = adjoint_of(adjoint);
     adjoint[3] = (double)INFINITY;
     ck_skg_fails(skg_plan_gradient_submit(plan, NULL, &given, &wanted, &job), SKG_ERR_ARGUMENT,
                  "the adjoint is inf in channel 0, row 0, column 3; it has to be finite");

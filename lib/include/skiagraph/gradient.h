@@ -100,7 +100,8 @@ SKG_INIT(skg_gradient)
  *     waits      for the number of hits, if parts compete by priority, and for the self-test, the first time; for nothing else
  *     snapshot   frame, scene and an adjoint in host memory may be changed when the call returns. An adjoint in a cl_mem is read in the
  *                order of the context's queue; whether its values are finite is known when the job is waited for
- *     errors     SKG_ERR_ARGUMENT if the adjoint has another size than the image, or a value that is not finite;
+ *     errors     SKG_ERR_ARGUMENT if the adjoint has another size than the image, a value that is not finite, or a largest
+ *                magnitude that is not 0 and below 1e-30 or above 1e30;
  *                SKG_ERR_UNSUPPORTED, with the reason, for half precision, scatter, leaky meshes, parts that reach the plane of
  *                the source, positions set on the device, and ratios to a flat field that differs from pixel to pixel if
  *                they have noise or steps; for source and detector also for the heel effect, a bow-tie filter, a grid, an
