@@ -99,7 +99,10 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.hash = a->hash;
     options.name = a->is_grey ? "grey value" : channel.name;
     options.unit = a->is_grey ? "" : channel.unit;
-    options.flat_field = a->is_grey ? a->readout.full : channel.flat_field;
+    options.flat_field = a->flat;
+    options.dark = a->dark;
+    options.flat_varies = a->flat_varies;
+    options.dark_varies = a->dark_varies;
     options.stem = a->stem;
     options.samples = report.samples;
     options.flats = a->flats;
@@ -182,12 +185,12 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     a->whole_projections = a->projections;
     exit_status = check_chosen(a);
     if (exit_status == CLI_DONE) exit_status = grey_decide(arguments, a);
-    if (exit_status == CLI_DONE) exit_status = write_geometry(arguments, a);
     if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
     if (exit_status == CLI_DONE) exit_status = choose_samples(arguments, a);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
-    if (exit_status == CLI_DONE) exit_status = scenario_write(arguments, a);
-    return exit_status == CLI_DONE ? grey_prepare(a) : exit_status;
+    if (exit_status == CLI_DONE) exit_status = grey_prepare(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = write_geometry(arguments, a);
+    return exit_status == CLI_DONE ? scenario_write(arguments, a) : exit_status;
 }
 
 int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {
