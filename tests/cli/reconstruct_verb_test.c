@@ -96,7 +96,7 @@ static void write_map(const char *name, float least, float most) {
     ck_assert_int_eq(fclose(stream), 0);
 }
 
-/* What pixels hold, and whether one number for all of them is enough. Of 16 bits, half a grey value of 5000 behind the cube and of
+/* Kinds of values of pixels, and whether one number for all of them is enough. Of 16 bits, half a grey value of 5000 behind the cube and of
  * 45000 beside it is 1e-4 and 1e-5 of an attenuation, which the filter makes 2e-4 of 0.2 per cm at most. The
  * cube takes the place of 2.3e-4 per cm of air. */
 static const struct {

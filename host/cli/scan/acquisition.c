@@ -79,10 +79,9 @@ static int choose_samples(const cli_arguments *arguments, cli_acquisition *a) {
 
 /* The first rank lays the output out and holds its lock; the others open it when it has. */
 static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
-    skg_scan_file_options options;
+    skg_scan_file_options options = a->file_options; /* with its levels */
     skg_channel channel;
     skg_plan_report report;
-    skg_scan_file_options_init(&options);
     skg_channel_init(&channel);
     skg_plan_report_init(&report);
     int64_t channels = 0;
@@ -99,10 +98,6 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.hash = a->hash;
     options.name = a->is_grey ? "grey value" : channel.name;
     options.unit = a->is_grey ? "" : channel.unit;
-    options.flat_field = a->flat;
-    options.dark = a->dark;
-    options.flat_varies = a->flat_varies;
-    options.dark_varies = a->dark_varies;
     options.stem = a->stem;
     options.samples = report.samples;
     options.flats = a->flats;

@@ -32,7 +32,7 @@ static void decide_fields(const cli_arguments *arguments, cli_acquisition *a) {
     const int is_inside = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5") ||
                           cli_has_extension(a->place, ".nxs") || (has_stem(a) && cli_names_folder(a->place));
     const int asked = a->record.fields || cli_given(arguments, "--flats") || cli_given(arguments, "--darks");
-    const int needed = a->flat_varies || a->dark_varies;
+    const int needed = a->file_options.flat_varies || a->file_options.dark_varies;
     a->fields_beside = !is_inside && (asked || needed) && !cli_given(arguments, "--shard");
     a->has_fields = is_inside || a->fields_beside;
 }
@@ -111,19 +111,21 @@ static skg_status level_of(const cli_acquisition *a, double kev, double *level) 
 
 int grey_prepare(const cli_arguments *arguments, cli_acquisition *a) {
     const skg_readout *r = &a->readout;
+    skg_scan_file_options *levels = &a->file_options;
     skg_channel channel;
     skg_channel_init(&channel);
+    skg_scan_file_options_init(levels);
     skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
     if (status != SKG_OK) return cli_fail(status);
-    a->flat = channel.flat_field;
-    a->dark_varies = a->is_grey && r->offset;
-    a->flat_varies = channel.uneven || a->dark_varies || (a->is_grey && r->gain);
+    levels->flat_field = channel.flat_field;
+    levels->dark_varies = a->is_grey && r->offset;
+    levels->flat_varies = channel.uneven || levels->dark_varies || (a->is_grey && r->gain);
     decide_fields(arguments, a);
     if (!a->is_grey) return CLI_DONE;
     const int exit_status = find_full(a, &channel);
     if (exit_status != CLI_DONE) return exit_status;
-    status = level_of(a, r->full_kev, &a->flat);
-    if (status == SKG_OK) status = level_of(a, 0, &a->dark);
+    status = level_of(a, r->full_kev, &levels->flat_field);
+    if (status == SKG_OK) status = level_of(a, 0, &levels->dark);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

@@ -15,7 +15,7 @@
 
 enum { HEADER_LONGEST = 8192, PATH_LONGEST = 4096, FOLDER_LONGEST = 512 };
 
-/* What a header says of values without parts and without radiation, where `scan` writes it. */
+/* Levels of a header as `scan` writes it: values of a pixel without parts, and without radiation. */
 typedef struct {
     double flat, dark; /* NaN: it does not say */
     int flat_varies;   /* 1: they are not those of all pixels */
@@ -34,7 +34,7 @@ struct stack_reader {
     double *values;       /* [rows][columns] */
 };
 
-/* What stands behind a key such as "\nFlatField = " in `count` bytes, which a 0 follows; NULL: the key is not there. */
+/* The text behind a key such as "\nFlatField = " in `count` bytes, which a 0 follows; NULL: the key is not there. */
 static const char *value_of(const char *head, size_t count, const char *key) {
     const size_t length = strlen(key);
     for (size_t i = 0; i + length < count; i++)

@@ -35,12 +35,9 @@ typedef struct {
     int64_t whole_projections;     /* of the scan, whatever the shard */
     skg_scan_record record;
     skg_readout readout;
-    double flat, dark; /* values of a pixel that nothing weakens, and that nothing reaches */
-    int flat_varies;   /* 1: flat fields have other values, or pixels differ */
-    int dark_varies;   /* 1: likewise dark fields */
-    int is_grey;       /* 1: grey values are written */
-    char *stem;        /* of the files of a folder; NULL: ours */
-    void *grey;        /* [grey_capacity] images that were read out */
+    int is_grey; /* 1: grey values are written */
+    char *stem;  /* of the files of a folder; NULL: ours */
+    void *grey;  /* [grey_capacity] images that were read out */
     int64_t grey_capacity;
     int64_t clipped; /* pixels at the greatest grey value of their bits */
     skg_lag *lag;    /* NULL: none */

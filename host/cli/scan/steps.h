@@ -46,7 +46,7 @@ int scenario_write(const cli_arguments *arguments, const cli_acquisition *a);
 /* Decides whether grey values are written. */
 int grey_decide(const cli_arguments *arguments, cli_acquisition *a);
 
-/* Finds the values of the free beam and of darkness, once there is a plan, and whether fields are written. */
+/* Finds the levels of the output, of the free beam and of darkness, once there is a plan, and whether fields are written. */
 int grey_prepare(const cli_arguments *arguments, cli_acquisition *a);
 
 /* The type of the output's elements, and the bytes of an image. */

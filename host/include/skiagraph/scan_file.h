@@ -30,7 +30,7 @@ typedef struct {
     const char *name;
     /** Unit of the quantity, such as "keV per pixel"; copied. NULL: "". */
     const char *unit;
-    /** What a pixel has that nothing weakens, in the unit of the projections: I0, or the grey value of the free beam where it is strongest;
+    /** Value of a pixel that no part weakens, in the unit of the projections: I0, or the grey value where the free beam is strongest;
      * 0: unknown. */
     double flat_field;
     /** Number of source samples of the plan (skg_plan_report.samples), which a continued scan has to use again. */
@@ -50,7 +50,7 @@ typedef struct {
     /** First words of the files of a folder: STEM_0000.tif, STEM_flat_0000.tif and STEM_dark.tif; copied. NULL: projection-00000.tif,
      * flat-00000.tif and dark-00000.tif. */
     const char *stem;
-    /** What a pixel has that nothing reaches, in the unit of the projections; 0 by default. */
+    /** Value of a pixel that no radiation reaches, in the unit of the projections; 0 by default. */
     double dark;
     /** 1: flat fields have other values than flat_field, or pixels differ, so that -ln(I/I0) needs skg_scan_file_fields_write. */
     int32_t flat_varies;

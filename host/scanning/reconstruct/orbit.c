@@ -117,7 +117,7 @@ static skg_status find_rows(const double *axis, int64_t index, skg_orbit_pose *p
                     (long long)index);
 }
 
-/* What the columns are apart. */
+/* The distance of the columns. */
 static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose *pose) {
     SKG_TRY(find_fan(index, pose));
     SKG_TRY(check_leans(axis, index, pose));
