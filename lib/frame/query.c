@@ -63,11 +63,20 @@ skg_status skg_plan_channel_count(const skg_plan *plan, int64_t *count) {
     return SKG_OK;
 }
 
+/* Whether pixels get other values than I0 where there are no parts. */
+static int is_uneven(const skg_recipe *recipe) {
+    skg_attenuation shape;
+    skg_decide_attenuation(recipe, &shape);
+    return !skg_quantity_is_ratio(&recipe->options) &&
+           (shape.falloff || shape.world_plane >= 0 || shape.shades->count > 0 || shape.collimated);
+}
+
 skg_status skg_plan_channel_get(const skg_plan *plan, int64_t index, skg_channel *channel) {
     SKG_NEEDS(plan);
     const skg_recipe *recipe = plan->recipe;
     SKG_TRY(check_index(__func__, "channel", index, recipe->model.channels));
     skg_channel ours = {.size = sizeof ours,
+                        .uneven = is_uneven(recipe),
                         .name = recipe->channel_names[index].text,
                         .unit = skg_channel_unit(recipe->options.quantity)};
     SKG_TRY(skg_channel_flat_field(&recipe->options, &recipe->model, &recipe->view,

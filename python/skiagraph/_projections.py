@@ -130,7 +130,7 @@ class _ToFile(_Job):
         self._open(path, overwrite)
         self.run.file = self.file
         self.found = integer("skg_scan_file_done_count", self.file)
-        self.has_fields = asked if not inside else self.found < len(scan)
+        self.has_fields = asked or self.varies if not inside else self.found < len(scan)
 
     def _open(self, path: bytes, overwrite: bool) -> None:
         options, channel = struct("skg_scan_file_options"), struct("skg_channel")
@@ -138,6 +138,8 @@ class _ToFile(_Job):
         texts = [ffi.new("char[]", self.hash.encode()), channel]
         options.type, options.scan, options.hash = self.run.type, self.scan._handle, texts[0]
         options.name, options.unit, options.flat_field = channel.name, channel.unit, channel.flat_field
+        options.flat_varies = channel.uneven
+        self.varies = bool(channel.uneven)
         options.samples = filled("skg_plan_report", "skg_plan_report_get", self.plan)["samples"]
         options.flats, options.darks = self.fields
         options.overwrite = overwrite

@@ -341,7 +341,7 @@ class Scene(_gradient.Differentiable):
         `skiagraph scan` writes it. A file of the same scan that is not finished is continued, a finished one is left as it
         is, and one of another scan is refused unless overwrite is true. Then the result says what was done: projections,
         found, computed, finished, hash and file. flats, darks: numbers of flat and dark fields: in an .h5, 1 by default;
-        in a folder (flat-00000.tif) or beside a stack (scan-flats.mha), if one is given.
+        in a folder (flat-00000.tif) or beside a stack (scan-flats.mha), if one is given or pixels differ without parts.
         only: numbers of projections, rising. breathing: poses the scene at the time of each projection. subframes: frames
         from which each projection is averaged over its exposure. The rest is as in images(). An interrupt (Ctrl-C) ends
         the scan at once, and what a file has by then it keeps.

@@ -3,6 +3,7 @@
 
 #include <math.h>
 #include <stdlib.h>
+#include <unistd.h>
 
 enum { SIDE = 40, VOXELS = SIDE * SIDE * SIDE };
 
@@ -74,6 +75,80 @@ START_TEST(a_folder_is_a_stack) {
     shell("rm out/flat* out/dark*"); /* scan.txt has the flat field */
     reconstruct("out --geometry poses.csv", second);
     ck_same();
+}
+END_TEST
+
+static void ck_near(double tolerance) {
+    for (int i = 0; i < VOXELS; i++) ck_assert_double_eq_tol((double)second[i], (double)first[i], tolerance);
+}
+
+/* A map of 80 x 48 floats: 0.8 to 1.2 of a gain, or 0 to 400 of an offset. */
+static void write_map(const char *name, float least, float most) {
+    enum { PIXELS = 80 * 48 };
+    char path[512];
+    snprintf(path, sizeof path, "%s/%s", folder, name);
+    FILE *stream = fopen(path, "wb");
+    ck_assert_ptr_nonnull(stream);
+    for (int i = 0; i < PIXELS; i++) {
+        const float value = least + (most - least) * (float)(i * 37 % 101) / 100;
+        ck_assert_uint_eq(fwrite(&value, sizeof value, 1, stream), 1);
+    }
+    ck_assert_int_eq(fclose(stream), 0);
+}
+
+/* Kinds of values of pixels, and whether one number for all of them is enough. Of 16 bits, half a grey value of 5000 behind the cube and of
+ * 45000 beside it is 1e-4 and 1e-5 of an attenuation, which the filter makes 2e-4 of 0.2 per cm at most. The
+ * cube takes the place of 2.3e-4 per cm of air. */
+static const struct {
+    const char *set;
+    int varies;
+    double tolerance;
+} kinds[] = {
+    {"Detector.GreyValues='{\"Dark\":5000,\"Full\":50000}'", 0, 2e-4},
+    {"Detector.GreyValues='{\"PerJoule\":1e15,\"Dark\":3,\"Bits\":0}'", 0, 4e-6},
+    {"Detector.GreyValues='{\"Curve\":[[0,100],[1e-9,60000]],\"Bits\":0}'", 0, 4e-6},
+    {"Detector.GreyValues='{\"Gain\":{\"Path\":\"gain.raw\"},\"Dark\":500,\"Full\":50000}'", 1, 2e-4},
+    {"Detector.GreyValues='{\"Offset\":{\"Path\":\"offset.raw\"}}'", 1, 2e-4},
+    {"Falloff=true", 1, 4e-6},
+    {"World=Air", 1, 3e-4}};
+enum { KINDS = sizeof kinds / sizeof *kinds };
+
+START_TEST(pixels_of_any_values) {
+    static const char *const places[] = {"any.mha", "any.tif", "any"};
+    static const char *const flats[] = {"any-flats.mha", "any-flats.tif", "any/flat-00000.tif"};
+    char line[128], path[512];
+    write_map("gain.raw", 0.8F, 1.2F);
+    write_map("offset.raw", 0, 400);
+    reconstruct("out --geometry poses.csv", first);
+    for (int p = 0; p < 3; p++) {
+        ck_run(0, "scan body.json --set %s -o %s --quiet", kinds[_i].set, places[p]);
+        snprintf(line, sizeof line, "%s --geometry poses.csv", places[p]);
+        reconstruct(line, second);
+        ck_near(kinds[_i].tolerance);
+        snprintf(path, sizeof path, "%s/%s", folder, flats[p]);
+        ck_assert_int_eq(access(path, F_OK) == 0, kinds[_i].varies);
+        if (!kinds[_i].varies) continue;
+        ck_assert_int_eq(unlink(path), 0);
+        ck_run_fails(3, "fields are missing, which differ from pixel to pixel",
+                     "reconstruct %s --geometry poses.csv -o a.mha", places[p]);
+        ck_run(0, "scan body.json --set %s -o %s --quiet --flats 1", kinds[_i].set, places[p]);
+        ck_run(0, "reconstruct %s --geometry poses.csv -o a.mha --size 8 --quiet", places[p]);
+    }
+}
+END_TEST
+
+/* The dark fields of an offset are needed, too; and a header that older versions wrote is told of. */
+START_TEST(what_a_header_lacks_is_told) {
+    write_map("offset.raw", 0, 400);
+    ck_run(0, "scan body.json --set %s -o dark.mha --flats 1 --darks 0 --quiet", kinds[4].set);
+    ck_run_fails(3, "its dark fields are missing", "reconstruct dark.mha --geometry poses.csv -o a.mha");
+    shell(
+        "rm out/flat* out/dark* && sed -i '/^Dark/d; /^FlatFieldVaries/d; s/^FlatField = .*/FlatField = 120000/' "
+        "out/scan.txt");
+    ck_run(0, "reconstruct out --geometry poses.csv -o a.mha --size 8");
+    ck_assert_msg(strstr(complained, "has FlatField but not Dark") &&
+                      strstr(complained, "has 0.5 of FlatField"),
+                  "%s", complained);
 }
 END_TEST
 
@@ -171,6 +246,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, set_up_scan, tear_down_scan);
     tcase_add_test(tests, a_folder_is_a_stack);
+    tcase_add_loop_test(tests, pixels_of_any_values, 0, KINDS);
+    tcase_add_test(tests, what_a_header_lacks_is_told);
     tcase_add_test(tests, dead_pixels_are_told);
     tcase_add_test(tests, what_a_folder_lacks_is_named);
     tcase_add_test(tests, a_nikon_scan_is_its_scan);

@@ -286,7 +286,7 @@ def test_hdf5_has_fields(path, tmp_path):
         assert not file["/exchange/data_dark"][:].any()
 
 
-def test_other_files_have_fields_beside_if_asked(path, tmp_path):
+def test_other_files_have_fields_beside_if_asked_or_needed(path, tmp_path):
     scene = sk.Scene(path)
     scene.scan(tmp_path / "plain.mha")
     assert not (tmp_path / "plain-flats.mha").exists()
@@ -295,6 +295,9 @@ def test_other_files_have_fields_beside_if_asked(path, tmp_path):
     dark = (tmp_path / "scan-darks.mha").read_bytes()[-size:]
     white = np.frombuffer((tmp_path / "scan-flats.mha").read_bytes()[-2 * size:], np.float32)
     assert not any(dark) and white == pytest.approx(60e3, rel=1e-6)
+    uneven = sk.Scene(path, settings={"Falloff": True})
+    uneven.scan(tmp_path / "uneven.mha")
+    assert (tmp_path / "uneven-flats.mha").exists() and b"\nFlatFieldVaries = True" in (tmp_path / "uneven.mha").read_bytes()
     scene.scan(tmp_path / "folder", darks=2)
     assert (tmp_path / "folder" / "flat-00000.tif").exists() and (tmp_path / "folder" / "dark-00001.tif").exists()
 

@@ -40,7 +40,7 @@ static const char *const text[] = {
     "Scans of less than a turn get Parker's weights, and a full turn of a displaced detector (half-fan) Wang's, which is said. An axis or a detector that leans so far that the method is wrong is refused.",
     "The scan is an .h5 or .nxs that `skiagraph scan` wrote; or, with --geometry, a stack (.mha, .mhd or .tif) or a folder of TIFFs "
     "(projection-00000.tif or NAME_0000.tif and so on); or the .xtekct of a Nikon scanner, which names its folder. Flat and dark fields are read beside a stack (scan-flats.mha) or in the "
-    "folder (flat-00000.tif, NAME_flat_0000.tif); without them the flat field is that of the header, of scan.txt, or the WhiteLevel of the .xtekct.",
+    "folder (flat-00000.tif, NAME_flat_0000.tif); without them they are FlatField and Dark of the header or of scan.txt, which is refused where these say that pixels differ, or the WhiteLevel of the .xtekct.",
     "The volume holds attenuation coefficients in 1/cm. It is centred on the centre of rotation, and its axes are those "
     "of the scene.",
     "--json prints {projections, size, voxel_mm, range, displaced, covered_mm, truncated, along_mm, seconds, file}; range has the least and the largest value, "

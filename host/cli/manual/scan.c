@@ -36,7 +36,8 @@ static const cli_flag scan_subframes = {
 static const cli_flag scan_flats = {
     "--flats", "N",
     "The number of flat fields: the beam without parts. In an .h5 the default is 1. In a folder they are flat-00000.tif and on, and "
-    "beside a .mha, .raw or .tif they are a stack, scan-flats.mha for scan.mha: both only with --flats, --darks or Flats or Darks of Scan. "
+    "beside a .mha, .raw or .tif they are a stack, scan-flats.mha for scan.mha: both only with --flats, --darks or Flats or Darks of Scan, or where one FlatField and one Dark in the header are not enough (falloff, "
+    "the heel effect, gains and the like). "
     "Geometry files name them in a comment.",
     NULL, CLI_NAMES_NOTHING};
 static const cli_flag scan_darks = {

@@ -79,10 +79,9 @@ static int choose_samples(const cli_arguments *arguments, cli_acquisition *a) {
 
 /* The first rank lays the output out and holds its lock; the others open it when it has. */
 static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
-    skg_scan_file_options options;
+    skg_scan_file_options options = a->file_options; /* with its levels */
     skg_channel channel;
     skg_plan_report report;
-    skg_scan_file_options_init(&options);
     skg_channel_init(&channel);
     skg_plan_report_init(&report);
     int64_t channels = 0;
@@ -99,7 +98,6 @@ static int open_output(const cli_arguments *arguments, cli_acquisition *a) {
     options.hash = a->hash;
     options.name = a->is_grey ? "grey value" : channel.name;
     options.unit = a->is_grey ? "" : channel.unit;
-    options.flat_field = a->is_grey ? a->readout.full : channel.flat_field;
     options.stem = a->stem;
     options.samples = report.samples;
     options.flats = a->flats;
@@ -182,12 +180,12 @@ static int prepare(const cli_arguments *arguments, cli_acquisition *a) {
     a->whole_projections = a->projections;
     exit_status = check_chosen(a);
     if (exit_status == CLI_DONE) exit_status = grey_decide(arguments, a);
-    if (exit_status == CLI_DONE) exit_status = write_geometry(arguments, a);
     if (exit_status == CLI_DONE) exit_status = shards_choose_part(a);
     if (exit_status == CLI_DONE) exit_status = choose_samples(arguments, a);
     if (exit_status == CLI_DONE) exit_status = cli_make_plan(&a->session, &a->plan, &a->plan_ms);
-    if (exit_status == CLI_DONE) exit_status = scenario_write(arguments, a);
-    return exit_status == CLI_DONE ? grey_prepare(a) : exit_status;
+    if (exit_status == CLI_DONE) exit_status = grey_prepare(arguments, a);
+    if (exit_status == CLI_DONE) exit_status = write_geometry(arguments, a);
+    return exit_status == CLI_DONE ? scenario_write(arguments, a) : exit_status;
 }
 
 int acquisition_open(const cli_arguments *arguments, cli_acquisition *a) {

@@ -26,12 +26,14 @@ static int has_stem(const cli_acquisition *a) {
     return a->record.ctsimu && a->is_grey;
 }
 
-/* An .h5 and the layout of CTSimU have fields; others have them beside, if one asks. A shard leaves those to the whole. */
+/* An .h5 and the layout of CTSimU have fields; others have them beside, if one asks or if one number for all pixels is not enough. A shard
+ * leaves those to the whole. */
 static void decide_fields(const cli_arguments *arguments, cli_acquisition *a) {
     const int is_inside = cli_has_extension(a->place, ".h5") || cli_has_extension(a->place, ".hdf5") ||
                           cli_has_extension(a->place, ".nxs") || (has_stem(a) && cli_names_folder(a->place));
     const int asked = a->record.fields || cli_given(arguments, "--flats") || cli_given(arguments, "--darks");
-    a->fields_beside = !is_inside && asked && !cli_given(arguments, "--shard");
+    const int needed = a->file_options.flat_varies || a->file_options.dark_varies;
+    a->fields_beside = !is_inside && (asked || needed) && !cli_given(arguments, "--shard");
     a->has_fields = is_inside || a->fields_beside;
 }
 
@@ -46,7 +48,6 @@ int grey_decide(const cli_arguments *arguments, cli_acquisition *a) {
     a->is_grey = asked || (a->record.grey_values && !has_quantity);
     if (asked) a->readout.bits = 16;
     if (a->is_grey) mark_hash(a->hash);
-    decide_fields(arguments, a);
     if (a->record.fields && !cli_given(arguments, "--flats")) a->flats = a->record.flats;
     if (a->record.fields && !cli_given(arguments, "--darks")) a->darks = a->record.darks;
     a->options.moving_count = a->record.moving_count;
@@ -80,25 +81,51 @@ int64_t grey_bytes(const cli_acquisition *a) {
     return pixels_of(a) * (a->readout.bits ? 2 : 4);
 }
 
-/* The greatest value of the flat field; with quantum noise, which would make it too great, I0. */
-int grey_prepare(cli_acquisition *a) {
-    skg_channel channel;
-    if (!a->is_grey) return CLI_DONE;
-    skg_channel_init(&channel);
+/* The energy where the free beam is strongest: the greatest of the flat field; with quantum noise, which would make it too great, I0. */
+static int find_full(cli_acquisition *a, const skg_channel *channel) {
     void *flat = malloc((size_t)raw_bytes(a));
     if (!flat) return cli_error(CLI_DEVICE, "out of host memory for a flat field");
-    skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
-    if (status == SKG_OK)
-        status = skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, 1, flat);
+    skg_status status = skg_scan_flat_fields_render(a->plan, a->session.scene, a->scan, &a->options, 1, flat);
     if (!SKG_FAILED(status)) status = SKG_OK;
     const int is_noisy = a->session.options.noise || a->session.options.electronic_kev > 0;
-    a->readout.full_kev = is_noisy ? channel.flat_field : 0;
+    a->readout.full_kev = is_noisy ? channel->flat_field : 0;
     for (int64_t i = 0; status == SKG_OK && !is_noisy && i < pixels_of(a); i++) {
         const double kev =
             a->options.type == SKG_TYPE_FLOAT64 ? ((double *)flat)[i] : (double)((float *)flat)[i];
         if (kev > a->readout.full_kev) a->readout.full_kev = kev;
     }
     free(flat);
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
+/* The grey value of a pixel like all others, without noise. */
+static skg_status level_of(const cli_acquisition *a, double kev, double *level) {
+    skg_readout plain = a->readout;
+    float value = 0;
+    plain.bits = 0, plain.snr = 0, plain.noise_count = 0;
+    plain.gain = plain.offset = plain.bad_pixels = NULL;
+    const skg_status status = skg_readout_image(&plain, 1, SKG_TYPE_FLOAT64, &kev, 1, 0, &value);
+    *level = (double)value;
+    return status;
+}
+
+int grey_prepare(const cli_arguments *arguments, cli_acquisition *a) {
+    const skg_readout *r = &a->readout;
+    skg_scan_file_options *levels = &a->file_options;
+    skg_channel channel;
+    skg_channel_init(&channel);
+    skg_scan_file_options_init(levels);
+    skg_status status = skg_plan_channel_get(a->plan, 0, &channel);
+    if (status != SKG_OK) return cli_fail(status);
+    levels->flat_field = channel.flat_field;
+    levels->dark_varies = a->is_grey && r->offset;
+    levels->flat_varies = channel.uneven || levels->dark_varies || (a->is_grey && r->gain);
+    decide_fields(arguments, a);
+    if (!a->is_grey) return CLI_DONE;
+    const int exit_status = find_full(a, &channel);
+    if (exit_status != CLI_DONE) return exit_status;
+    status = level_of(a, r->full_kev, &levels->flat_field);
+    if (status == SKG_OK) status = level_of(a, 0, &levels->dark);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
 

@@ -15,28 +15,44 @@
 
 enum { HEADER_LONGEST = 8192, PATH_LONGEST = 4096, FOLDER_LONGEST = 512 };
 
+/* Levels of a header as `scan` writes it: values of a pixel without parts, and without radiation. */
+typedef struct {
+    double flat, dark; /* NaN: it does not say */
+    int flat_varies;   /* 1: they are not those of all pixels */
+    int dark_varies;
+} levels;
+
 struct stack_reader {
     char path[PATH_LONGEST];
     int is_folder;
     pages images;
-    double flat_field; /* 0: not known */
+    levels header;
+    double flat_field; /* of the header, or of a .xtekct; 0: not known */
     skg_scan *scan;
     double axis[3], centre[3];
     double *white, *dark; /* [rows][columns] means of the fields; white NULL: flat_field */
     double *values;       /* [rows][columns] */
 };
 
-/* The number of the line "FlatField = ..." among the first bytes of a file, where `scan` writes it; 0: there is none. */
-static double read_flat_field(const char *path) {
-    static const char key[] = "\nFlatField = ";
+/* The text behind a key such as "\nFlatField = " in `count` bytes, which a 0 follows; NULL: the key is not there. */
+static const char *value_of(const char *head, size_t count, const char *key) {
+    const size_t length = strlen(key);
+    for (size_t i = 0; i + length < count; i++)
+        if (memcmp(head + i, key, length) == 0) return head + i + length;
+    return NULL;
+}
+
+/* The lines of a header among the first bytes of a file. */
+static void read_levels(const char *path, levels *header) {
     char head[HEADER_LONGEST + 1] = "";
     FILE *stream = fopen(path, "rb");
-    if (!stream) return 0;
-    const size_t count = fread(head, 1, HEADER_LONGEST, stream);
-    fclose(stream);
-    for (size_t i = 0; i + sizeof key < count; i++)
-        if (memcmp(head + i, key, sizeof key - 1) == 0) return strtod(head + i + sizeof key - 1, NULL);
-    return 0;
+    const size_t count = stream ? fread(head, 1, HEADER_LONGEST, stream) : 0;
+    const char *flat = value_of(head, count, "\nFlatField = "), *dark = value_of(head, count, "\nDark = ");
+    if (stream) fclose(stream);
+    *header = (levels){.flat = flat ? strtod(flat, NULL) : (double)NAN,
+                       .dark = dark ? strtod(dark, NULL) : (double)NAN,
+                       .flat_varies = value_of(head, count, "\nFlatFieldVaries = True") != NULL,
+                       .dark_varies = value_of(head, count, "\nDarkVaries = True") != NULL};
 }
 
 static int is_attenuation(const stack_reader *r) {
@@ -173,7 +189,11 @@ static int open_images(stack_reader *r) {
     if (exit_status == CLI_DONE && r->images.count == 0)
         return cli_error(CLI_INPUT, "%s: has no projections; they are NAME_0000.tif and so on", r->path);
     if (exit_status != CLI_DONE) return exit_status;
-    r->flat_field = r->images.quantity == SKG_QUANTITY_TRANSMISSION ? 1 : read_flat_field(text);
+    if (r->images.quantity == SKG_QUANTITY_TRANSMISSION)
+        r->header = (levels){.flat = 1};
+    else
+        read_levels(text, &r->header);
+    r->flat_field = r->header.flat > 0 ? r->header.flat : 0;
     r->values = calloc((size_t)(r->images.columns * r->images.rows), sizeof *r->values);
     return r->values ? CLI_DONE : cli_error(CLI_DEVICE, "out of host memory for %s", r->path);
 }
@@ -200,6 +220,46 @@ static int find_path(stack_reader *r, const char *path) {
                            folder);
 }
 
+/* A header without the level of darkness, which older versions wrote, does not say whether FlatField holds for all pixels either. */
+static int warn_of_old_header(stack_reader *r) {
+    double most = 0;
+    const int exit_status = pages_read(&r->images, 0, r->values);
+    for (int64_t i = 0; i < r->images.columns * r->images.rows && exit_status == CLI_DONE; i++)
+        most = fmax(most, r->values[i]);
+    if (exit_status == CLI_DONE)
+        cli_warn(
+            "%s: its header has FlatField but not Dark, as older versions wrote it, and the brightest pixel of the first "
+            "projection has %.4g of FlatField: coefficients are wrong unless that is 1 where the free beam is seen, darkness "
+            "is 0 and all pixels are alike (no falloff, gain or heel effect); scan again, or put flat and dark fields beside it",
+            r->path, most / r->flat_field);
+    return exit_status;
+}
+
+/* Refuses projections whose -ln(I/I0) is not known. */
+static int check_levels(stack_reader *r, const char *path) {
+    if (is_attenuation(r)) return CLI_DONE;
+    if (!r->white && !(r->flat_field > 0))
+        return cli_error(
+            CLI_INPUT,
+            r->is_folder
+                ? "%s: has no flat field: neither NAME_flat_0000.tif nor a scan.txt or .xtekct that gives it"
+                : "%s: has no flat field, in its header or in a file -flats beside it",
+            path);
+    const int needs_flat = !r->white && r->header.flat_varies, needs_dark = !r->dark && r->header.dark_varies;
+    if (needs_flat || needs_dark)
+        return cli_error(
+            CLI_INPUT,
+            "%s: its %s fields are missing, which differ from pixel to pixel by falloff, a map of the detector or the heel "
+            "effect, so that the one number of the header is not enough; run the same `scan` again with --flats 1 --darks 1, "
+            "which computes no projection again, or write it as .h5",
+            path,
+            needs_flat && needs_dark ? "flat and dark"
+            : needs_flat             ? "flat"
+                                     : "dark");
+    const int is_old = !r->white && !r->dark && r->header.flat > 0 && isnan(r->header.dark);
+    return is_old ? warn_of_old_header(r) : CLI_DONE;
+}
+
 int stack_open(const char *path, const char *geometry, stack_reader **reader) {
     stack_reader *r = *reader = calloc(1, sizeof *r);
     if (!r) return cli_error(CLI_DEVICE, "out of host memory for %s", path);
@@ -208,14 +268,7 @@ int stack_open(const char *path, const char *geometry, stack_reader **reader) {
     if (exit_status == CLI_DONE) exit_status = read_poses(r, geometry);
     if (exit_status == CLI_DONE) exit_status = read_fields(r, PAGES_FLATS, &r->white);
     if (exit_status == CLI_DONE) exit_status = read_fields(r, PAGES_DARKS, &r->dark);
-    if (exit_status == CLI_DONE && !is_attenuation(r) && !r->white && !(r->flat_field > 0))
-        exit_status = cli_error(
-            CLI_INPUT,
-            r->is_folder
-                ? "%s: has no flat field: neither NAME_flat_0000.tif nor a scan.txt or .xtekct that gives it"
-                : "%s: has no flat field, in its header or in a file -flats beside it",
-            path);
-    return exit_status;
+    return exit_status == CLI_DONE ? check_levels(r, path) : exit_status;
 }
 
 void stack_scan(stack_reader *r, skg_scan **scan, double axis[3], double centre[3]) {
@@ -226,11 +279,12 @@ void stack_scan(stack_reader *r, skg_scan **scan, double axis[3], double centre[
 
 int stack_attenuation(stack_reader *r, int64_t index, float *image) {
     const int64_t pixels = r->images.columns * r->images.rows;
+    const double darkness = isnan(r->header.dark) ? 0 : r->header.dark;
     const int exit_status = pages_read(&r->images, index, r->values);
     for (int64_t i = 0; i < pixels && exit_status == CLI_DONE; i++) {
-        const double value = r->values[i], dark = r->dark ? r->dark[i] : 0;
+        const double value = r->values[i], dark = r->dark ? r->dark[i] : darkness;
         const double white = (r->white ? r->white[i] : r->flat_field) - dark;
-        const double share = (value - dark) / white;
+        const double share = white > 0 ? (value - dark) / white : 0; /* a pixel that does not see the beam */
         /* what is no number stays so, and is refused where it stands */
         image[i] = (float)(is_attenuation(r)
                                ? value

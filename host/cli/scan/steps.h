@@ -46,8 +46,8 @@ int scenario_write(const cli_arguments *arguments, const cli_acquisition *a);
 /* Decides whether grey values are written. */
 int grey_decide(const cli_arguments *arguments, cli_acquisition *a);
 
-/* Finds where the free beam is strongest, once there is a plan. */
-int grey_prepare(cli_acquisition *a);
+/* Finds the levels of the output, of the free beam and of darkness, once there is a plan, and whether fields are written. */
+int grey_prepare(const cli_arguments *arguments, cli_acquisition *a);
 
 /* The type of the output's elements, and the bytes of an image. */
 int32_t grey_type(const cli_acquisition *a);

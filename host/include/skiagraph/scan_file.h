@@ -30,7 +30,8 @@ typedef struct {
     const char *name;
     /** Unit of the quantity, such as "keV per pixel"; copied. NULL: "". */
     const char *unit;
-    /** I0 in the unit of the projections; 0: unknown. */
+    /** Value of a pixel that no part weakens, in the unit of the projections: I0, or the grey value where the free beam is strongest;
+     * 0: unknown. */
     double flat_field;
     /** Number of source samples of the plan (skg_plan_report.samples), which a continued scan has to use again. */
     int64_t samples;
@@ -49,6 +50,12 @@ typedef struct {
     /** First words of the files of a folder: STEM_0000.tif, STEM_flat_0000.tif and STEM_dark.tif; copied. NULL: projection-00000.tif,
      * flat-00000.tif and dark-00000.tif. */
     const char *stem;
+    /** Value of a pixel that no radiation reaches, in the unit of the projections; 0 by default. */
+    double dark;
+    /** 1: flat fields have other values than flat_field, or pixels differ, so that -ln(I/I0) needs skg_scan_file_fields_write. */
+    int32_t flat_varies;
+    /** 1: likewise of dark fields and `dark`. */
+    int32_t dark_varies;
 } skg_scan_file_options;
 
 SKG_INIT(skg_scan_file_options)

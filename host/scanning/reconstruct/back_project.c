@@ -7,7 +7,7 @@
 #include <math.h>
 
 /* Column, row and 1 of the pixel that a point is seen in, times w, as affine functions of the point; and the point's
- * distance from the source along `forward` as well. */
+ * distance from the source across the rows of the detector as well, over the radius. */
 typedef struct {
     double column[4], row[4], w[4], depth[4];
 } pixel_map;
@@ -42,7 +42,7 @@ static void find_map(const skg_orbit_pose *pose, pixel_map *map) {
     skg_add_scaled(v->centre, -1, v->source, from);
     const double distance = skg_dot(normal, from);
     affine(normal, 1 / distance, v->source, 0, map->w);
-    affine(pose->forward, 1 / pose->radius, v->source, 0, map->depth);
+    affine(pose->depth, 1 / pose->radius, v->source, 0, map->depth);
     for (int k = 0; k < 2; k++) { /* (x - source) dual / w + (source - centre) dual + middle, times w */
         const double shift = middle[k] - skg_dot(dual[k], from);
         affine(dual[k], 1, v->source, 0, pixel[k]);
@@ -65,6 +65,9 @@ static double at_point(const double *function, const double *point) {
     return skg_dot(function, point) + function[3];
 }
 
+/* Adds a row of voxels. A voxel weighs by the inverse of w times its depth: rows are filtered in the detector's own columns, and of two rays
+ * to places s and t of a row at the depth D, the sine of the angle between them is D (s - t) over their lengths (Kak and Slaney 1988,
+ * section 3.4.2). So the rows may be turned about the axis, and the foot of the perpendicular from the source may lie anywhere. */
 static void back_project_line(skg_fdk *fdk, const pixel_map *map, double scale, int64_t y, int64_t z) {
     const skg_fdk_options *o = &fdk->options;
     const double start[3] = {skg_fdk_place(o, 0, 0), skg_fdk_place(o, 1, y), skg_fdk_place(o, 2, z)};
@@ -77,7 +80,7 @@ static void back_project_line(skg_fdk *fdk, const pixel_map *map, double scale, 
         if (!(near > 0)) continue;
         const double value =
             image_at(fdk, (column + along * map->column[0]) / near, (row + along * map->row[0]) / near);
-        to[x] += (float)(scale * value / (far * far));
+        to[x] += (float)(scale * value / (near * far));
     }
 }
 

@@ -100,20 +100,29 @@ static skg_status find_fan(int64_t index, skg_orbit_pose *pose) {
     return SKG_OK;
 }
 
-/* A column step of the detector, seen at the axis. */
-static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose *pose) {
+/* How the rows of a flat detector run past the source: seen along the axis, each row is a straight line across `depth`, whatever angle the
+ * detector is turned by about the axis. */
+static skg_status find_rows(const double *axis, int64_t index, skg_orbit_pose *pose) {
     const skg_view *view = &pose->view;
-    double to_detector[3];
+    double to_detector[3], along_row[3];
+    skg_add_scaled(view->column_step, -skg_dot(view->column_step, axis), axis, along_row);
+    skg_cross(axis, along_row, pose->depth);
+    normalise(pose->depth);
+    const int is_behind = skg_dot(pose->depth, pose->forward) < 0;
+    skg_scale_vector(is_behind ? -1 : 1, pose->depth, pose->depth);
+    skg_add_scaled(view->centre, -1, view->source, to_detector);
+    pose->spacing = skg_length(along_row);
+    if (skg_dot(to_detector, pose->forward) > 0 && skg_dot(to_detector, pose->depth) > 0) return SKG_OK;
+    return skg_fail(SKG_ERR_UNSUPPORTED, "projection %lld: the detector is not behind the axis",
+                    (long long)index);
+}
+
+/* The distance of the columns. */
+static skg_status find_spacing(const double *axis, int64_t index, skg_orbit_pose *pose) {
     SKG_TRY(find_fan(index, pose));
     SKG_TRY(check_leans(axis, index, pose));
-    pose->spacing = fabs(skg_dot(view->column_step, pose->across));
-    if (pose->is_parallel) return SKG_OK;
-    skg_add_scaled(view->centre, -1, view->source, to_detector);
-    const double depth = skg_dot(to_detector, pose->forward);
-    if (!(depth > 0))
-        return skg_fail(SKG_ERR_UNSUPPORTED, "projection %lld: the detector is not behind the axis",
-                        (long long)index);
-    pose->spacing *= pose->radius / depth;
+    pose->spacing = fabs(skg_dot(pose->view.column_step, pose->across));
+    if (!pose->is_parallel) SKG_TRY(find_rows(axis, index, pose));
     if (pose->fan_step > 0) pose->spacing = pose->radius * pose->fan_step;
     return SKG_OK;
 }

@@ -14,7 +14,8 @@ typedef struct {
     double forward[3]; /* length 1, across the axis: from the source to the axis, or along the beam */
     double across[3];  /* length 1, across axis and forward: where the source goes */
     double radius;     /* distance of the source from the axis, mm; 0 for a parallel beam */
-    double spacing;    /* of the columns, seen at the axis, mm */
+    double depth[3];   /* of a point source, length 1: away from it, across the axis and the rows */
+    double spacing;    /* of the columns across the axis, mm; of a curved detector as seen at the axis */
     double centre[3];  /* on the axis */
     double angle;      /* from that of the first projection, rad, not below 0 */
     double fan_step;   /* of a curved detector, rad from one column to the next; 0: it is flat */

@@ -31,7 +31,7 @@ static skg_status projection_path(const skg_scan_file *file, int64_t index, char
 }
 
 static skg_status lay_out(skg_scan_file *file, const char *temporary) {
-    char *path = NULL, text[160];
+    char *path = NULL, text[160], levels[SKG_SCAN_LEVELS_LENGTH];
     skg_output_file output = {0};
     skg_status status = SKG_OK;
     (void)temporary;
@@ -39,8 +39,9 @@ static skg_status lay_out(skg_scan_file *file, const char *temporary) {
     SKG_TRY_CLEANUP(member(file->path, "scan.txt", &path));
     SKG_TRY_CLEANUP(skg_output_open(path, &output));
     skg_scan_write_identity(file, text, sizeof text);
-    fprintf(output.stream, "%sProjections = %" PRId64 "\nQuantity = %s\nUnit = %s\nFlatField = %.17g\n", text,
-            file->projections, file->options.name, file->options.unit, file->options.flat_field);
+    skg_scan_write_levels(file, levels);
+    fprintf(output.stream, "%sProjections = %" PRId64 "\nQuantity = %s\nUnit = %s\n%s", text,
+            file->projections, file->options.name, file->options.unit, levels);
     SKG_TRY_CLEANUP(skg_output_commit(&output));
 cleanup:
     skg_output_discard(&output);

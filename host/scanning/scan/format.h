@@ -80,6 +80,10 @@ skg_status skg_scan_path_with(const char *path, const char *ending, char **resul
 void skg_scan_write_identity(const skg_scan_file *file, char *text, size_t size);
 skg_status skg_scan_read_identity(const char *path, skg_scan_identity *identity);
 
+/* The lines of a header that turn values into attenuations: "FlatField = ...\nDark = ...\n", and whether fields vary. */
+enum { SKG_SCAN_LEVELS_LENGTH = 160 };
+void skg_scan_write_levels(const skg_scan_file *file, char text[SKG_SCAN_LEVELS_LENGTH]);
+
 /* Fails if a file does not have a projection of the scan. */
 skg_status skg_scan_file_check_index(const skg_scan_file *file, int64_t index);
 

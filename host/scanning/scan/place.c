@@ -49,6 +49,13 @@ void skg_scan_write_identity(const skg_scan_file *file, char *text, size_t size)
              file->options.samples);
 }
 
+void skg_scan_write_levels(const skg_scan_file *file, char text[SKG_SCAN_LEVELS_LENGTH]) {
+    const skg_scan_file_options *o = &file->options;
+    snprintf(text, SKG_SCAN_LEVELS_LENGTH,
+             "FlatField = %.17g\nDark = %.17g\nFlatFieldVaries = %s\nDarkVaries = %s\n", o->flat_field,
+             o->dark, o->flat_varies ? "True" : "False", o->dark_varies ? "True" : "False");
+}
+
 skg_status skg_scan_read_identity(const char *path, skg_scan_identity *identity) {
     char text[4096 + 1];
     *identity = (skg_scan_identity){0};

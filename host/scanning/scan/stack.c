@@ -35,23 +35,24 @@ enum { HEADER_UNIT = 64 };
 
 /* The header of MetaImage. Slices are the projections; the origin is the middle of the detector, as RTK expects it. */
 static int metaimage_header(const skg_scan_file *file, const char *data, int blanks, char *text) {
-    char heading[200], identity[160], spacing[80], offset[80];
+    char heading[200], identity[160], levels[SKG_SCAN_LEVELS_LENGTH], spacing[80], offset[80];
     const skg_view *view = &file->view;
     const double steps[3] = {skg_length(view->column_step), skg_length(view->row_step), 1};
     const double first[3] = {-0.5 * (double)(view->columns - 1) * steps[0],
                              -0.5 * (double)(view->rows - 1) * steps[1], 0};
     title(file, heading, sizeof heading);
     skg_scan_write_identity(file, identity, sizeof identity);
+    skg_scan_write_levels(file, levels);
     skg_picture_numbers(steps, 3, spacing, sizeof spacing);
     skg_picture_numbers(first, 3, offset, sizeof offset);
     return snprintf(
         text, HEADER_LENGTH,
-        "ObjectType = Image\nNDims = 3\nComment = %s%*s\n%sFlatField = %.17g\nBinaryData = True\n"
+        "ObjectType = Image\nNDims = 3\nComment = %s%*s\n%s%sBinaryData = True\n"
         "BinaryDataByteOrderMSB = %s\nCompressedData = False\nTransformMatrix = 1 0 0 0 1 0 0 0 1\n"
         "Offset = %s\nCenterOfRotation = 0 0 0\nElementSpacing = %s\nDimSize = %" PRId64 " %" PRId64
         " %" PRId64 "\nElementType = %s\nElementDataFile = %s\n",
-        heading, blanks, "", identity, file->options.flat_field, skg_host_is_big_endian() ? "True" : "False",
-        offset, spacing, view->columns, view->rows, file->projections, metaimage_type(file), data);
+        heading, blanks, "", identity, levels, skg_host_is_big_endian() ? "True" : "False", offset, spacing,
+        view->columns, view->rows, file->projections, metaimage_type(file), data);
 }
 
 /* Blanks behind the comment fill it up to a multiple of HEADER_UNIT. */
@@ -166,15 +167,15 @@ static skg_status lay_out_tiff(skg_scan_file *file, const char *temporary) {
     const int64_t length = tiff_data(file);
     const uint64_t first = TIFF_HEADER + TIFF_TEXT;
     const uint16_t start[3] = {43, 8, 0};
-    char *header = NULL, heading[200], identity[160], begin[TIFF_HEADER];
+    char *header = NULL, heading[200], identity[160], levels[SKG_SCAN_LEVELS_LENGTH], begin[TIFF_HEADER];
     SKG_TRY(skg_alloc(length, 1, "directories of a TIFF file", &header));
     put(put(put(begin, skg_host_is_big_endian() ? "MM" : "II", 2), start, sizeof start), &first,
         sizeof first);
     char *to = put(header, begin, sizeof begin);
     title(file, heading, sizeof heading);
     skg_scan_write_identity(file, identity, sizeof identity);
-    snprintf(to, TIFF_TEXT, "%s\n%sFlatField = %.17g\nskiagraph %s\n", heading, identity,
-             file->options.flat_field, SKG_VERSION);
+    skg_scan_write_levels(file, levels);
+    snprintf(to, TIFF_TEXT, "%s\n%s%sskiagraph %s\n", heading, identity, levels, SKG_VERSION);
     to += TIFF_TEXT;
     for (int64_t k = 0; k < file->projections; k++) to = put_directory(file, k, to);
     skg_status status = skg_scan_lay_out(temporary, header, length, length + file->projections * file->bytes);

@@ -15,8 +15,9 @@ extern "C" {
 typedef struct {
     /** Set by skg_channel_init. */
     int32_t size;
-    /** 0 */
-    int32_t reserved;
+    /** 1: without parts, pixels get other values than flat_field, because of falloff, a world, the heel effect, a bow-tie, oblique
+     * rays, a grid or jaws. 0: all get flat_field, or the values are ratios to what they get. */
+    int32_t uneven;
     /** Name of the channel, such as "energy", "photons from 20 to 40 keV". */
     const char *name;
     /** Unit of its values, such as "keV per pixel". */
