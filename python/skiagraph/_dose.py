@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from ._breath import weighed
 from ._interface import ArgumentError
 from ._library import ffi, filled, listed, make, release, struct
 from ._progress import Progress, Watch
@@ -55,7 +56,7 @@ def dose(state: State, at: ArrayLike | None, scan: Scan | None, times: float, hi
         asked.histories = int(histories)
     if places.size:
         asked.points = ffi.cast("double *", ffi.from_buffer(places))
-    with state.calls():
+    with state.calls(), weighed(state):
         with Watch(progress, "rounds of photons" if scan is None else "projections") as asked.progress:
             if scan is None:
                 handle = make("skg_dose_create", "skg_dose", state.plan(options), asked)

@@ -298,11 +298,7 @@ def _restorer(state: State, wanted: Wanted) -> Any:
         return lambda: None
     if state.breath:
         return functools.partial(state.pose, state.breath)
-    moves, meshes = ffi.new("int32_t *"), []
-    for number, part in enumerate(state.parts()):
-        call("skg_motion_part_moves", state.motion, number, moves)
-        if moves[0]:
-            meshes.append((part.mesh, part.mesh.vertices))
+    meshes = [(part.mesh, part.mesh.vertices) for part in state.parts() if state.moves(part.number)]
 
     def restore() -> None:
         for mesh, vertices in meshes:

@@ -16,6 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _breath
 from ._interface import ArgumentError, SceneError
 from ._library import ffi, string
 from ._source import schema
@@ -177,7 +178,7 @@ def _scan_text(scan: Scan) -> dict[str, Any]:
 def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> None:
     samples = _file_samples(text)
     parts, old = state.parts(), state.names[:state.file_parts]
-    changed = _changed(state)
+    changed, breath = _changed(state), _breath.matters(state)
     if not any(changed.values()) and len(old) == len(parts) and len(old) == len(samples):
         return
     if len(samples) <= max(old, default=-1):
@@ -195,11 +196,7 @@ def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> 
         if part.volume:
             made.append(sample)
             continue
-        if not sample.get(_named(sample, "Material")) or part.number in state.materials:
-            _drop(sample, "Density")
-            sample[_named(sample, "Material")], density = material_text(_material(state, part), _writer(target, part))
-            if density:
-                sample["Density"] = density
+        _write_material(state, sample, part, breath.get(part.number), target)
         shapes = _spellings(*_SHAPES)
         if not any(_named(sample, shape) in sample for shape in shapes) or part.label in changed["meshes"]:
             _drop(sample, *shapes)
@@ -247,8 +244,19 @@ def _place(sample: dict[str, Any], part: Part, has_mesh: bool) -> None:
         sample["Transform"] = [["Matrix", pose.T.ravel().tolist()]]
 
 
-def _material(state: State, part: Part) -> Material:
-    return state.materials.get(part.number) or part.material
+def _write_material(state: State, sample: dict[str, Any], part: Part, breath: Material | None, target: pathlib.Path) -> None:
+    """breath: the material that the pose of the breath makes of it; None: its own."""
+    own = state.materials.get(part.number) or part.material
+    has_name = sample.get(_named(sample, "Material")) and part.number not in state.materials
+    if has_name and breath is None:
+        return
+    _drop(sample, "Density")
+    if has_name and breath is not None and breath.density > 0 and breath.elements == own.elements:  # the same at another density
+        sample["Density"] = breath.density
+        return
+    sample[_named(sample, "Material")], density = material_text(breath or own, _writer(target, part))
+    if density:
+        sample["Density"] = density
 
 
 def material_text(material: Material, write: Callable[[str], str]) -> tuple[Any, float | None]:

@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from ._breath import weighed
 from ._frames import Batch
 from ._images import compute, number_frames, together
 from ._interface import ENUMS, ArgumentError
@@ -41,7 +42,7 @@ def _outputs(components: bool) -> list[tuple[str, int]]:
 
 def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
     """The prediction of skg_plan_scatter_predict as a dictionary."""
-    with state.calls():
+    with state.calls(), weighed(state):
         found = filled("skg_scatter_prediction", "skg_plan_scatter_predict", state.plan(options))
     return {"ratio": found["ratio"], "called_for": bool(found["called_for"]), "rms": found["rms"], "max": found["max"],
             "grid": {name: found[f"grid_{name}"] for name in ("primary", "scatter", "total")},

@@ -7,6 +7,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ContextManager
 
+import numpy as np
 from numpy.typing import NDArray
 
 from . import _edit
@@ -133,7 +134,14 @@ class State:
         number = integer("skg_scene_part_add", self.handle, part)
         self.names.append(max(self.names, default=-1) + 1)
         self.plans.clear()
+        breath, self.breath = self.breath, None
+        if breath:
+            self._rest()
         self.forget_motion()
+        if breath:  # a scene whose new part cannot be linked stays at rest
+            self.linked()
+            self.pose(breath)
+            self.breath = breath
         return number
 
     def mesh(self, handle: Any) -> Mesh:
@@ -204,6 +212,20 @@ class State:
     def pose(self, breath: Mapping[str, float]) -> None:
         for name, value in breath.items():
             call(f"skg_motion_pose_at_{name}", self.motion, value)
+
+    def _rest(self) -> None:
+        """Meshes that the breath posed return to where they were before, so that the next motion is linked there. The last part is new."""
+        for part in self.parts()[:-1]:
+            if self.moves(part.number):
+                rest = np.empty(part.mesh.vertices.shape)
+                call("skg_motion_rest_get", self.motion, part.number, ffi.cast("double *", ffi.from_buffer(rest)))
+                part.mesh._place(rest)
+
+    def moves(self, number: int) -> bool:
+        """Whether a part moves with the breath."""
+        found = ffi.new("int32_t *")
+        call("skg_motion_part_moves", self.motion, number, found)
+        return bool(found[0])
 
     def completer(self) -> Any:
         """Writes what the breath changes into a skg_frame; None: nothing."""

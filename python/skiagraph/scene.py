@@ -382,7 +382,7 @@ class Scene(_gradient.Differentiable):
         """Writes the scene as a scene file, .json, whose images have the same bits; or an image of it, .png, .tif, .mha or .dcm.
 
         (Where vertices were moved, images of floats agree to their rounding, those of doubles bit for bit.) Meshes that were added or changed are written as PLY into a folder beside the file, NAME-parts. Other files that
-        the scene names stay where they are. A scene that breathe() posed is written in this pose, without its breath.
+        the scene names stay where they are. A scene that breathe() posed is written in this pose, with its densities and without its breath.
 
         quantity: what it holds, or "lengths" for path lengths; by default what it was computed as, and "energy" for an array that no
         call of the scene made. display: "radiograph" or "transmission", and range: the
