@@ -39,6 +39,11 @@ def warn(sentence: str, category: type[Warning] = SkiagraphWarning) -> None:
     warnings.warn(sentence, category, stacklevel=level)
 
 
+def note(sentence: str) -> None:
+    """A note for the logger "skiagraph"."""
+    _log.info("%s", sentence)
+
+
 class Log:
     """Collects what the library says during a call; deliver() passes it on."""
 

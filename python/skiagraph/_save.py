@@ -18,10 +18,11 @@ from numpy.typing import NDArray
 
 from . import _breath
 from ._interface import ArgumentError, SceneError
-from ._library import ffi, string
+from ._library import encode, ffi, string, struct
 from ._source import schema
 from .beam import Beam
 from .material import Material
+from .mesh import Mesh
 from .part import Part
 from .scan import Scan
 from .view import View
@@ -66,6 +67,12 @@ def settings_text(state: State, placed: bool = False) -> dict[str, Any]:
             beam = beam.scaled(1 / (columns * rows))
         _put(_object(text, "Source"), "Beam", beam_text(beam))
     return text
+
+
+def repairs(text: dict[str, Any]) -> set[str]:
+    """Words of the key Repair."""
+    given = _get(text, "Repair", [])
+    return {word.lower() for word in ([given] if isinstance(given, str) else given)}
 
 
 def without_parts(text: dict[str, Any]) -> dict[str, Any]:
@@ -200,7 +207,7 @@ def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> 
         shapes = _spellings(*_SHAPES)
         if not any(_named(sample, shape) in sample for shape in shapes) or part.label in changed["meshes"]:
             _drop(sample, *shapes)
-            sample.update(Path=_mesh_file(target, part), Unit="mm")
+            sample.update(Path=_mesh_file(state, target, part), Unit="mm")
         made.append(sample)
     _drop(text, "SceneGraph")
     _put(text, "Samples", made)
@@ -292,9 +299,16 @@ def _beside(target: pathlib.Path, part: Part, suffix: str) -> tuple[pathlib.Path
     return folder / name, f"{folder.name}/{name}"
 
 
-def _mesh_file(target: pathlib.Path, part: Part) -> str:
+def _mesh_file(state: State, target: pathlib.Path, part: Part) -> str:
     path, name = _beside(target, part, ".ply")
-    part.mesh.save(path)
+    mesh = part.mesh
+    mesh.save(path)
+    if mesh.health["same_way_edges"] and "none" not in state.repairs:
+        read = Mesh._made("skg_mesh_load_as", ffi.NULL, encode(path, "path"), struct("skg_mesh_reading"))
+        if (read.faces != mesh.faces).any():
+            raise SceneError(f"{part.label}: its mesh is wound inconsistently and was left so (as_wound=True), but a scene file's meshes are "
+                             "turned, and the images would differ. Make the mesh without as_wound, or the scene with \"Repair\": \"none\"; "
+                             "pickle keeps the scene as it is")
     return name
 
 

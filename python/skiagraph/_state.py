@@ -2,6 +2,8 @@
 from __future__ import annotations
 
 import copy
+import functools
+import json
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -10,15 +12,15 @@ from typing import Any, ContextManager
 import numpy as np
 from numpy.typing import NDArray
 
-from . import _edit
-from ._device import Device, device_of
+from . import _edit, _save
+from ._device import Device, device_of, note
 from ._interface import ArgumentError, SceneError
-from ._library import call, check, encode, ffi, integer, lib, make, retained, struct
+from ._library import call, check, encode, ffi, integer, lib, make, retained, string, struct
 from ._plans import Plans
 from ._source import Kept, Source
 from .beam import Beam
 from .material import Material
-from .mesh import Mesh
+from .mesh import Mesh, as_mesh
 from .part import Part
 from .scan import Scan
 from .view import View
@@ -143,6 +145,19 @@ class State:
             self.pose(breath)
             self.breath = breath
         return number
+
+    @functools.cached_property
+    def repairs(self) -> set[str]:
+        """Words of the key Repair."""
+        return _save.repairs(json.loads(string("skg_setup_text_get", self.setup)))
+
+    def mended(self, mesh: Any, unit_mm: float | None, label: str) -> Mesh:
+        """A mesh of whatever the caller has for a new part, treated as the key Repair says, as meshes of the file are."""
+        made = as_mesh(mesh, unit_mm=unit_mm, name=label, as_wound="none" in self.repairs, _context=self.device.handle)
+        if "orientation" not in self.repairs or not made.nesting["inverted"]:
+            return made
+        note(f"{label}: {made.nesting['inverted']} of {made.nesting['components']} components turned")
+        return made.oriented()
 
     def mesh(self, handle: Any) -> Mesh:
         key = _address(handle)

@@ -347,14 +347,16 @@ def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
     return len(array), address, max(array.strides[0] // array.itemsize, 3)
 
 
-def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None, _context: Any = ffi.NULL) -> Mesh:
+def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None, as_wound: bool = False,
+            _context: Any = ffi.NULL) -> Mesh:
     """A mesh of whatever has vertices and triangles.
 
-    value: a Mesh; (vertices, faces); the path of a file; an object of trimesh (also a Scene), Open3D, meshio or PyVista.
+    value: a Mesh, which stays as it is; (vertices, faces); the path of a file; an object of trimesh (also a Scene), Open3D, meshio or PyVista.
     """
     if isinstance(value, Mesh):
         return value
     if isinstance(value, (str, os.PathLike)):
-        return Mesh.load(value, unit_mm=unit_mm, _context=_context)
+        return Mesh.load(value, unit_mm=unit_mm, as_wound=as_wound, _context=_context)
     vertices, faces = parts_of(value)
-    return Mesh(vertices, faces, unit_mm=unit_of(value) if unit_mm is None else unit_mm, name=name or "mesh", _context=_context)
+    return Mesh(vertices, faces, unit_mm=unit_of(value) if unit_mm is None else unit_mm, name=name or "mesh", as_wound=as_wound,
+                _context=_context)

@@ -21,7 +21,6 @@ from ._progress import Progress
 from ._state import State
 from .beam import Beam
 from .material import Material, as_material
-from .mesh import as_mesh
 from .part import Part
 from .report import Report
 from .scan import Scan
@@ -92,11 +91,12 @@ class Scene(_gradient.Differentiable):
 
         mesh: a Mesh, (vertices, faces), an object of trimesh, meshio or PyVista, or the path of a file, in units of
         unit_mm (None: the file's or trimesh's own, otherwise mm). material: a Material or a name. inside: the part that it displaces. pose: 4 x 4, mm.
+        Where the key Repair of the scene has "orientation" and components of a Mesh are inverted, the part has a mesh of its own.
         """
         parent = inside.label if isinstance(inside, Part) else inside
         state = self._state
         with state.calls():
-            made = as_mesh(mesh, unit_mm=unit_mm, name=label, _context=state.device.handle)
+            made = state.mended(mesh, unit_mm, label)
             matter, part, name = as_material(material), struct("skg_part"), ffi.new("char[]", encode(label, "label"))
             part.label, part.priority = name, int(priority)
             if parent is not None:

@@ -81,6 +81,22 @@ def test_files_and_keys_stay(tmp_path, together):
         scene.save(tmp_path / "scene.png")
 
 
+def test_a_mesh_that_stays_as_wound_is_refused(view, tmp_path):
+    """A file says it of all its meshes or of none."""
+    box = sk.Mesh.cube(10)
+    mesh = sk.Mesh(box.vertices, np.concatenate((box.faces[:1, ::-1], box.faces[1:])), as_wound=True)
+    for text in ({}, {"Repair": "none"}):
+        scene = sk.Scene(text)
+        scene.view, scene.beam = view, sk.Beam.mono(60, 1000)
+        scene.add("box", mesh, material=sk.Material.mu(1))
+        if text:
+            again(scene, tmp_path / "as.json")
+        else:
+            with pytest.raises(sk.SceneError, match='box: .* as_wound.* "Repair": "none"'):
+                scene.save(tmp_path / "scene.json")
+            assert not (tmp_path / "scene.json").exists()
+
+
 def test_parts_are_removed(tmp_path):
     scene = described(tmp_path)
     nut, rod = scene["nut"], scene["rod"]

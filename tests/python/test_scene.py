@@ -141,6 +141,37 @@ def test_vertices_move(scene):
         mesh.vertices = mesh.vertices[:-1]
 
 
+def nested_boxes():
+    """A box inside a box that should be its cavity, but faces outward."""
+    box = sk.Mesh.cube(10)
+    return sk.Mesh(np.concatenate((box.vertices, 0.5 * box.vertices)), np.concatenate((box.faces, box.faces + len(box.vertices))))
+
+
+@pytest.mark.parametrize("repair", ["orientation", ["Exact", "Orientation"]])
+@pytest.mark.parametrize("kind", ["mesh", "arrays", "path"])
+def test_added_meshes_are_repaired_as_those_of_the_file(view, tmp_path, repair, kind):
+    boxes = nested_boxes()
+    boxes.save(tmp_path / "boxes.ply")
+    given = {"mesh": boxes, "arrays": (boxes.vertices, boxes.faces), "path": tmp_path / "boxes.ply"}[kind]
+    scene = sk.Scene({"Repair": repair})
+    scene.view, scene.beam = view, sk.Beam.mono(60, 1000)
+    scene.add("boxes", given, material=sk.Material.mu(1))
+    assert scene["boxes"].mesh.nesting["inverted"] == 0 and boxes.nesting["inverted"] == 1
+    middle = scene.lengths("boxes", precision="double")[24, 32]
+    assert middle == pytest.approx(10 - 5, abs=1e-4)  # the ray is aslant by 1 mm in 1 m
+    scene.save(tmp_path / "scene.json")
+    assert (sk.Scene(tmp_path / "scene.json").image() == scene.image()).all()
+
+
+def test_added_files_stay_as_wound(view, tmp_path):
+    box = sk.Mesh.cube(10)
+    (tmp_path / "box.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in box.vertices) + "".join(
+        f"f {a} {b} {c}\n" for a, b, c in [box.faces[0][::-1] + 1, *(box.faces[1:] + 1)]))
+    scene = sk.Scene({"Repair": "none"})
+    scene.add("box", tmp_path / "box.obj", material=sk.Material.mu(1))
+    assert scene["box"].mesh.health["turned"] == 0 and not scene["box"].mesh.health["closed"]
+
+
 def test_a_plan_explains_itself(scene):
     report = scene.plan(noise=True)
     assert report["parts"] == 2 and report["precision"] == "single" and report["nodes"] == 1
