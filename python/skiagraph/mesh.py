@@ -245,7 +245,14 @@ class Mesh:
 
     @property
     def vertices(self) -> NDArray[np.float64]:
-        """Positions [n, 3] in mm, a copy. Assign an array to move the vertices: the next image shows it."""
+        """Positions [n, 3] in mm, a copy. Assign an array to move the vertices: the next image shows it. A closed mesh that this mirrors is
+        turned outward, as one whose pose mirrors it.
+
+        >>> mesh = Mesh.cube(2)
+        >>> mesh.vertices = mesh.vertices * (-1, 1, 1)
+        >>> round(mesh.health["volume"], 6)
+        8.0
+        """
         made = np.empty((self._counts()[0], 3))
         call("skg_mesh_positions_get", self._handle, ffi.cast("double *", ffi.from_buffer(made)), 0)
         made.flags.writeable = False
@@ -287,9 +294,13 @@ class Mesh:
         return np.array([origin[0][k] for k in range(3)])
 
     def moved(self) -> None:
-        """Says that offsets were written."""
+        """Says that offsets were written. As with `vertices`, a closed mesh that they mirror is turned outward."""
         self._changed = True
         call("skg_mesh_offsets_moved", self._handle)
+        health = struct("skg_mesh_health")
+        call("skg_mesh_health_get", self._handle, health)
+        if health.closed and health.volume < 0:
+            self._place(self.vertices)
 
     @property
     def version(self) -> int:

@@ -2,6 +2,7 @@
 import base64
 import json
 import pathlib
+import pickle
 import re
 import shutil
 import warnings
@@ -139,6 +140,38 @@ def test_vertices_move(scene):
     np.testing.assert_allclose(scene.lengths("block", "surface"), before, atol=3e-5 * 40)  # single precision
     with pytest.raises(sk.ArgumentError, match="the mesh has"):
         mesh.vertices = mesh.vertices[:-1]
+
+
+def mirror_by_vertices(mesh):
+    mesh.vertices = mesh.vertices * (-1, 1, 1)
+
+
+def mirror_by_offsets(mesh):
+    mesh.offsets[:, 0] *= -1  # about the origin of the offsets, which is that of the mesh here
+    mesh.moved()
+
+
+@pytest.mark.parametrize("mirror", [mirror_by_vertices, mirror_by_offsets])
+def test_a_mirrored_mesh_stays_matter(view, tmp_path, mirror):
+    """As with a pose that mirrors it, and twice as not at all. The wedge is no mirror image of itself."""
+    scene = sk.Scene()
+    scene.view, scene.beam = view, sk.Beam.mono(60, 1e6)
+    scene.add("wedge", sk.Mesh.step_wedge(20, 20, 20, 4), material="water")
+    first, mesh = scene.image(), scene["wedge"].mesh
+    scene["wedge"].pose = np.diag([-1.0, 1, 1, 1])
+    posed = scene.image()
+    assert (posed != first).any()
+    scene["wedge"].pose = np.eye(4)
+    mass = scene.parts()["parts"][0]["mass_g"]
+    mirror(mesh)
+    np.testing.assert_allclose(scene.image(), posed, rtol=1e-6)  # the order of float sums is another
+    assert scene.parts()["parts"][0]["mass_g"] == pytest.approx(mass, rel=1e-6) and mass > 0
+    assert scene.dose(histories=2000)["parts"][0]["energy_keV"] > 0
+    scene.save(tmp_path / "scene.json")
+    for other in (sk.Scene(tmp_path / "scene.json"), pickle.loads(pickle.dumps(scene))):
+        np.testing.assert_allclose(other.image(), posed, rtol=1e-6)
+    mirror(mesh)
+    np.testing.assert_array_equal(scene.image(), first)
 
 
 def nested_boxes():
