@@ -30,6 +30,16 @@ def numbers(value: Any, what: str) -> NDArray[Any]:
     return array
 
 
+def edges(bands: Any) -> NDArray[np.float64]:
+    """The edges of energy bands, keV: two or more."""
+    found = np.atleast_1d(numbers(bands, "bands")).astype(np.float64)
+    if found.ndim != 1:
+        raise ArgumentError(f"bands has {describe(found)}; give a list of edges in keV")
+    if len(found) < 2:
+        raise ArgumentError(f"bands is {found.tolist()}: {'one edge makes' if len(found) else 'without edges there is'} no band; give two or more")
+    return found
+
+
 def whole(value: Any, what: str, least: int) -> int:
     """A whole number, at least so much; 96.0 is one, and 96.5 is not cut off."""
     number = int(value) if isinstance(value, (float, np.floating)) and float(value).is_integer() else value

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _arrays
 from ._frames import Batch, cancel, wait
 from ._images import number_frames
 from ._interface import OK, ArgumentError, SceneError
@@ -180,7 +181,7 @@ def _derivatives(state: State, directions: list[Mapping[str, Any]], options: dic
     given = struct("skg_direction", len(directions))
     filled = [_Direction(state, direction, given[k]) for k, direction in enumerate(directions)]
     bands = options.get("bands")
-    shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
+    shape = (() if bands is None else (len(_arrays.edges(bands)) - 1,)) + state.require_view().shape
     found = np.empty((len(directions), *shape))
     output = struct("skg_output")
     output.type, output.data = choice("type", "float64", "the type"), _pointer(found)

@@ -68,7 +68,7 @@ def channels_of(state: State, options: Mapping[str, Any]) -> int | None:
     """The channels of images: bands, or windows of a detector that counts. None: images have no axis of channels."""
     bands, counter = options.get("bands"), options.get("counter")
     if bands is not None:
-        return len(bands) - 1
+        return len(_arrays.edges(bands)) - 1
     if counter is not None and not hasattr(counter, "_handle"):
         raise ArgumentError(f"counter is {counter!r}; give a Counter")
     with state.calls():

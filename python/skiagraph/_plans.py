@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from . import _arrays
 from ._device import Device
 from ._interface import ENUMS, OK, STALE, ArgumentError
 from ._library import call, check, choice, ffi, fill, lib, make, struct
@@ -85,7 +86,7 @@ class Plans:
         if scatter is not None:
             options.scatter = _scatter(scatter, options.scatter, keep)
         if bands is not None:
-            edges = np.atleast_1d(np.asarray(bands, dtype=float))
+            edges = _arrays.edges(bands)
             values.update(band_kev=edges, bands=len(edges) - 1)
         if isinstance(blur, Mapping):
             values["blur"] = _blur(blur, view)

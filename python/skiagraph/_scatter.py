@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from . import _arrays
 from ._breath import weighed
 from ._frames import Batch
 from ._images import compute, number_frames, together
@@ -52,7 +53,7 @@ def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
 def planes(state: State, quantity: str | None, components: bool, options: dict[str, Any]) -> dict[str, Any]:
     """The scattered part of an image, its standard error, the image, and what is reported of the scatter."""
     bands = options.get("bands")
-    channels = () if bands is None else (len(bands) - 1,)
+    channels = () if bands is None else (len(_arrays.edges(bands)) - 1,)
     batch = Batch(1, index=number_frames(state, 1, None, options))
     dtype = np.float64 if options.get("precision") == "double" else np.float32
     wanted = _outputs(components)
