@@ -30,6 +30,12 @@ def numbers(value: Any, what: str) -> NDArray[Any]:
     return array
 
 
+def fixed(array: NDArray[Any]) -> NDArray[Any]:
+    """Makes an array read-only: it is a copy of what an object has, so that what is written there would be lost."""
+    array.flags.writeable = False
+    return array
+
+
 def edges(bands: Any) -> NDArray[np.float64]:
     """The edges of energy bands, keV: two or more."""
     found = np.atleast_1d(numbers(bands, "bands")).astype(np.float64)

@@ -8,6 +8,7 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arrays
 from ._device import Log
 from ._interface import ArgumentError
 from ._library import call, choice, doubles, encode, ffi, fill, filled, integer, make, owned, retained, struct
@@ -104,11 +105,11 @@ class Beam:
         kev, photons = ffi.new("double[]", count), ffi.new("double[]", count)
         for i in range(count):
             call("skg_spectrum_bin_get", self._handle, i, kev + i, photons + i)
-        return np.array(list(kev)), np.array(list(photons))
+        return _arrays.fixed(np.array(list(kev))), _arrays.fixed(np.array(list(photons)))
 
     @property
     def energies(self) -> NDArray[np.float64]:
-        """keV, rising."""
+        """keV, rising; read-only, as photons."""
         return self._bins()[0]
 
     @property

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arrays
 from ._interface import ArgumentError
 from ._library import call, doubles, encode, ffi, filled, integer, make, number, owned, retained, string
 
@@ -135,7 +136,7 @@ class Material:
         rows = np.empty((2, count[0]))
         x, squares = (ffi.cast("double *", ffi.from_buffer(row)) for row in rows)
         call("skg_material_form_factor_get", self._handle, count[0], x, squares, count)
-        return rows[0], rows[1]
+        return _arrays.fixed(rows[0]), _arrays.fixed(rows[1])
 
     @property
     def name(self) -> str:
@@ -169,7 +170,7 @@ class Material:
         made = np.empty(count[0])
         if made.size:
             call("skg_material_edges_get", self._handle, made.size, ffi.cast("double *", ffi.from_buffer(made)), count)
-        return made
+        return _arrays.fixed(made)
 
     def attenuation(self, kev: Any) -> NDArray[np.float64]:
         """The linear attenuation coefficient in 1/cm, at one energy in keV or at an array of them."""

@@ -255,8 +255,7 @@ class Mesh:
         """
         made = np.empty((self._counts()[0], 3))
         call("skg_mesh_positions_get", self._handle, ffi.cast("double *", ffi.from_buffer(made)), 0)
-        made.flags.writeable = False
-        return made
+        return _arrays.fixed(made)
 
     @vertices.setter
     def vertices(self, value: Any) -> None:
@@ -274,8 +273,7 @@ class Mesh:
         """Triangles [m, 3] as numbers of vertices, a copy."""
         made = np.empty((self._counts()[1], 3), dtype=np.int32)
         call("skg_mesh_triangles_get", self._handle, ffi.cast("int32_t *", ffi.from_buffer(made)), 0)
-        made.flags.writeable = False
-        return made
+        return _arrays.fixed(made)
 
     @property
     def offsets(self) -> NDArray[np.float32]:
@@ -291,7 +289,7 @@ class Mesh:
         """The point from which offsets count, mm."""
         origin = ffi.new("const double **")
         call("skg_mesh_offsets_get", self._handle, ffi.new("float **"), origin)
-        return np.array([origin[0][k] for k in range(3)])
+        return _arrays.fixed(np.array([origin[0][k] for k in range(3)]))
 
     def moved(self) -> None:
         """Says that offsets were written. As with `vertices`, a closed mesh that they mirror is turned outward."""

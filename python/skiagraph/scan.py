@@ -126,14 +126,14 @@ class Scan(Sequence[View]):
     @property
     def angles(self) -> NDArray[np.float64]:
         """The nominal angle of each projection, degrees; 0 in a table of poses."""
-        return np.degrees([number("skg_scan_angle_get", self._handle, k) for k in range(len(self))])
+        return _arrays.fixed(np.degrees([number("skg_scan_angle_get", self._handle, k) for k in range(len(self))]))
 
     @property
     def axis(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The direction of the axis of rotation, of length 1, and a point on it, mm; a table of poses has none, and is refused."""
         direction, centre = ffi.new("double[3]"), ffi.new("double[3]")
         call("skg_scan_axis_get", self._handle, direction, centre)
-        return np.array(list(direction)), np.array(list(centre))
+        return _arrays.fixed(np.array(list(direction))), _arrays.fixed(np.array(list(centre)))
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -142,7 +142,7 @@ class Scan(Sequence[View]):
         for k in range(len(made)):
             call("skg_scan_time_get", self._handle, k, time, ffi.NULL)
             made[k] = time[0]
-        return made
+        return _arrays.fixed(made)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the geometry: .csv (what load() reads, and ASTRA's cone_vec), .xml (RTK), .tigre.py, .cil.py or transforms.json."""

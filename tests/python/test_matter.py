@@ -219,6 +219,17 @@ def test_beams():
         sk.Beam([1, 2], [3])
 
 
+def test_copies_are_read_only(view):
+    """What is written there would be lost."""
+    beam, scan, mesh = sk.Beam.mono(60, 1000), sk.Scan(view, 4), sk.Mesh.cube(1)
+    molecules = sk.Material("water").with_form_factor([0, 0.2, 0.5], [9, 4, 1])
+    for array in (beam.photons, beam.energies, beam.scaled(2).photons, scan.angles, scan.times, *scan.axis, mesh.vertices, mesh.faces, mesh.origin,
+                  sk.Material("Pb").edges, *molecules.form_factor):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 5
+    assert pickle.loads(pickle.dumps(beam)).photons.tolist() == [1000] and pickle.loads(pickle.dumps(molecules)).name == molecules.name
+
+
 def test_plots_with_matplotlib():
     pytest.importorskip("matplotlib").use("Agg")
     axes = sk.Beam.tube(100, {"Al": 2.5}).plot()
