@@ -328,6 +328,27 @@ def test_a_warning_is_said_once(scene):
         scene.image(supersampling=2)  # another plan of the same scene
 
 
+def test_warnings_of_a_failure_are_not_the_next_scenes():
+    import warnings
+
+    def cylinder(**scan):
+        scene = sk.Scene()
+        scene.add("big", sk.Mesh.cylinder(35, 60, 24), material=sk.Material.mu(0.2))
+        scene.beam = sk.Beam.mono(60, 1000)
+        scene.view = sk.View(source=(0, -400, 0), detector=(0, 200, 0), column_step=(2, 0, 0), row_step=(0, 0, -2), pixels=(64, 48))
+        scene.trajectory = sk.Scan(scene.view, 12, **scan)
+        return scene
+
+    with pytest.warns(sk.SkiagraphWarning, match="nothing falls on the detector"), pytest.raises(sk.SceneError, match="lies on the detector"):
+        cylinder(detector_fixed=True).scan()  # from beside the detector, then from its plane
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cylinder().image()
+        with pytest.raises(sk.SceneError, match="lies on the detector"):  # the error, not the warning before it
+            cylinder(detector_fixed=True).scan()
+        cylinder().image()
+
+
 def test_removed_meshes_are_let_go():
     import gc
     import weakref
