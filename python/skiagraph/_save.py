@@ -17,7 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from . import _breath
-from ._interface import ArgumentError, SceneError
+from ._interface import ArgumentError, OutputError, SceneError
 from ._library import encode, ffi, string, struct
 from ._source import schema
 from .beam import Beam
@@ -42,6 +42,8 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
     if target.name.lower().endswith(".ctsimu.json"):
         raise ArgumentError(f"{target}: the command writes scenarios of CTSimU: save the scene as .json, then skiagraph scan SCENE.json -o "
                             f"projections --geometry {target.name}")
+    if not target.parent.is_dir():
+        raise OutputError(f"{target}: there is no folder {target.parent}; make it first")
     text = settings_text(state)
     _rename_files(text, state.source.files, target.parent)
     _write_samples(state, text, target)
@@ -50,7 +52,7 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
     if state.breath:
         _drop(text, "Breathing")
     text = {"$schema": "scene.schema.json", **text}
-    target.write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
+    _write_text(target, json.dumps(text, indent=1) + "\n")
 
 
 def settings_text(state: State, placed: bool = False) -> dict[str, Any]:
@@ -289,12 +291,21 @@ def material_text(material: Material, write: Callable[[str], str]) -> tuple[Any,
     return ["Mixture", [x for pair in material.elements.items() for x in pair]], material.density
 
 
-# Files beside the scene
+# Files
+
+def _write_text(path: pathlib.Path, text: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}") from None
 
 
 def _beside(target: pathlib.Path, part: Part, suffix: str) -> tuple[pathlib.Path, str]:
     folder = target.with_name(target.stem + "-parts")
-    folder.mkdir(exist_ok=True)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be made: {error.strerror}") from None
     name = f"{part.number}-{re.sub('[^A-Za-z0-9]+', '-', part.label).strip('-')}{suffix}"
     return folder / name, f"{folder.name}/{name}"
 
@@ -315,7 +326,7 @@ def _mesh_file(state: State, target: pathlib.Path, part: Part) -> str:
 def _writer(target: pathlib.Path, part: Part) -> Callable[[str], str]:
     def write(rows: str) -> str:
         path, name = _beside(target, part, ".txt")
-        path.write_text(rows, encoding="ascii")
+        _write_text(path, rows)
         return name
 
     return write

@@ -57,7 +57,7 @@ def planes(state: State, quantity: str | None, components: bool, options: dict[s
     batch = Batch(1, index=number_frames(state, 1, None, options))
     dtype = np.float64 if options.get("precision") == "double" else np.float32
     wanted = _outputs(components)
-    found = np.empty((len(wanted), *channels, *state.require_view().shape), dtype)
+    found = np.empty((len(wanted), *channels, *state.shape()), dtype)
     used: list[Any] = []
 
     def choose(output: Any, number: int) -> None:

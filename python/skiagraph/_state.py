@@ -178,6 +178,12 @@ class State:
             raise SceneError("the scene has no source and detector; assign a View to scene.view")
         return self.view
 
+    def shape(self, view: View | None = None) -> tuple[int, int]:
+        """(rows, columns) of images of this view, or the scene's, which can be imaged: arrays of that size may be made."""
+        seen = view or self.require_view()
+        seen.check()
+        return seen.shape
+
     def require_beam(self) -> Beam:
         if self.beam is None:
             raise SceneError("the scene has no beam; assign a Beam to scene.beam")

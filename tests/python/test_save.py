@@ -77,6 +77,8 @@ def test_files_and_keys_stay(tmp_path, together):
     assert (tmp_path / "more-parts" / "3-new.ply").exists()
     scene["pot"].mesh.vertices = 1.1 * scene["pot"].mesh.vertices
     again(scene, tmp_path / "moved.json", precision="double")  # floats count from another origin
+    with pytest.raises(sk.OutputError, match="there is no folder .*missing; make it first"):
+        scene.save(tmp_path / "missing" / "scene.json")
     with pytest.raises(sk.ArgumentError, match="written as .json"):
         scene.save(tmp_path / "scene.png")
 

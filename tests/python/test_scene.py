@@ -92,6 +92,43 @@ def test_failures_have_their_sentences(path, tmp_path):
     assert issubclass(sk.FileError, sk.Error)
 
 
+@pytest.mark.parametrize("call, words", [
+    (lambda s: s.image(index=2 ** 65), "index is .*, 0 to 9223372036854775807"),
+    (lambda s: s.add("more", sk.Mesh.cube(1), material="Al", priority=1.5), "priority is 1.5; give a whole number"),
+    (lambda s: s.add("more", sk.Mesh.cube(1), material="Al", priority=2 ** 40), "priority is .* to 2147483647"),
+    (lambda s: s.add_volume("more", np.zeros((2, 2, 2)), np.eye(4), priority=1.5), "priority is 1.5; give a whole number"),
+    (lambda s: s.add_volume("more", np.zeros((2, 2, 2)), np.eye(4), classes=[5]), "give pairs of a value and a material"),
+    (lambda s: s.add(5, sk.Mesh.cube(1), material="Al"), "label is 5; give a text"),
+    (lambda s: s.dose("a"), "at has .*; give real numbers"),
+    (lambda s: s.dose(histories=1.5), "histories is 1.5; give a whole number"),
+    (lambda s: s.dose(seed="a"), "seed is 'a'; give a whole number"),
+    (lambda s: s.scan(subframes=1.5), "subframes is 1.5; give a whole number"),
+    (lambda s: s.images(views=5), "views is a int; give Views"),
+    (lambda s: s.lengths(5), "label is a int"),
+    (lambda s: s.picture(8), r"pixels is 8; give \(columns, rows\)"),
+    (lambda s: s.gradient("a"), "weights has .*; give real numbers"),
+    (lambda s: sk.Scan(s.view, 2.5), "projections is 2.5; give a whole number"),
+    (lambda s: sk.Scan(s.view, 2, step="a"), "step is 'a'; give a number"),
+    (lambda s: sk.Scan(s.view, 2)[0.5], "the number of a projection is 0.5"),
+    (lambda s: sk.View(source=(0, 0, -9), detector=(0, 0, 9), column_step=(1, 0, 0), row_step=(0, 1, 0), pixels=8), "pixels is 8"),
+])
+def test_wrong_arguments_are_named(scene, call, words):
+    """None is cut to a whole number, and none is an error of Python's own."""
+    with pytest.raises(sk.ArgumentError, match=words):
+        call(scene)
+
+
+def test_a_view_that_is_too_large_is_refused_before_memory_is_taken(scene):
+    scene.view.pixels = (10 ** 6, 10 ** 6)
+    for call in (scene.image, lambda: scene.images(views=[scene.view]), lambda: scene.lengths("ball"), lambda: scene.noise(noise=True),
+                 scene.scatter, lambda: scene.derivative({"source": (1, 0, 0)}), scene.parts, scene.dose):
+        with pytest.raises(sk.SceneError, match="1 to 32768"):
+            call()
+    scene.view.pixels = (64, 48)
+    with pytest.raises(sk.ArgumentError, match="does not fit into memory"):
+        scene.picture((10 ** 6, 10 ** 6))
+
+
 def test_no_device_is_a_sentence():
     with pytest.raises(sk.NoDeviceError):
         sk.Device("device=a-device-that-nobody-has")
@@ -282,6 +319,8 @@ def test_breath(tmp_path):
         assert (scene["liver"].mesh.vertices == inhaled).all() and (scene.image() == image).all()
         still = {"skin": np.eye(4)[None].repeat(2, 0)}
         assert (scene.images(poses=still) == image).all()  # frames of a batch breathe too
+        with pytest.raises(sk.ArgumentError, match="phase is 'a'; give a number"):
+            scene.breathe(phase="a")
     with pytest.raises(sk.ArgumentError, match="one of them"):
         sk.Scene().breathe()
 

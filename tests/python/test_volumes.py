@@ -211,6 +211,9 @@ def test_simpleitk_images(tmp_path):
     image.SetOrigin((-19, 14, -9))
     image.SetDirection((0.8, 0.6, 0, 0.6, -0.8, 0, 0, 0, 1))
     scene = make_scene()
+    for other, words in ((itk.Image(4, 4, itk.sitkInt16), "2 dimensions"), (itk.Image([4, 4, 4], itk.sitkVectorUInt8, 3), "3 values a pixel")):
+        with pytest.raises(sk.ArgumentError, match=words):
+            scene.add_volume("ct", other)
     scene.add_volume("ct", image)
     expected = scene.image("attenuation")
     for name in ("ct.mha", "ct.mhd", "ct.nrrd"):
