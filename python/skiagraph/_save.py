@@ -197,8 +197,8 @@ def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> 
     for part, name in zip(parts, state.names):
         sample = dict(samples[name]) if name < len(samples) and len(made) < state.file_parts else {}
         if part.volume and not sample:
-            raise SceneError(f"{part.label}: a volume that was added as an array is not written into a scene; write it as .mha, for "
-                             "example by SimpleITK, and name the file")
+            raise SceneError(f"{part.label}: a volume that add_volume() added is not written into a scene; read a scene whose sample "
+                             "names its file (the key Volume; an array may be written as .mha, for example by SimpleITK)")
         _say_all(sample, part)
         if not sample.get(_named(sample, "Transform")) or together or part.label in changed["poses"] + changed["meshes"]:
             _place(sample, part, part.label in changed["meshes"])

@@ -190,6 +190,8 @@ def test_dicom_reads_back(scene, tmp_path):
     assert float(read.KVP) == pytest.approx(max(scene.beam.energies))
     scene.save(tmp_path / "b.dcm", image, "attenuation")
     assert (tmp_path / "a.dcm").read_bytes() == (tmp_path / "b.dcm").read_bytes()
+    scene.save(tmp_path / "b.dcm", image[None], "attenuation")  # one channel
+    assert (tmp_path / "a.dcm").read_bytes() == (tmp_path / "b.dcm").read_bytes()
     image[0, 0] = np.nan
     with pytest.raises(sk.Error, match="1 of .* pixels are not finite"):
         scene.save(tmp_path / "c.dcm", image, "attenuation")
