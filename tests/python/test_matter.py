@@ -220,7 +220,7 @@ def test_beams():
 
 
 def test_copies_are_read_only(view):
-    """What is written there would be lost."""
+    """Assignments to a copy would be lost."""
     beam, scan, mesh = sk.Beam.mono(60, 1000), sk.Scan(view, 4), sk.Mesh.cube(1)
     molecules = sk.Material("water").with_form_factor([0, 0.2, 0.5], [9, 4, 1])
     for array in (beam.photons, beam.energies, beam.scaled(2).photons, scan.angles, scan.times, *scan.axis, mesh.vertices, mesh.faces, mesh.origin,
