@@ -75,7 +75,7 @@ class _Job:
         image = self.channels * self.view.pixels[0] * self.view.pixels[1] * self.dtype.itemsize
         run.subframes, run.motion, run.type = wanted.subframes, self.motion, ENUMS["type"][self.dtype.name]
         waits = wanted.breathing or self.options.scatter != ffi.NULL
-        run.batch = 1 if waits else max(1, min(_MAX, _BATCH // (image * wanted.subframes)))
+        run.batch = 1 if waits else max(1, min(_MAX, _BATCH // (image * max(1, wanted.subframes))))
         if wanted.only is not None:
             numbers = _arrays.numbers(wanted.only, "only")
             if numbers.ndim != 1 or not numbers.size or numbers.dtype.kind not in "iu":

@@ -50,7 +50,7 @@ class Scan(Sequence[View]):
         if not isinstance(view, View):
             raise ArgumentError(f"view is a {type(view).__name__}; give a View")
         keep: list[Any] = []
-        values = {n + "_rad" if n in _ANGLES else n: np.radians(_arrays.real(v, n)) if n in _ANGLES else v for n, v in fields.items()}
+        values = {n + "_rad" if n in _ANGLES else n: np.radians(_arrays.numbers(v, n)) if n in _ANGLES else v for n, v in fields.items()}
         options = fill(struct("skg_scan_options"), "skg_scan_options", values, keep, "the field of a scan")
         if poses is not None:
             arguments = (len(poses), ffi.cast("double *", ffi.from_buffer(poses)))

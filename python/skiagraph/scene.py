@@ -360,7 +360,7 @@ class Scene(_gradient.Differentiable):
         (8, 48, 64)
         """
         given = {"quantity": quantity, "precision": precision, "tolerance": tolerance, **options}
-        wanted = _projections.Wanted(only, breathing, _arrays.whole(subframes, "subframes", 1), given, progress)
+        wanted = _projections.Wanted(only, breathing, _arrays.whole(subframes, "subframes"), given, progress)
         if self._state.breath and not breathing:
             raise SceneError("the scene was posed by breathe(); give breathing=True to pose it at the time of each "
                              "projection, or images(views=scene.trajectory) for this pose")
