@@ -335,6 +335,7 @@ skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64
     if (far) memcpy(mesh->origin, centre, sizeof centre);
     mesh->positions_stale = 0;
     set_offsets(mesh);
+    skg_mesh_turn_outward(mesh);
     skg_mesh_set_bounds(mesh);
     mesh->version++;
     return skg_mesh_count_layers(mesh);

@@ -177,6 +177,15 @@ void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health) {
     health->volume = mesh->orientation * volume;
 }
 
+void skg_mesh_turn_outward(skg_mesh *mesh) {
+    skg_mesh_health *health = &mesh->health;
+    skg_mesh_measure(mesh, health);
+    if (!mesh->closed || !(health->volume < 0)) return;
+    mesh->orientation = -mesh->orientation;
+    health->volume = -health->volume;
+    health->flipped = mesh->orientation < 0;
+}
+
 skg_status skg_mesh_examine(skg_mesh *mesh) {
     skg_mesh_health *health = &mesh->health;
     const skg_mesh_health of_file = *health;
@@ -189,13 +198,8 @@ skg_status skg_mesh_examine(skg_mesh *mesh) {
     SKG_TRY(skg_mesh_count_duplicates(mesh));
     SKG_TRY(skg_mesh_components(mesh, NULL, &health->components));
     mesh->orientation = 1;
-    skg_mesh_measure(mesh, health);
     mesh->closed = health->closed;
-    if (health->closed && health->volume < 0) {
-        mesh->orientation = -1;
-        health->volume = -health->volume;
-        health->flipped = 1;
-    }
+    skg_mesh_turn_outward(mesh);
     health->outward = health->closed && health->volume > 0;
     if (!health->closed) skg_mesh_vertex(mesh, health->first_open_vertex, health->first_open_position);
     if (health->welded_vertices == mesh->vertices) skg_free(&mesh->weld);

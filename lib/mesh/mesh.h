@@ -102,6 +102,10 @@ skg_status skg_mesh_components(const skg_mesh *mesh, int32_t *number, int64_t *c
 /* Volume (times orientation), area, bounds and degenerate triangles for the present positions. */
 void skg_mesh_measure(const skg_mesh *mesh, skg_mesh_health *health);
 
+/* Measures a mesh for its present positions, and turns the orientation of a closed one whose volume is negative: its triangles face
+ * inward, or its positions were mirrored. */
+void skg_mesh_turn_outward(skg_mesh *mesh);
+
 /* A coordinate of the present position of a vertex, mm. */
 static inline double skg_mesh_coordinate(const skg_mesh *mesh, int64_t vertex, int axis) {
     return mesh->positions_stale ? mesh->origin[axis] + (double)mesh->offsets[3 * vertex + axis]

@@ -30,16 +30,57 @@ def numbers(value: Any, what: str) -> NDArray[Any]:
     return array
 
 
-def whole(value: Any, what: str, least: int) -> int:
-    """A whole number, at least so much; 96.0 is one, and 96.5 is not cut off."""
+def fixed(array: NDArray[Any]) -> NDArray[Any]:
+    """Makes an array read-only: it is a copy of what an object has, so that what is written there would be lost."""
+    array.flags.writeable = False
+    return array
+
+
+def edges(bands: Any) -> NDArray[np.float64]:
+    """The edges of energy bands, keV: two or more."""
+    found = np.atleast_1d(numbers(bands, "bands")).astype(np.float64)
+    if found.ndim != 1:
+        raise ArgumentError(f"bands has {describe(found)}; give a list of edges in keV")
+    if len(found) < 2:
+        raise ArgumentError(f"bands is {found.tolist()}: {'one edge makes' if len(found) else 'without edges there is'} no band; give two or more")
+    return found
+
+
+def real(value: Any, what: str) -> float:
+    """A number."""
+    try:
+        if not isinstance(value, (str, bytes)):
+            return float(value)
+    except (TypeError, ValueError, OverflowError):
+        pass
+    raise ArgumentError(f"{what} is {value!r}; give a number")
+
+
+def reals(**values: Any) -> tuple[float, ...]:
+    """Numbers with their names."""
+    return tuple(real(value, name) for name, value in values.items())
+
+
+def whole(value: Any, what: str, least: int = 0, most: int = 2 ** 63 - 1) -> int:
+    """A whole number from the least to the most; 96.0 is one, and 96.5 is not cut off."""
     number = int(value) if isinstance(value, (float, np.floating)) and float(value).is_integer() else value
     try:
         number = operator.index(number)
     except TypeError:
         raise ArgumentError(f"{what} is {value!r}; give a whole number") from None
-    if number < least:
-        raise ArgumentError(f"{what} is {value!r}; give a whole number, {least} or more")
+    if not least <= number <= most:
+        limits = f"{least} or more" if number < least and most == 2 ** 63 - 1 else f"{least} to {most}"
+        raise ArgumentError(f"{what} is {value!r}; give a whole number, {limits}")
     return number
+
+
+def raster(value: Any, what: str) -> tuple[int, int]:
+    """(columns, rows) of an image."""
+    try:
+        columns, rows = value
+    except (TypeError, ValueError):
+        raise ArgumentError(f"{what} is {value!r}; give (columns, rows)") from None
+    return whole(columns, f"{what}[0]", 0, 2 ** 31 - 1), whole(rows, f"{what}[1]", 0, 2 ** 31 - 1)
 
 
 def vector(value: Any, what: str) -> NDArray[np.float64]:

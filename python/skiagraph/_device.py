@@ -39,6 +39,11 @@ def warn(sentence: str, category: type[Warning] = SkiagraphWarning) -> None:
     warnings.warn(sentence, category, stacklevel=level)
 
 
+def note(sentence: str) -> None:
+    """A note for the logger "skiagraph"."""
+    _log.info("%s", sentence)
+
+
 class Log:
     """Collects what the library says during a call; deliver() passes it on."""
 
@@ -111,16 +116,26 @@ class Device:
 
     @contextlib.contextmanager
     def calls(self, said: set[str] | None = None) -> Iterator[None]:
-        """Inside of it this thread alone calls the library with this device. said: warnings that are not repeated."""
-        with self._lock:
-            self._depth += 1
-            try:
-                if self._depth == 1:
-                    self._collect()
-                yield
-            finally:
-                self._depth -= 1
-                outermost = self._depth == 0
+        """Inside of it this thread alone calls the library with this device. said: warnings that are not repeated.
+
+        A call that fails passes on its warnings, too, before its error.
+        """
+        outermost = False
+        try:
+            with self._lock:
+                self._depth += 1
+                try:
+                    if self._depth == 1:
+                        self._collect()
+                    yield
+                finally:
+                    self._depth -= 1
+                    outermost = self._depth == 0
+        except BaseException:
+            if outermost:
+                with contextlib.suppress(Warning):  # where warnings are errors, the call's own error comes first
+                    self._log.deliver(said)
+            raise
         if outermost:
             self._log.deliver(said)
 

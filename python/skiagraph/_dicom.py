@@ -47,6 +47,8 @@ def write(path: str | os.PathLike[str], image: NDArray[Any], *, name: str, unit:
         from pydicom.uid import UID, ExplicitVRLittleEndian, generate_uid
     except ImportError as failure:
         raise ArgumentError(f"{where}: writing it needs the package pydicom (pip install pydicom)") from failure
+    if image.ndim == 3 and len(image) == 1:
+        image = image[0]
     if image.ndim != 2:
         raise ArgumentError(f"{where}: a .dcm holds one channel, and the image has {image.shape[0]}; write a .tif or .mha")
     stored, slope, intercept = _stored(where, image)

@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from . import _arrays
 from ._library import as_dict, call, choice, struct
 from ._progress import Progress, Watch
 from .mesh import as_mesh
@@ -24,7 +25,7 @@ def distance(a: Any, b: Any, *, sampling: str = "surface", spacing: float = 0, p
     meshes = as_mesh(a), as_mesh(b)
     options = struct("skg_distance_options")
     options.sampling = choice("distance_sampling", sampling, "sampling")
-    options.spacing_mm = float(spacing)
+    options.spacing_mm = _arrays.real(spacing, "spacing")
 
     def measure(of: Any, to: Any) -> dict[str, Any]:
         found = struct("skg_distance")

@@ -7,6 +7,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike
 
+from . import _arrays
+from ._breath import weighed
 from ._interface import ArgumentError
 from ._library import ffi, filled, listed, make, release, struct
 from ._progress import Progress, Watch
@@ -46,23 +48,24 @@ def _sum(handle: Any, times: float) -> Any:
 
 def dose(state: State, at: ArrayLike | None, scan: Scan | None, times: float, histories: int | None, seed: int,
          progress: Progress, options: dict[str, Any]) -> dict[str, Any]:
-    places = np.ascontiguousarray(() if at is None else at, dtype=np.float64)
+    places = np.ascontiguousarray(() if at is None else _arrays.numbers(at, "at"), dtype=np.float64)
     if at is not None and (places.ndim not in (1, 2) or places.shape[-1] != 3):
         raise ArgumentError(f"at has the shape {places.shape}; give a place [x, y, z] in mm, or several [n, 3]")
     asked = struct("skg_dose_options")
-    asked.point_count, asked.seed = places.size // 3, seed
+    asked.point_count, asked.seed = places.size // 3, _arrays.whole(seed, "seed")
+    times = _arrays.real(times, "times")
     if histories is not None:
-        asked.histories = int(histories)
+        asked.histories = _arrays.whole(histories, "histories")
     if places.size:
         asked.points = ffi.cast("double *", ffi.from_buffer(places))
-    with state.calls():
+    with state.calls(), weighed(state):
         with Watch(progress, "rounds of photons" if scan is None else "projections") as asked.progress:
             if scan is None:
                 handle = make("skg_dose_create", "skg_dose", state.plan(options), asked)
             else:
                 handle = make("skg_scan_dose_create", "skg_dose", state.plan(options, scan[0]), scan._handle, asked)
         if times != 1:
-            handle = _sum(handle, float(times))
+            handle = _sum(handle, times)
         try:
             return _report(state, handle)
         finally:

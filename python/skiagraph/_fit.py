@@ -7,7 +7,7 @@ import tempfile
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from . import _command
+from . import _arrays, _command
 from ._interface import ArgumentError, SceneError
 from .mesh import as_mesh
 from .scene import Scene, state_of
@@ -36,7 +36,7 @@ def fit(scene: Scene, targets: Mapping[str, Any] | Mapping[float, Mapping[str, A
     with tempfile.TemporaryDirectory(prefix="skiagraph-") as folder:
         words = ["fit", state.source.path, "-o", os.fspath(out), "--json"]
         for when, surfaces in at.items():
-            words += ["--phase", repr(float(when))]
+            words += ["--phase", repr(_arrays.real(when, "phase"))]
             for label, mesh in surfaces.items():
                 state.number(label)  # says which labels there are
                 path = os.path.join(folder, f"target-{len(words)}.ply")

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from . import _arrays
 from ._frames import Batch, cancel, wait
 from ._images import number_frames
 from ._interface import OK, ArgumentError, SceneError
@@ -52,7 +53,7 @@ class Differentiable:
         for name in wrt:
             if name not in NAMES:
                 raise ArgumentError(f"wrt has {name!r}; it is made of {', '.join(map(repr, NAMES))}")
-        given = np.ascontiguousarray(weights, dtype=np.float64)
+        given = np.ascontiguousarray(_arrays.numbers(weights, "weights"), dtype=np.float64)
         if given.ndim not in (2, 3):
             raise ArgumentError(f"weights has the shape {given.shape}; it is [row, column] or [band, row, column]")
         with self._state.calls():
@@ -131,7 +132,7 @@ def _gradient(state: State, weights: NDArray[np.float64], wrt: list[str], option
 
 
 def _vector(value: Any, shape: tuple[int, ...], what: str) -> NDArray[np.float64]:
-    array = np.ascontiguousarray(value, dtype=np.float64)
+    array = np.ascontiguousarray(_arrays.numbers(value, what), dtype=np.float64)
     if array.shape != shape:
         raise ArgumentError(f"{what} has the shape {array.shape}; it is {shape}")
     return array
@@ -158,7 +159,7 @@ class _Direction:
         if "density" in direction:
             densities = np.zeros(len(parts))
             for label, change in direction["density"].items():
-                densities[state.number(label)] = float(change)
+                densities[state.number(label)] = _arrays.real(change, f"density[{label!r}]")
             given.densities = self._take(densities)
 
     def _take(self, array: NDArray[np.float64]) -> Any:
@@ -180,7 +181,7 @@ def _derivatives(state: State, directions: list[Mapping[str, Any]], options: dic
     given = struct("skg_direction", len(directions))
     filled = [_Direction(state, direction, given[k]) for k, direction in enumerate(directions)]
     bands = options.get("bands")
-    shape = (() if bands is None else (len(bands) - 1,)) + state.require_view().shape
+    shape = (() if bands is None else (len(_arrays.edges(bands)) - 1,)) + state.shape()
     found = np.empty((len(directions), *shape))
     output = struct("skg_output")
     output.type, output.data = choice("type", "float64", "the type"), _pointer(found)

@@ -68,7 +68,7 @@ def channels_of(state: State, options: Mapping[str, Any]) -> int | None:
     """The channels of images: bands, or windows of a detector that counts. None: images have no axis of channels."""
     bands, counter = options.get("bands"), options.get("counter")
     if bands is not None:
-        return len(bands) - 1
+        return len(_arrays.edges(bands)) - 1
     if counter is not None and not hasattr(counter, "_handle"):
         raise ArgumentError(f"counter is {counter!r}; give a Counter")
     with state.calls():
@@ -107,8 +107,8 @@ def lengths(state: State, labels: Sequence[str], kind: str, poses: Mapping[str, 
     if not parts:
         return []
     with state.calls():
-        view = batch.views[0] if batch.views else state.require_view()
-    shape = view.shape if one else (batch.count, *view.shape)
+        raster = state.shape(batch.views[0] if batch.views else None)
+    shape = raster if one else (batch.count, *raster)
     dtype = np.float64 if options.get("precision") == "double" else np.float32
     targets = [np.empty(shape, dtype) if out is None else _arrays.output(out, shape) for _ in parts]
 
@@ -127,10 +127,10 @@ def expected(state: State, batch: Batch, one: bool, progress: Progress, options:
     """The mean of images and the variance of their noise."""
     found, kinds = channels_of(state, options), ("mean", "variance")
     with state.calls():
-        view = batch.views[0] if batch.views else state.require_view()
+        raster = state.shape(batch.views[0] if batch.views else None)
     channels = () if found is None else (found,)
     dtype = np.float64 if options.get("precision") == "double" else np.float32
-    targets = [np.empty((*(() if one else (batch.count,)), *channels, *view.shape), dtype) for _ in kinds]
+    targets = [np.empty((*(() if one else (batch.count,)), *channels, *raster), dtype) for _ in kinds]
 
     def choose(output: Any, number: int) -> None:
         output.kind = ENUMS["output_kind"][kinds[number]]

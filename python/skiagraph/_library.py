@@ -13,6 +13,7 @@ from typing import Any
 
 import cffi
 import numpy as np
+from numpy.typing import NDArray
 
 from . import _interface
 from ._interface import ENUMS, ERRORS, ArgumentError, Error
@@ -41,7 +42,10 @@ def text(pointer: Any) -> str:
 
 
 def encode(value: str | os.PathLike[str], what: str) -> bytes:
-    encoded = os.fsencode(value)
+    try:
+        encoded = os.fsencode(value)
+    except (TypeError, UnicodeError):
+        raise ArgumentError(f"{what} is {value!r}; give a text") from None
     if b"\0" in encoded:
         raise ArgumentError(f"{what} has a zero byte")
     return encoded
@@ -55,7 +59,11 @@ def check(status: int) -> int:
 
 
 def call(name: str, *arguments: Any) -> int:
-    return check(getattr(lib, name)(*arguments))
+    try:
+        status = getattr(lib, name)(*arguments)
+    except (TypeError, OverflowError) as error:  # what C cannot take
+        raise ArgumentError(f"{name}: {error}") from None
+    return check(status)
 
 
 def make(name: str, kind: str, *arguments: Any) -> Any:
@@ -196,7 +204,7 @@ def _set(pointer: Any, kind: str, name: str, field: Any, value: Any, keep: list[
             value = choice(f"{kind[len('skg_'):]}_{name}" if name not in ENUMS else name, value, name)
         _assign(pointer, name, value, "a number" if not enum else "one of " + ", ".join(map(repr, enum)))
     elif field.kind == "array":
-        given = np.atleast_1d(np.asarray(value, dtype=float))
+        given = np.atleast_1d(floats(value, name))
         if given.ndim != 1 or len(given) > field.length:
             raise ArgumentError(f"{name} has the shape {given.shape}; give up to {field.length} numbers")
         for i, element in enumerate(given):
@@ -222,11 +230,16 @@ def _assign(pointer: Any, name: str, value: Any, expected: str) -> None:
         raise ArgumentError(f"{name} is {value!r}; give {expected}") from None
 
 
+def floats(values: Any, what: str) -> NDArray[np.float64]:
+    """A dense array of doubles, a copy only if the values are others."""
+    try:
+        return np.ascontiguousarray(values, dtype=np.float64)
+    except (TypeError, ValueError, OverflowError):
+        raise ArgumentError(f"{what} is {values!r}; give numbers") from None
+
+
 def doubles(values: Any, what: str, keep: list[Any]) -> Any:
     """A pointer to numbers as C has them; the array is copied only if it is laid out otherwise."""
-    try:
-        array = np.ascontiguousarray(values, dtype=np.float64)
-    except (TypeError, ValueError):
-        raise ArgumentError(f"{what} is {values!r}; give numbers") from None
+    array = floats(values, what)
     keep.append(array)
     return ffi.cast("double *", ffi.from_buffer(array)) if array.size else ffi.NULL

@@ -21,7 +21,7 @@ def picture(state: State, pixels: Sequence[int], direction: Any, up: Any, orthog
     keep: list[Any] = []
     look = struct("skg_look")
     look.collimation = state.plans.options(state.options_setup, {}, keep).collimation
-    look.columns, look.rows, look.orthographic = int(pixels[0]), int(pixels[1]), bool(orthographic)
+    (look.columns, look.rows), look.orthographic = _arrays.raster(pixels, "pixels"), bool(orthographic)
     for name, given in (("from", direction), ("up", up)):
         for k, value in enumerate((0, 0, 0) if given is None else _arrays.vector(given, name)):
             getattr(look, name)[k] = value
@@ -29,7 +29,10 @@ def picture(state: State, pixels: Sequence[int], direction: Any, up: Any, orthog
         look.image = _grey(image, state.require_view().shape, keep)
     if colours:
         look.colours = _colours(state, colours, keep)
-    made = np.empty((int(pixels[1]), int(pixels[0]), 4), np.uint8)
+    try:
+        made = np.empty((look.rows, look.columns, 4), np.uint8)
+    except (MemoryError, ValueError):
+        raise ArgumentError(f"pixels is {pixels!r}, and a picture of that size does not fit into memory; give fewer") from None
     call("skg_scene_picture", state.device.handle, state.handle, state.require_view()._write(struct("skg_view")), look,
          ffi.cast("uint8_t *", ffi.from_buffer(made)))
     return np.ascontiguousarray(made[..., :3])
@@ -52,7 +55,7 @@ def _colours(state: State, colours: Mapping[str, Any], keep: list[Any]) -> Any:
     pointer = ffi.cast("uint8_t *", ffi.from_buffer(made))
     call("skg_look_colours_get", state.handle, pointer)
     for label, colour in colours.items():
-        given = np.asarray(colour, dtype=float)
+        given = _arrays.numbers(colour, "a colour")
         if given.shape not in ((3,), (4,)) or not ((given >= 0) & (given <= 1)).all():
             raise ArgumentError(f"colours[{label!r}] is {colour!r}; give red, green, blue and opacity, 0 to 1")
         made[state.number(label), :len(given)] = np.round(255 * given)

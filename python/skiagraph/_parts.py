@@ -3,6 +3,7 @@ from __future__ import annotations
 
 from typing import Any
 
+from ._breath import weighed
 from ._library import listed, make, number, release
 from ._state import State
 from .part import Part
@@ -21,7 +22,7 @@ class Parts(list[Part]):
         "share" of the attenuation at that energy. What is not known is None. options: as of image().
         """
         state = self._state
-        with state.calls():
+        with state.calls(), weighed(state):
             plan = state.plan({"precision": "single", "scatter": False, **options})
             table = make("skg_part_table_create", "skg_part_table", plan)
             try:

@@ -18,8 +18,8 @@ def content(state: State) -> dict[str, Any]:
     old, new = parts[:state.file_parts], parts[state.file_parts:]
     arrays = [part.label for part in new if part.volume]
     if arrays:
-        raise SceneError(f"{arrays[0]}: a volume that was added as an array is not pickled; add it anew where the scene arrives, or "
-                         "name its file in the scene")
+        raise SceneError(f"{arrays[0]}: a volume that add_volume() added is not pickled; add it anew where the scene arrives, or read a "
+                         "scene whose sample names its file (the key Volume)")
     moved = {number: part.mesh.vertices for number, part in enumerate(old) if part.mesh._changed}
     if moved and state.breath:
         raise SceneError(f"{parts[min(moved)].label}: its vertices were assigned, and the scene breathes; pickle it before "

@@ -7,6 +7,7 @@ from typing import Any
 
 import numpy as np
 
+from . import _arrays
 from ._device import Device
 from ._interface import ENUMS, OK, STALE, ArgumentError
 from ._library import call, check, choice, ffi, fill, lib, make, struct
@@ -85,7 +86,7 @@ class Plans:
         if scatter is not None:
             options.scatter = _scatter(scatter, options.scatter, keep)
         if bands is not None:
-            edges = np.atleast_1d(np.asarray(bands, dtype=float))
+            edges = _arrays.edges(bands)
             values.update(band_kev=edges, bands=len(edges) - 1)
         if isinstance(blur, Mapping):
             values["blur"] = _blur(blur, view)
@@ -113,7 +114,7 @@ def _scatter(given: Any, of_file: Any, keep: list[Any]) -> Any:
             return of_file if given else ffi.NULL
         given = {}
     if not isinstance(given, Mapping):
-        given = {"tolerance": _number(given, "scatter")}
+        given = {"tolerance": _arrays.real(given, "scatter")}
     if given.get("tolerance") is not None and given.get("histories") is not None:
         raise ArgumentError("scatter: tolerance and histories exclude each other: with a tolerance, the number of "
                             "histories follows; give one of them")
@@ -125,7 +126,7 @@ def _scatter(given: Any, of_file: Any, keep: list[Any]) -> Any:
         made.histories = 0
     elif values.get("histories") is not None:
         made.tolerance = 0
-        histories = _number(values["histories"], "scatter: histories")
+        histories = _arrays.real(values["histories"], "scatter: histories")
         if not histories.is_integer():
             raise ArgumentError(f"scatter: histories is {histories!r}; give a whole number")
         values["histories"] = int(histories)
@@ -133,16 +134,9 @@ def _scatter(given: Any, of_file: Any, keep: list[Any]) -> Any:
     return made
 
 
-def _number(value: Any, what: str) -> float:
-    try:
-        return float(value)
-    except (TypeError, ValueError):
-        raise ArgumentError(f"{what} is {value!r}; give a number") from None
-
-
 def _lines(rows: Any, view: View) -> dict[str, Any]:
     """The line spread functions of a modulation transfer function [[line pairs per mm, value], ...] in the pixels of a view."""
-    table = np.asarray(rows, dtype=float)
+    table = _arrays.numbers(rows, "blur: mtf")
     if table.ndim != 2 or table.shape[1] != 2:
         raise ArgumentError("blur: mtf has rows of line pairs per mm and value, such as [[0, 1], [2.5, 0.4]]")
     per_mm, mtf = (np.ascontiguousarray(column) for column in table.T)
@@ -162,7 +156,7 @@ def _blur(blur: Mapping[str, Any], view: View | None) -> dict[str, Any]:
         if len(blur) > 1:
             raise ArgumentError("blur: give mtf alone")
         blur = _lines(blur["mtf"], view)
-    found = {name: np.atleast_1d(np.asarray(value, dtype=float)) for name, value in blur.items()}
+    found = {name: np.atleast_1d(_arrays.numbers(value, f"blur: {name}")).astype(float) for name, value in blur.items()}
     if "point" in found:
         rows, columns = np.atleast_2d(found["point"]).shape
     else:

@@ -73,9 +73,9 @@ class _Job:
     def _run_options(self) -> Any:
         run, wanted = struct("skg_scan_run_options"), self.wanted
         image = self.channels * self.view.pixels[0] * self.view.pixels[1] * self.dtype.itemsize
-        run.subframes, run.motion, run.type = int(wanted.subframes), self.motion, ENUMS["type"][self.dtype.name]
+        run.subframes, run.motion, run.type = wanted.subframes, self.motion, ENUMS["type"][self.dtype.name]
         waits = wanted.breathing or self.options.scatter != ffi.NULL
-        run.batch = 1 if waits else max(1, min(_MAX, _BATCH // (image * max(1, int(wanted.subframes)))))
+        run.batch = 1 if waits else max(1, min(_MAX, _BATCH // (image * max(1, wanted.subframes))))
         if wanted.only is not None:
             numbers = _arrays.numbers(wanted.only, "only")
             if numbers.ndim != 1 or not numbers.size or numbers.dtype.kind not in "iu":
@@ -122,7 +122,7 @@ class _ToFile(_Job):
                  anew: bool) -> None:
         self.file = ffi.NULL
         inside, asked = path.lower().endswith((b".h5", b".hdf5", b".nxs")), fields != (None, None)
-        self.fields = [1 if count is None else int(count) for count in fields]
+        self.fields = [1 if count is None else _arrays.whole(count, what) for what, count in zip(("flats", "darks"), fields)]
         self.hash = _hash(state, scan, wanted)
         samples = ffi.new("int64_t *")
         call("skg_scan_file_samples_get", path, self.hash.encode(), samples)
@@ -179,7 +179,7 @@ def _hash(state: State, scan: Scan, wanted: Wanted) -> str:
     keep: list[Any] = []
     options = state.plans.options(state.options_setup, wanted.options, keep)
     run, found = struct("skg_scan_run_options"), ffi.new("char[65]")
-    run.subframes = int(wanted.subframes)
+    run.subframes = wanted.subframes
     run.type = int(options.precision == ENUMS["precision"]["double"])
     run.motion = state.linked() if wanted.breathing else ffi.NULL
     call("skg_scan_hash_get", state.setup, options, run, found, 65)
@@ -300,11 +300,7 @@ def _restorer(state: State, wanted: Wanted) -> Any:
         return lambda: None
     if state.breath:
         return functools.partial(state.pose, state.breath)
-    moves, meshes = ffi.new("int32_t *"), []
-    for number, part in enumerate(state.parts()):
-        call("skg_motion_part_moves", state.motion, number, moves)
-        if moves[0]:
-            meshes.append((part.mesh, part.mesh.vertices))
+    meshes = [(part.mesh, part.mesh.vertices) for part in state.parts() if state.moves(part.number)]
 
     def restore() -> None:
         for mesh, vertices in meshes:

@@ -87,7 +87,7 @@ def _options(view: View, size: Any, voxel: float | None, filter: str, axis: Any,
     share = 1.0
     if view.projection == "point":
         share = float(np.linalg.norm(centre - view.source) / np.linalg.norm(view.detector - view.source))
-    options.voxel_mm = share * float(np.linalg.norm(view.column_step)) if voxel is None else float(voxel)
+    options.voxel_mm = share * float(np.linalg.norm(view.column_step)) if voxel is None else _arrays.real(voxel, "voxel")
     for k in range(3):
         options.voxels[k], options.axis[k] = _arrays.whole(voxels[k], "size", 1), axis[k]
         options.centre[k] = options.middle[k] = centre[k]

@@ -16,11 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._interface import ArgumentError, SceneError
-from ._library import ffi, string
+from . import _breath
+from ._interface import ArgumentError, OutputError, SceneError
+from ._library import encode, ffi, string, struct
 from ._source import schema
 from .beam import Beam
 from .material import Material
+from .mesh import Mesh
 from .part import Part
 from .scan import Scan
 from .view import View
@@ -40,6 +42,8 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
     if target.name.lower().endswith(".ctsimu.json"):
         raise ArgumentError(f"{target}: the command writes scenarios of CTSimU: save the scene as .json, then skiagraph scan SCENE.json -o "
                             f"projections --geometry {target.name}")
+    if not target.parent.is_dir():
+        raise OutputError(f"{target}: there is no folder {target.parent}; make it first")
     text = settings_text(state)
     _rename_files(text, state.source.files, target.parent)
     _write_samples(state, text, target)
@@ -48,7 +52,7 @@ def save(state: State, path: str | os.PathLike[str]) -> None:
     if state.breath:
         _drop(text, "Breathing")
     text = {"$schema": "scene.schema.json", **text}
-    target.write_text(json.dumps(text, indent=1) + "\n", encoding="utf-8")
+    _write_text(target, json.dumps(text, indent=1) + "\n")
 
 
 def settings_text(state: State, placed: bool = False) -> dict[str, Any]:
@@ -65,6 +69,12 @@ def settings_text(state: State, placed: bool = False) -> dict[str, Any]:
             beam = beam.scaled(1 / (columns * rows))
         _put(_object(text, "Source"), "Beam", beam_text(beam))
     return text
+
+
+def repairs(text: dict[str, Any]) -> set[str]:
+    """Words of the key Repair."""
+    given = _get(text, "Repair", [])
+    return {word.lower() for word in ([given] if isinstance(given, str) else given)}
 
 
 def without_parts(text: dict[str, Any]) -> dict[str, Any]:
@@ -177,7 +187,7 @@ def _scan_text(scan: Scan) -> dict[str, Any]:
 def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> None:
     samples = _file_samples(text)
     parts, old = state.parts(), state.names[:state.file_parts]
-    changed = _changed(state)
+    changed, breath = _changed(state), _breath.matters(state)
     if not any(changed.values()) and len(old) == len(parts) and len(old) == len(samples):
         return
     if len(samples) <= max(old, default=-1):
@@ -187,23 +197,19 @@ def _write_samples(state: State, text: dict[str, Any], target: pathlib.Path) -> 
     for part, name in zip(parts, state.names):
         sample = dict(samples[name]) if name < len(samples) and len(made) < state.file_parts else {}
         if part.volume and not sample:
-            raise SceneError(f"{part.label}: a volume that was added as an array is not written into a scene; write it as .mha, for "
-                             "example by SimpleITK, and name the file")
+            raise SceneError(f"{part.label}: a volume that add_volume() added is not written into a scene; read a scene whose sample "
+                             "names its file (the key Volume; an array may be written as .mha, for example by SimpleITK)")
         _say_all(sample, part)
         if not sample.get(_named(sample, "Transform")) or together or part.label in changed["poses"] + changed["meshes"]:
             _place(sample, part, part.label in changed["meshes"])
         if part.volume:
             made.append(sample)
             continue
-        if not sample.get(_named(sample, "Material")) or part.number in state.materials:
-            _drop(sample, "Density")
-            sample[_named(sample, "Material")], density = material_text(_material(state, part), _writer(target, part))
-            if density:
-                sample["Density"] = density
+        _write_material(state, sample, part, breath.get(part.number), target)
         shapes = _spellings(*_SHAPES)
         if not any(_named(sample, shape) in sample for shape in shapes) or part.label in changed["meshes"]:
             _drop(sample, *shapes)
-            sample.update(Path=_mesh_file(target, part), Unit="mm")
+            sample.update(Path=_mesh_file(state, target, part), Unit="mm")
         made.append(sample)
     _drop(text, "SceneGraph")
     _put(text, "Samples", made)
@@ -247,8 +253,19 @@ def _place(sample: dict[str, Any], part: Part, has_mesh: bool) -> None:
         sample["Transform"] = [["Matrix", pose.T.ravel().tolist()]]
 
 
-def _material(state: State, part: Part) -> Material:
-    return state.materials.get(part.number) or part.material
+def _write_material(state: State, sample: dict[str, Any], part: Part, breath: Material | None, target: pathlib.Path) -> None:
+    """breath: the material that the pose of the breath makes of it; None: its own."""
+    own = state.materials.get(part.number) or part.material
+    has_name = sample.get(_named(sample, "Material")) and part.number not in state.materials
+    if has_name and breath is None:
+        return
+    _drop(sample, "Density")
+    if has_name and breath is not None and breath.density > 0 and breath.elements == own.elements:  # the same at another density
+        sample["Density"] = breath.density
+        return
+    sample[_named(sample, "Material")], density = material_text(breath or own, _writer(target, part))
+    if density:
+        sample["Density"] = density
 
 
 def material_text(material: Material, write: Callable[[str], str]) -> tuple[Any, float | None]:
@@ -274,26 +291,42 @@ def material_text(material: Material, write: Callable[[str], str]) -> tuple[Any,
     return ["Mixture", [x for pair in material.elements.items() for x in pair]], material.density
 
 
-# Files beside the scene
+# Files
+
+def _write_text(path: pathlib.Path, text: str) -> None:
+    try:
+        path.write_text(text, encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"{path}: cannot be written: {error.strerror}") from None
 
 
 def _beside(target: pathlib.Path, part: Part, suffix: str) -> tuple[pathlib.Path, str]:
     folder = target.with_name(target.stem + "-parts")
-    folder.mkdir(exist_ok=True)
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be made: {error.strerror}") from None
     name = f"{part.number}-{re.sub('[^A-Za-z0-9]+', '-', part.label).strip('-')}{suffix}"
     return folder / name, f"{folder.name}/{name}"
 
 
-def _mesh_file(target: pathlib.Path, part: Part) -> str:
+def _mesh_file(state: State, target: pathlib.Path, part: Part) -> str:
     path, name = _beside(target, part, ".ply")
-    part.mesh.save(path)
+    mesh = part.mesh
+    mesh.save(path)
+    if mesh.health["same_way_edges"] and "none" not in state.repairs:
+        read = Mesh._made("skg_mesh_load_as", ffi.NULL, encode(path, "path"), struct("skg_mesh_reading"))
+        if (read.faces != mesh.faces).any():
+            raise SceneError(f"{part.label}: its mesh is wound inconsistently and was left so (as_wound=True), but a scene file's meshes are "
+                             "turned, and the images would differ. Make the mesh without as_wound, or the scene with \"Repair\": \"none\"; "
+                             "pickle keeps the scene as it is")
     return name
 
 
 def _writer(target: pathlib.Path, part: Part) -> Callable[[str], str]:
     def write(rows: str) -> str:
         path, name = _beside(target, part, ".txt")
-        path.write_text(rows, encoding="ascii")
+        _write_text(path, rows)
         return name
 
     return write

@@ -6,6 +6,8 @@ from typing import Any
 
 import numpy as np
 
+from . import _arrays
+from ._breath import weighed
 from ._frames import Batch
 from ._images import compute, number_frames, together
 from ._interface import ENUMS, ArgumentError
@@ -41,7 +43,7 @@ def _outputs(components: bool) -> list[tuple[str, int]]:
 
 def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
     """The prediction of skg_plan_scatter_predict as a dictionary."""
-    with state.calls():
+    with state.calls(), weighed(state):
         found = filled("skg_scatter_prediction", "skg_plan_scatter_predict", state.plan(options))
     return {"ratio": found["ratio"], "called_for": bool(found["called_for"]), "rms": found["rms"], "max": found["max"],
             "grid": {name: found[f"grid_{name}"] for name in ("primary", "scatter", "total")},
@@ -51,11 +53,11 @@ def prediction(state: State, options: dict[str, Any]) -> dict[str, Any]:
 def planes(state: State, quantity: str | None, components: bool, options: dict[str, Any]) -> dict[str, Any]:
     """The scattered part of an image, its standard error, the image, and what is reported of the scatter."""
     bands = options.get("bands")
-    channels = () if bands is None else (len(bands) - 1,)
+    channels = () if bands is None else (len(_arrays.edges(bands)) - 1,)
     batch = Batch(1, index=number_frames(state, 1, None, options))
     dtype = np.float64 if options.get("precision") == "double" else np.float32
     wanted = _outputs(components)
-    found = np.empty((len(wanted), *channels, *state.require_view().shape), dtype)
+    found = np.empty((len(wanted), *channels, *state.shape()), dtype)
     used: list[Any] = []
 
     def choose(output: Any, number: int) -> None:

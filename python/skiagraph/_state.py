@@ -2,22 +2,25 @@
 from __future__ import annotations
 
 import copy
+import functools
+import json
 import weakref
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from typing import Any, ContextManager
 
+import numpy as np
 from numpy.typing import NDArray
 
-from . import _edit
-from ._device import Device, device_of
+from . import _edit, _save
+from ._device import Device, device_of, note
 from ._interface import ArgumentError, SceneError
-from ._library import call, check, encode, ffi, integer, lib, make, retained, struct
+from ._library import call, check, encode, ffi, integer, lib, make, retained, string, struct
 from ._plans import Plans
 from ._source import Kept, Source
 from .beam import Beam
 from .material import Material
-from .mesh import Mesh
+from .mesh import Mesh, as_mesh
 from .part import Part
 from .scan import Scan
 from .view import View
@@ -133,8 +136,28 @@ class State:
         number = integer("skg_scene_part_add", self.handle, part)
         self.names.append(max(self.names, default=-1) + 1)
         self.plans.clear()
+        breath, self.breath = self.breath, None
+        if breath:
+            self._rest()
         self.forget_motion()
+        if breath:  # a scene whose new part cannot be linked stays at rest
+            self.linked()
+            self.pose(breath)
+            self.breath = breath
         return number
+
+    @functools.cached_property
+    def repairs(self) -> set[str]:
+        """Words of the key Repair."""
+        return _save.repairs(json.loads(string("skg_setup_text_get", self.setup)))
+
+    def mended(self, mesh: Any, unit_mm: float | None, label: str) -> Mesh:
+        """A mesh of whatever the caller has for a new part, treated as the key Repair says, as meshes of the file are."""
+        made = as_mesh(mesh, unit_mm=unit_mm, name=label, as_wound="none" in self.repairs, _context=self.device.handle)
+        if "orientation" not in self.repairs or not made.nesting["inverted"]:
+            return made
+        note(f"{label}: {made.nesting['inverted']} of {made.nesting['components']} components turned")
+        return made.oriented()
 
     def mesh(self, handle: Any) -> Mesh:
         key = _address(handle)
@@ -154,6 +177,12 @@ class State:
         if self.view is None:
             raise SceneError("the scene has no source and detector; assign a View to scene.view")
         return self.view
+
+    def shape(self, view: View | None = None) -> tuple[int, int]:
+        """(rows, columns) of images of this view, or the scene's, which can be imaged: arrays of that size may be made."""
+        seen = view or self.require_view()
+        seen.check()
+        return seen.shape
 
     def require_beam(self) -> Beam:
         if self.beam is None:
@@ -204,6 +233,20 @@ class State:
     def pose(self, breath: Mapping[str, float]) -> None:
         for name, value in breath.items():
             call(f"skg_motion_pose_at_{name}", self.motion, value)
+
+    def _rest(self) -> None:
+        """Meshes that the breath posed return to where they were before, so that the next motion is linked there. The last part is new."""
+        for part in self.parts()[:-1]:
+            if self.moves(part.number):
+                rest = np.empty(part.mesh.vertices.shape)
+                call("skg_motion_rest_get", self.motion, part.number, ffi.cast("double *", ffi.from_buffer(rest)))
+                part.mesh._place(rest)
+
+    def moves(self, number: int) -> bool:
+        """Whether a part moves with the breath."""
+        found = ffi.new("int32_t *")
+        call("skg_motion_part_moves", self.motion, number, found)
+        return bool(found[0])
 
     def completer(self) -> Any:
         """Writes what the breath changes into a skg_frame; None: nothing."""

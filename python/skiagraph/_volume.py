@@ -23,6 +23,9 @@ def _of_image(image: Any) -> tuple[NDArray[Any], NDArray[np.float64]]:
     """The array and the affine of an image of SimpleITK, whose coordinates are taken as they are."""
     import SimpleITK
 
+    if image.GetDimension() != 3 or image.GetNumberOfComponentsPerPixel() != 1:
+        raise ArgumentError(f"array is an image of SimpleITK of {image.GetDimension()} dimensions and {image.GetNumberOfComponentsPerPixel()} values a "
+                            "pixel; give one of 3 dimensions and 1 value")
     affine = np.eye(4)
     affine[:3, :3] = np.array(image.GetDirection()).reshape(3, 3) @ np.diag(image.GetSpacing())
     affine[:3, 3] = image.GetOrigin()
@@ -80,7 +83,11 @@ def make_volume(label: str, array: Any, affine: Any, values: str, material: Mate
     of_all = None if material is None else as_material(material)
     if of_all is not None:
         source.material = of_all._handle
-    rows = [(float(start), as_material(matter)) for start, matter in classes or ()]
+    try:
+        pairs = [(start, matter) for start, matter in classes or ()]
+    except (TypeError, ValueError):
+        raise ArgumentError(f"classes is {classes!r}; give pairs of a value and a material, such as [(-1000, 'Air')]") from None
+    rows = [(_arrays.real(start, "classes"), as_material(matter)) for start, matter in pairs]
     limits, matters = ffi.new("double[]", [row[0] for row in rows]), ffi.new("skg_material *[]", [row[1]._handle for row in rows])
     source.class_count = len(rows)
     if rows:

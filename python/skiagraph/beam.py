@@ -8,6 +8,7 @@ from typing import Any, Union
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arrays
 from ._device import Log
 from ._interface import ArgumentError
 from ._library import call, choice, doubles, encode, ffi, fill, filled, integer, make, owned, retained, struct
@@ -62,7 +63,7 @@ class Beam:
     @classmethod
     def mono(cls, kev: float, photons: float) -> Beam:
         """One energy in keV, photons per pixel."""
-        return cls._made("skg_spectrum_create_mono", float(kev), float(photons))
+        return cls._made("skg_spectrum_create_mono", *_arrays.reals(kev=kev, photons=photons))
 
     @classmethod
     def load(cls, path: str | os.PathLike[str], unit: str = "keV") -> Beam:
@@ -99,18 +100,18 @@ class Beam:
 
     def scaled(self, factor: float) -> Beam:
         """All photon numbers multiplied by a factor."""
-        return Beam._made("skg_spectrum_create_scaled", self._handle, float(factor))
+        return Beam._made("skg_spectrum_create_scaled", self._handle, _arrays.real(factor, "factor"))
 
     def _bins(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         count = integer("skg_spectrum_bin_count", self._handle)
         kev, photons = ffi.new("double[]", count), ffi.new("double[]", count)
         for i in range(count):
             call("skg_spectrum_bin_get", self._handle, i, kev + i, photons + i)
-        return np.array(list(kev)), np.array(list(photons))
+        return _arrays.fixed(np.array(list(kev))), _arrays.fixed(np.array(list(photons)))
 
     @property
     def energies(self) -> NDArray[np.float64]:
-        """keV, rising."""
+        """keV, rising; read-only, as photons."""
         return self._bins()[0]
 
     @property
@@ -168,7 +169,7 @@ def _filters(layers: Layers, keep: list[Any]) -> Any:
     for i, (material, thickness) in enumerate(layers.items()):
         keep.append(as_material(material))
         made[i].material = keep[-1]._handle
-        made[i].thickness_mm = float(thickness)
+        made[i].thickness_mm = _arrays.real(thickness, "thickness of a filter")
     keep.append(made)
     return made
 
@@ -217,15 +218,15 @@ class Response:
         >>> round(Response.scintillator("CsI", 0.6, deposition="all").at(60)[0])
         53
         """
-        return cls._made("skg_response_create_scintillator", as_material(material)._handle, float(thickness_mm),
-                         float(packing))._refined(deposition, escape)
+        return cls._made("skg_response_create_scintillator", as_material(material)._handle,
+                         *_arrays.reals(thickness_mm=thickness_mm, packing=packing))._refined(deposition, escape)
 
     @classmethod
     def screen(cls, material: Material | str, mg_cm2: float, *, deposition: str = "transport",
                escape: bool = False) -> Response:
         """A scintillator of this mass per area; the rest as of scintillator."""
         return cls._made("skg_response_create_screen", as_material(material)._handle,
-                         float(mg_cm2))._refined(deposition, escape)
+                         _arrays.real(mg_cm2, "mg_cm2"))._refined(deposition, escape)
 
     def _refined(self, deposition: str, escape: bool) -> Response:
         if deposition not in ("transport", "all"):
@@ -241,5 +242,5 @@ class Response:
     def at(self, kev: float, oblique: float = 1) -> tuple[float, float]:
         """Recorded energy in keV and efficiency of photons of this energy."""
         recorded, efficiency = ffi.new("double *"), ffi.new("double *")
-        call("skg_response_get", self._handle, float(kev), float(oblique), recorded, efficiency)
+        call("skg_response_get", self._handle, *_arrays.reals(kev=kev, oblique=oblique), recorded, efficiency)
         return float(recorded[0]), float(efficiency[0])

@@ -40,7 +40,7 @@ class Lag:
     def __init__(self, terms: Sequence[Sequence[float]] | NDArray[Any] = (), *,
                  ghosting: Sequence[Sequence[float]] | NDArray[Any] = (), full: float = 1) -> None:
         self.terms, self.ghosting = _rows(terms, "terms", "share"), _rows(ghosting, "ghosting", "change")
-        self.full = float(full)
+        self.full = _arrays.real(full, "full")
         self._handle: Any = None
         self._shape: tuple[int, ...] = ()
 

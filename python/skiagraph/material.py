@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from . import _arrays
 from ._interface import ArgumentError
 from ._library import call, doubles, encode, ffi, filled, integer, make, number, owned, retained, string
 
@@ -40,7 +41,7 @@ class Material:
         arguments = [_argument(value, keep) for value in recipe[1:]]
         self._handle = owned("skg_material", make(recipe[0], "skg_material", *arguments))
         if density is not None:
-            dense = make("skg_material_create_at_density", "skg_material", self._handle, float(density))
+            dense = make("skg_material_create_at_density", "skg_material", self._handle, _arrays.real(density, "density"))
             self._handle = owned("skg_material", dense)
         self._recipe = (recipe, density)
 
@@ -63,17 +64,17 @@ class Material:
         >>> float(Material.mu(0.2).attenuation(80))
         0.2
         """
-        return cls._from("skg_material_create_mu", encode(name, "name"), float(per_cm))
+        return cls._from("skg_material_create_mu", encode(name, "name"), _arrays.real(per_cm, "per_cm"))
 
     @classmethod
     def hu(cls, value: float) -> Material:
         """Human tissue by its Hounsfield number."""
-        return cls._from("skg_material_create_hounsfield", float(value))
+        return cls._from("skg_material_create_hounsfield", _arrays.real(value, "value"))
 
     @classmethod
     def formula(cls, formula: str, density: float = 0) -> Material:
         """A compound by its chemical formula by atoms; density in g/cm3."""
-        return cls._from("skg_material_create_formula", encode(formula, "formula"), float(density))
+        return cls._from("skg_material_create_formula", encode(formula, "formula"), _arrays.real(density, "density"))
 
     @classmethod
     def mixture(cls, fractions: Mapping[str, float] | Mapping[int, float], density: float, name: str = "mixture") -> Material:
@@ -84,12 +85,13 @@ class Material:
         """
         numbers = [element_number(element) for element in fractions]
         return cls._from("skg_material_create_mixture", encode(name, "name"), len(numbers), ("int32_t[]", numbers),
-                         ("double[]", [float(f) for f in fractions.values()]), float(density))
+                         ("double[]", [_arrays.real(f, f"fraction of {e}") for e, f in fractions.items()]),
+                         _arrays.real(density, "density"))
 
     @classmethod
     def table(cls, kev: Any, per_cm: Any, name: str = "table") -> Material:
         """Linear attenuation coefficients in 1/cm at rising energies in keV."""
-        energies, values = np.atleast_1d(kev), np.atleast_1d(per_cm)
+        energies, values = np.atleast_1d(_arrays.numbers(kev, "kev")), np.atleast_1d(_arrays.numbers(per_cm, "per_cm"))
         if energies.shape != values.shape or energies.ndim != 1:
             raise ArgumentError(f"kev has the shape {energies.shape} and per_cm {values.shape}; give two lists alike")
         return cls._from("skg_material_create_table", encode(name, "name"), len(energies),
@@ -107,7 +109,7 @@ class Material:
         """This material with another density, g/cm3."""
         made = Material.__new__(Material)
         made._handle = owned("skg_material", make("skg_material_create_at_density", "skg_material", self._handle,
-                                                  float(density)))
+                                                  _arrays.real(density, "density")))
         if self._recipe:
             made._recipe = (self._recipe[0], density)
         return made
@@ -135,7 +137,7 @@ class Material:
         rows = np.empty((2, count[0]))
         x, squares = (ffi.cast("double *", ffi.from_buffer(row)) for row in rows)
         call("skg_material_form_factor_get", self._handle, count[0], x, squares, count)
-        return rows[0], rows[1]
+        return _arrays.fixed(rows[0]), _arrays.fixed(rows[1])
 
     @property
     def name(self) -> str:
@@ -169,7 +171,7 @@ class Material:
         made = np.empty(count[0])
         if made.size:
             call("skg_material_edges_get", self._handle, made.size, ffi.cast("double *", ffi.from_buffer(made)), count)
-        return made
+        return _arrays.fixed(made)
 
     def attenuation(self, kev: Any) -> NDArray[np.float64]:
         """The linear attenuation coefficient in 1/cm, at one energy in keV or at an array of them."""
@@ -180,12 +182,12 @@ class Material:
         return self._at(kev, "skg_material_hounsfield_get")
 
     def _at(self, kev: Any, name: str) -> NDArray[np.float64]:
-        energies = np.asarray(kev, dtype=float)
+        energies = _arrays.numbers(kev, "kev")
         return np.array([number(name, self._handle, float(e)) for e in energies.ravel()]).reshape(energies.shape)
 
     def coefficients(self, kev: float) -> dict[str, float]:
         """Mass attenuation coefficients in cm2/g by process, and their total."""
-        return filled("skg_coefficients", "skg_material_coefficients_get", self._handle, float(kev))
+        return filled("skg_coefficients", "skg_material_coefficients_get", self._handle, _arrays.real(kev, "kev"))
 
     def __repr__(self) -> str:
         density = self.density

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from ._arrays import vector
+from ._arrays import real, reals, vector
 from ._interface import ArgumentError
 
 _AXES = {"x": (1.0, 0.0, 0.0), "y": (0.0, 1.0, 0.0), "z": (0.0, 0.0, 1.0)}
@@ -23,7 +23,7 @@ def translate(x: float, y: float, z: float) -> NDArray[np.float64]:
     [1.0, 2.0, 3.0]
     """
     made = np.eye(4)
-    made[:3, 3] = x, y, z
+    made[:3, 3] = reals(x=x, y=y, z=z)
     return made
 
 
@@ -39,7 +39,7 @@ def rotate(axis: str | Sequence[float] | NDArray[Any], degrees: float,
     centre = vector(about, "about")
     x, y, z = direction(axis)
     cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    angle = np.radians(float(degrees))
+    angle = np.radians(real(degrees, "degrees"))
     made = np.eye(4)
     made[:3, :3] += np.sin(angle) * cross + (1 - np.cos(angle)) * (cross @ cross)
     made[:3, 3] = centre - made[:3, :3] @ centre

@@ -39,7 +39,7 @@ class Mesh:
             source.positions = ffi.cast("double *", address)
         source.triangles, address, source.triangle_stride = _strided(corners)
         source.corners = ffi.cast("int32_t *", address)
-        source.unit_mm = float(unit_mm)
+        source.unit_mm = _arrays.real(unit_mm, "unit_mm")
         source.as_wound = bool(as_wound)
         self._handle = owned("skg_mesh", make("skg_mesh_create", "skg_mesh", _context, encode(name, "name"), source))
         self._changed = False
@@ -73,7 +73,7 @@ class Mesh:
         unit_mm: mm per unit of its numbers; None: the unit that the file or its format names, otherwise mm. group: only the
         group or object of this name.
         """
-        if unit_mm is not None and not unit_mm > 0:
+        if unit_mm is not None and not _arrays.real(unit_mm, "unit_mm") > 0:
             raise ArgumentError(f"unit_mm is {unit_mm}; give a number above 0, or None for the file's own unit")
         reading = struct("skg_mesh_reading")
         reading.unit_mm, reading.as_wound = float(unit_mm or 0), bool(as_wound)
@@ -109,27 +109,27 @@ class Mesh:
     @classmethod
     def cube(cls, edge: float) -> Mesh:
         """A cube about the origin; edge in mm."""
-        return cls._made("skg_mesh_create_cube", float(edge))
+        return cls._made("skg_mesh_create_cube", _arrays.real(edge, "edge"))
 
     @classmethod
     def cuboid(cls, x: float, y: float, z: float) -> Mesh:
         """A cuboid about the origin; edges in mm."""
-        return cls._made("skg_mesh_create_cuboid", float(x), float(y), float(z))
+        return cls._made("skg_mesh_create_cuboid", *_arrays.reals(x=x, y=y, z=z))
 
     @classmethod
     def sphere(cls, radius: float, segments: int) -> Mesh:
         """A sphere about the origin; radius in mm."""
-        return cls._made("skg_mesh_create_sphere", float(radius), int(segments))
+        return cls._made("skg_mesh_create_sphere", _arrays.real(radius, "radius"), _arrays.whole(segments, "segments"))
 
     @classmethod
     def cylinder(cls, radius: float, height: float, segments: int) -> Mesh:
         """A cylinder about the origin along z; lengths in mm."""
-        return cls._made("skg_mesh_create_cylinder", float(radius), float(height), int(segments))
+        return cls._made("skg_mesh_create_cylinder", *_arrays.reals(radius=radius, height=height), _arrays.whole(segments, "segments"))
 
     @classmethod
     def step_wedge(cls, x: float, y: float, z: float, steps: int) -> Mesh:
         """A step wedge about the origin, with steps along x up to the height z; lengths in mm."""
-        return cls._made("skg_mesh_create_step_wedge", float(x), float(y), float(z), int(steps))
+        return cls._made("skg_mesh_create_step_wedge", *_arrays.reals(x=x, y=y, z=z), _arrays.whole(steps, "steps"))
 
     @classmethod
     def steps(cls, x: float, y: float, heights: Any) -> Mesh:
@@ -142,7 +142,7 @@ class Mesh:
         wanted = np.atleast_1d(_arrays.numbers(heights, "heights"))
         if wanted.ndim != 1:
             raise ArgumentError(f"heights has {_arrays.describe(wanted)}; give a list of heights")
-        return cls._made("skg_mesh_create_steps", float(x), float(y), len(wanted), doubles(wanted, "heights", keep))
+        return cls._made("skg_mesh_create_steps", *_arrays.reals(x=x, y=y), len(wanted), doubles(wanted, "heights", keep))
 
     @classmethod
     def spheres(cls, centres: Any, radii: Any, segments: int = 12) -> Mesh:
@@ -151,7 +151,7 @@ class Mesh:
         places = _arrays.rows(centres, "centres", (np.float64,))
         sizes = np.broadcast_to(_arrays.numbers(radii, "radii"), (len(places),))
         return cls._made("skg_mesh_create_spheres", len(places), doubles(places, "centres", keep),
-                         doubles(sizes, "radii", keep), int(segments))
+                         doubles(sizes, "radii", keep), _arrays.whole(segments, "segments"))
 
     @classmethod
     def _of_struct(cls, kind: str, maker: str, fields: dict[str, Any], what: str) -> Mesh:
@@ -202,9 +202,9 @@ class Mesh:
         volume = np.ascontiguousarray(_arrays.numbers(values, "values"), dtype=np.float32)
         if volume.ndim != 3:
             raise ArgumentError(f"values has {_arrays.describe(volume)}; give [z, y, x]")
-        steps = np.ones(3) * np.asarray(spacing, dtype=float)
+        steps = _three(spacing, "spacing")
         return cls._made("skg_mesh_create_isosurface", ffi.new("int64_t[3]", list(volume.shape[::-1])),
-                         doubles(steps, "spacing", keep), ffi.cast("float *", ffi.from_buffer(volume)), float(level))
+                         doubles(steps, "spacing", keep), ffi.cast("float *", ffi.from_buffer(volume)), _arrays.real(level, "level"))
 
     @classmethod
     def gyroid(cls, box: Any, period: float, level: float = 0.3, cells: int = 0) -> Mesh:
@@ -214,21 +214,22 @@ class Mesh:
         0: so many, and at least 24.
         """
         keep: list[Any] = []
-        return cls._made("skg_mesh_create_gyroid", doubles(np.ones(3) * np.asarray(box, dtype=float), "box", keep),
-                         float(period), float(level), int(cells))
+        return cls._made("skg_mesh_create_gyroid", doubles(_three(box, "box"), "box", keep),
+                         *_arrays.reals(period=period, level=level), _arrays.whole(cells, "cells"))
 
     @classmethod
     def line_pairs(cls, per_mm: Any, bars: int, length: float, thickness: float) -> Mesh:
         """Groups of bars side by side along x, one group for each number of line pairs per mm; lengths in mm."""
         keep: list[Any] = []
         wanted = np.atleast_1d(_arrays.numbers(per_mm, "per_mm"))
-        return cls._made("skg_mesh_create_line_pairs", len(wanted), doubles(wanted, "per_mm", keep), int(bars), float(length),
-                         float(thickness))
+        return cls._made("skg_mesh_create_line_pairs", len(wanted), doubles(wanted, "per_mm", keep),
+                         _arrays.whole(bars, "bars"), *_arrays.reals(length=length, thickness=thickness))
 
     @classmethod
     def star(cls, radius: float, inner: float, spokes: int, thickness: float) -> Mesh:
         """A Siemens star about z, of spokes that are as wide as the spaces between them; lengths in mm."""
-        return cls._made("skg_mesh_create_star", float(radius), float(inner), int(spokes), float(thickness))
+        return cls._made("skg_mesh_create_star", *_arrays.reals(radius=radius, inner=inner), _arrays.whole(spokes, "spokes"),
+                         _arrays.real(thickness, "thickness"))
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes an STL file, or PLY, which keeps every bit."""
@@ -245,11 +246,17 @@ class Mesh:
 
     @property
     def vertices(self) -> NDArray[np.float64]:
-        """Positions [n, 3] in mm, a copy. Assign an array to move the vertices: the next image shows it."""
+        """Positions [n, 3] in mm, a copy. Assign an array to move the vertices: the next image shows it. A closed mesh that this mirrors is
+        turned outward, as one whose pose mirrors it.
+
+        >>> mesh = Mesh.cube(2)
+        >>> mesh.vertices = mesh.vertices * (-1, 1, 1)
+        >>> round(mesh.health["volume"], 6)
+        8.0
+        """
         made = np.empty((self._counts()[0], 3))
         call("skg_mesh_positions_get", self._handle, ffi.cast("double *", ffi.from_buffer(made)), 0)
-        made.flags.writeable = False
-        return made
+        return _arrays.fixed(made)
 
     @vertices.setter
     def vertices(self, value: Any) -> None:
@@ -267,8 +274,7 @@ class Mesh:
         """Triangles [m, 3] as numbers of vertices, a copy."""
         made = np.empty((self._counts()[1], 3), dtype=np.int32)
         call("skg_mesh_triangles_get", self._handle, ffi.cast("int32_t *", ffi.from_buffer(made)), 0)
-        made.flags.writeable = False
-        return made
+        return _arrays.fixed(made)
 
     @property
     def offsets(self) -> NDArray[np.float32]:
@@ -284,12 +290,16 @@ class Mesh:
         """The point from which offsets count, mm."""
         origin = ffi.new("const double **")
         call("skg_mesh_offsets_get", self._handle, ffi.new("float **"), origin)
-        return np.array([origin[0][k] for k in range(3)])
+        return _arrays.fixed(np.array([origin[0][k] for k in range(3)]))
 
     def moved(self) -> None:
-        """Says that offsets were written."""
+        """Says that offsets were written. As with `vertices`, a closed mesh that they mirror is turned outward."""
         self._changed = True
         call("skg_mesh_offsets_moved", self._handle)
+        health = struct("skg_mesh_health")
+        call("skg_mesh_health_get", self._handle, health)
+        if health.closed and health.volume < 0:
+            self._place(self.vertices)
 
     @property
     def version(self) -> int:
@@ -339,6 +349,14 @@ def _remake(vertices: Any, faces: Any, name: str) -> Mesh:
     return Mesh(vertices, faces, name=name, as_wound=True)  # they were turned when it was made
 
 
+def _three(value: Any, what: str) -> NDArray[np.float64]:
+    """Three numbers, or one for all of them."""
+    given = _arrays.numbers(value, what)
+    if given.shape not in ((), (1,), (3,)):
+        raise ArgumentError(f"{what} has {_arrays.describe(given)}; give one number, or (x, y, z)")
+    return np.broadcast_to(given, (3,)).astype(np.float64)
+
+
 def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
     """The count of rows, where they are, and the elements from one to the next."""
     if not len(array):
@@ -347,14 +365,16 @@ def _strided(array: NDArray[Any]) -> tuple[int, Any, int]:
     return len(array), address, max(array.strides[0] // array.itemsize, 3)
 
 
-def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None, _context: Any = ffi.NULL) -> Mesh:
+def as_mesh(value: Any, *, unit_mm: float | None = None, name: str | None = None, as_wound: bool = False,
+            _context: Any = ffi.NULL) -> Mesh:
     """A mesh of whatever has vertices and triangles.
 
-    value: a Mesh; (vertices, faces); the path of a file; an object of trimesh (also a Scene), Open3D, meshio or PyVista.
+    value: a Mesh, which stays as it is; (vertices, faces); the path of a file; an object of trimesh (also a Scene), Open3D, meshio or PyVista.
     """
     if isinstance(value, Mesh):
         return value
     if isinstance(value, (str, os.PathLike)):
-        return Mesh.load(value, unit_mm=unit_mm, _context=_context)
+        return Mesh.load(value, unit_mm=unit_mm, as_wound=as_wound, _context=_context)
     vertices, faces = parts_of(value)
-    return Mesh(vertices, faces, unit_mm=unit_of(value) if unit_mm is None else unit_mm, name=name or "mesh", _context=_context)
+    return Mesh(vertices, faces, unit_mm=unit_of(value) if unit_mm is None else unit_mm, name=name or "mesh", as_wound=as_wound,
+                _context=_context)

@@ -62,8 +62,7 @@ class Part:
         with self._state.calls():
             part = self._get()  # its arrays live as long as this name
             made = np.array(list(part.pose)).reshape(4, 4)
-        made.flags.writeable = False
-        return made
+        return _arrays.fixed(made)
 
     @pose.setter
     def pose(self, value: Any) -> None:

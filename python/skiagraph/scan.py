@@ -40,10 +40,9 @@ class Scan(Sequence[View]):
     def __init__(self, view: View, projections: int, step: float | None = None, *, start: float = 0,
                  axis: str | Sequence[float] | NDArray[Any] = "z", centre: Sequence[float] | NDArray[Any] = (0, 0, 0),
                  **fields: Any) -> None:
-        if int(projections) < 1:
-            raise ArgumentError(f"projections is {projections}; give 1 or more")
-        given = {**fields, "projections": int(projections), "start": start, "axis": direction(axis),
-                 "step": 360 / int(projections) if step is None else step, "centre": _arrays.vector(centre, "centre")}
+        count = _arrays.whole(projections, "projections", 1)
+        given = {**fields, "projections": count, "start": start, "axis": direction(axis),
+                 "step": 360 / count if step is None else step, "centre": _arrays.vector(centre, "centre")}
         self._make("skg_scan_create", view, given, None)
 
     def _make(self, name: str, view: View, fields: dict[str, Any], poses: NDArray[np.float64] | None,
@@ -51,7 +50,7 @@ class Scan(Sequence[View]):
         if not isinstance(view, View):
             raise ArgumentError(f"view is a {type(view).__name__}; give a View")
         keep: list[Any] = []
-        values = {n + "_rad" if n in _ANGLES else n: np.radians(v) if n in _ANGLES else v for n, v in fields.items()}
+        values = {n + "_rad" if n in _ANGLES else n: np.radians(_arrays.numbers(v, n)) if n in _ANGLES else v for n, v in fields.items()}
         options = fill(struct("skg_scan_options"), "skg_scan_options", values, keep, "the field of a scan")
         if poses is not None:
             arguments = (len(poses), ffi.cast("double *", ffi.from_buffer(poses)))
@@ -117,23 +116,24 @@ class Scan(Sequence[View]):
         count = len(self)
         if isinstance(index, slice):
             return [self[k] for k in range(*index.indices(count))]
-        if not -count <= index < count:
-            raise IndexError(f"projection {index} of a scan with {count}")
+        number = _arrays.whole(index, "the number of a projection", -2 ** 63)
+        if not -count <= number < count:
+            raise IndexError(f"projection {number} of a scan with {count}")
         view = struct("skg_view")
-        call("skg_scan_view_get", self._handle, int(index) % count, view)
+        call("skg_scan_view_get", self._handle, number % count, view)
         return View._read(view)
 
     @property
     def angles(self) -> NDArray[np.float64]:
         """The nominal angle of each projection, degrees; 0 in a table of poses."""
-        return np.degrees([number("skg_scan_angle_get", self._handle, k) for k in range(len(self))])
+        return _arrays.fixed(np.degrees([number("skg_scan_angle_get", self._handle, k) for k in range(len(self))]))
 
     @property
     def axis(self) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
         """The direction of the axis of rotation, of length 1, and a point on it, mm; a table of poses has none, and is refused."""
         direction, centre = ffi.new("double[3]"), ffi.new("double[3]")
         call("skg_scan_axis_get", self._handle, direction, centre)
-        return np.array(list(direction)), np.array(list(centre))
+        return _arrays.fixed(np.array(list(direction))), _arrays.fixed(np.array(list(centre)))
 
     @property
     def times(self) -> NDArray[np.float64]:
@@ -142,7 +142,7 @@ class Scan(Sequence[View]):
         for k in range(len(made)):
             call("skg_scan_time_get", self._handle, k, time, ffi.NULL)
             made[k] = time[0]
-        return made
+        return _arrays.fixed(made)
 
     def save(self, path: str | os.PathLike[str]) -> None:
         """Writes the geometry: .csv (what load() reads, and ASTRA's cone_vec), .xml (RTK), .tigre.py, .cil.py or transforms.json."""

@@ -2,7 +2,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from types import TracebackType
 from typing import Any, overload
 
@@ -21,7 +21,6 @@ from ._progress import Progress
 from ._state import State
 from .beam import Beam
 from .material import Material, as_material
-from .mesh import as_mesh
 from .part import Part
 from .report import Report
 from .scan import Scan
@@ -92,13 +91,14 @@ class Scene(_gradient.Differentiable):
 
         mesh: a Mesh, (vertices, faces), an object of trimesh, meshio or PyVista, or the path of a file, in units of
         unit_mm (None: the file's or trimesh's own, otherwise mm). material: a Material or a name. inside: the part that it displaces. pose: 4 x 4, mm.
+        Where the key Repair of the scene has "orientation" and components of a Mesh are inverted, the part has a mesh of its own.
         """
         parent = inside.label if isinstance(inside, Part) else inside
         state = self._state
         with state.calls():
-            made = as_mesh(mesh, unit_mm=unit_mm, name=label, _context=state.device.handle)
             matter, part, name = as_material(material), struct("skg_part"), ffi.new("char[]", encode(label, "label"))
-            part.label, part.priority = name, int(priority)
+            made = state.mended(mesh, unit_mm, label)
+            part.label, part.priority = name, _arrays.whole(priority, "priority", -2 ** 31, 2 ** 31 - 1)
             if parent is not None:
                 part.inside = state.number(parent)
             if pose is not None:
@@ -129,7 +129,7 @@ class Scene(_gradient.Differentiable):
         state = self._state
         with state.calls():
             part, name = struct("skg_part"), ffi.new("char[]", encode(label, "label"))
-            part.label, part.priority = name, int(priority)
+            part.label, part.priority = name, _arrays.whole(priority, "priority", -2 ** 31, 2 ** 31 - 1)
             if parent is not None:
                 part.inside = state.number(parent)
             if pose is not None:
@@ -260,6 +260,8 @@ class Scene(_gradient.Differentiable):
         if not isinstance(label, str):
             if out is not None:
                 raise ArgumentError("out= takes the lengths of one part; give one label")
+        if label is not None and not isinstance(label, Iterable):
+            raise ArgumentError(f"label is a {type(label).__name__}; give the label of a part, or several")
         wanted = [part.label for part in self] if label is None else [label] if isinstance(label, str) else list(label)
         found = _images.lengths(self._state, wanted, kind, poses, views, out, progress, {"precision": precision, **options})
         for one in found:
@@ -358,7 +360,7 @@ class Scene(_gradient.Differentiable):
         (8, 48, 64)
         """
         given = {"quantity": quantity, "precision": precision, "tolerance": tolerance, **options}
-        wanted = _projections.Wanted(only, breathing, subframes, given, progress)
+        wanted = _projections.Wanted(only, breathing, _arrays.whole(subframes, "subframes"), given, progress)
         if self._state.breath and not breathing:
             raise SceneError("the scene was posed by breathe(); give breathing=True to pose it at the time of each "
                              "projection, or images(views=scene.trajectory) for this pose")
@@ -382,7 +384,7 @@ class Scene(_gradient.Differentiable):
         """Writes the scene as a scene file, .json, whose images have the same bits; or an image of it, .png, .tif, .mha or .dcm.
 
         (Where vertices were moved, images of floats agree to their rounding, those of doubles bit for bit.) Meshes that were added or changed are written as PLY into a folder beside the file, NAME-parts. Other files that
-        the scene names stay where they are. A scene that breathe() posed is written in this pose, without its breath.
+        the scene names stay where they are. A scene that breathe() posed is written in this pose, with its densities and without its breath.
 
         quantity: what it holds, or "lengths" for path lengths; by default what it was computed as, and "energy" for an array that no
         call of the scene made. display: "radiograph" or "transmission", and range: the
@@ -443,7 +445,7 @@ class Scene(_gradient.Differentiable):
             raise ArgumentError("give breathe(phase=...) or breathe(time=...), one of them")
         with self._state.calls():
             motion = self._state.linked()
-            breath = {"phase": float(phase)} if phase is not None else {"time": float(time or 0)}
+            breath = {"phase": _arrays.real(phase, "phase")} if phase is not None else {"time": _arrays.real(time, "time")}
             self._state.pose(breath)
             self._state.breath = breath
             return filled("skg_motion_state", "skg_motion_state_get", motion)
@@ -482,7 +484,7 @@ class Scene(_gradient.Differentiable):
         """
         with self._state.calls():
             flags = {"--free": free, "--loss": loss, "--quantity": quantity, "--polish": polish, "--restarts": restarts or None,
-                     "--seed": seed, "--start": None if start is None else tuple(float(x) for x in start),
+                     "--seed": seed, "--start": None if start is None else tuple(_arrays.real(x, "start") for x in start),
                      "--report": None if report is None else os.fspath(report)}
             return _register.register(self._state, images, parts, out, flags, mask, flat)
 

@@ -34,6 +34,7 @@ def thorax(folder: str | os.PathLike[str] | None = None, triangles: int | None =
 
 
 def _write(folder: str | os.PathLike[str], triangles: int | None, simple: bool) -> str:
+    encode(folder, "folder")
     os.makedirs(folder, exist_ok=True)
     options = struct("skg_thorax_options")
     fill(options, "skg_thorax_options", {"triangles": triangles, "simple": simple}, [], "option")

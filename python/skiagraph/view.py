@@ -1,7 +1,7 @@
 """Source and detector."""
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterable, Sequence
 from typing import Any
 
 import numpy as np
@@ -40,9 +40,9 @@ class View:
         self.detector: NDArray[np.float64] = _arrays.vector(detector, "detector")
         self.column_step: NDArray[np.float64] = _arrays.vector(column_step, "column_step")
         self.row_step: NDArray[np.float64] = _arrays.vector(row_step, "row_step")
-        self.pixels: tuple[int, int] = (_arrays.whole(pixels[0], "pixels[0]", 0), _arrays.whole(pixels[1], "pixels[1]", 0))
+        self.pixels: tuple[int, int] = _arrays.raster(pixels, "pixels")
         self.projection: str = projection
-        self.radius: float = float(radius)
+        self.radius: float = _arrays.real(radius, "radius")
 
     @property
     def shape(self) -> tuple[int, int]:
@@ -85,8 +85,8 @@ class View:
 
     def _write(self, pointer: Any) -> Any:
         pointer.projection = choice("projection", self.projection, "projection")
-        pointer.columns, pointer.rows = int(self.pixels[0]), int(self.pixels[1])
-        pointer.radius = float(self.radius)
+        pointer.columns, pointer.rows = _arrays.raster(self.pixels, "pixels")
+        pointer.radius = _arrays.real(self.radius, "radius")
         for name, field in _VECTORS.items():
             vector = getattr(self, name)
             if type(vector) is not np.ndarray or vector.dtype != _FLOAT64 or vector.shape != (3,):
@@ -116,6 +116,8 @@ class View:
 
 
 def as_views(views: Any) -> list[View]:
+    if not isinstance(views, (View, Iterable)):
+        raise ArgumentError(f"views is a {type(views).__name__}; give Views")
     found = [views] if isinstance(views, View) else list(views)
     for i, view in enumerate(found):
         if not isinstance(view, View):

@@ -283,6 +283,27 @@ START_TEST(health_agrees_with_brute_force) {
 }
 END_TEST
 
+START_TEST(mirrored_positions_turn_a_closed_mesh) {
+    double positions[24];
+    take_cube();
+    skg_mesh *mesh = make(8, cube_positions, 12, cube_corners);
+    const int32_t flipped = health_of(mesh).flipped;
+    for (int i = 0; i < 24; i++) positions[i] = (i % 3 == 0 ? -1 : 1) * cube_positions[i];
+    ck_skg(skg_mesh_positions_set(mesh, positions, 0));
+    ck_assert_double_eq(health_of(mesh).volume, 8);
+    ck_assert_int_eq(health_of(mesh).flipped, !flipped);
+    ck_skg(skg_mesh_positions_set(mesh, cube_positions, 0));
+    ck_assert_double_eq(health_of(mesh).volume, 8);
+    ck_assert_int_eq(health_of(mesh).flipped, flipped);
+    skg_mesh_release(&mesh);
+    /* Of a mesh with a hole nobody knows what is inside. */
+    mesh = make(8, cube_positions, 11, cube_corners);
+    ck_skg(skg_mesh_positions_set(mesh, positions, 0));
+    ck_assert_int_eq(health_of(mesh).flipped, 0);
+    skg_mesh_release(&mesh);
+}
+END_TEST
+
 START_TEST(far_mesh_keeps_its_volume_and_offsets) {
     double positions[24];
     take_cube();
@@ -459,6 +480,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, faults_are_counted);
     tcase_add_test(tests, cubes_that_share_an_edge_are_closed);
     tcase_add_test(tests, health_agrees_with_brute_force);
+    tcase_add_test(tests, mirrored_positions_turn_a_closed_mesh);
     tcase_add_test(tests, far_mesh_keeps_its_volume_and_offsets);
     tcase_add_test(tests, moving_in_place);
     tcase_add_test(tests, bad_arrays_are_named);

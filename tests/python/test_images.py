@@ -51,6 +51,18 @@ def test_bands_are_a_leading_axis(scene, poses):
     assert (out == many).all()
 
 
+@pytest.mark.parametrize("bands, words", [([100], "one edge makes no band"), ([], "there is no band"), (100, "one edge"),
+                                          ([[20, 40]], "a list of edges"), ("20,40", "real numbers")])
+def test_bands_without_a_band_are_refused(scene, bands, words):
+    weights = np.ones((SIDE, SIDE + 16))
+    for call in (scene.image, scene.scatter, scene.plan, scene.noise, scene.scan, scene.parts, scene.dose,
+                 lambda **options: scene.images(views=[scene.view], **options), lambda **options: scene.gradient(weights, **options),
+                 lambda **options: scene.derivative({"source": (1, 0, 0)}, **options)):
+        scene.trajectory = sk.Scan(scene.view, 2)
+        with pytest.raises(sk.ArgumentError, match=f"bands .*{words}"):
+            call(bands=bands)
+
+
 def test_a_batch_is_its_images(scene, poses):
     batch = scene.images(poses={"ball": poses})
     for pose, image in zip(poses, batch):

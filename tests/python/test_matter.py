@@ -219,6 +219,17 @@ def test_beams():
         sk.Beam([1, 2], [3])
 
 
+def test_copies_are_read_only(view):
+    """Assignments to a copy would be lost."""
+    beam, scan, mesh = sk.Beam.mono(60, 1000), sk.Scan(view, 4), sk.Mesh.cube(1)
+    molecules = sk.Material("water").with_form_factor([0, 0.2, 0.5], [9, 4, 1])
+    for array in (beam.photons, beam.energies, beam.scaled(2).photons, scan.angles, scan.times, *scan.axis, mesh.vertices, mesh.faces, mesh.origin,
+                  sk.Material("Pb").edges, *molecules.form_factor):
+        with pytest.raises(ValueError, match="read-only"):
+            array[0] = 5
+    assert pickle.loads(pickle.dumps(beam)).photons.tolist() == [1000] and pickle.loads(pickle.dumps(molecules)).name == molecules.name
+
+
 def test_plots_with_matplotlib():
     pytest.importorskip("matplotlib").use("Agg")
     axes = sk.Beam.tube(100, {"Al": 2.5}).plot()
@@ -250,6 +261,30 @@ def test_views(view):
     view.projection = "fish-eye"
     with pytest.raises(sk.ArgumentError, match="'fish-eye'"):
         view.check()
+
+
+@pytest.mark.parametrize("call, words", [
+    (lambda: sk.Mesh.sphere(5, 3.5), "segments is 3.5; give a whole number"),
+    (lambda: sk.Mesh.sphere(5, 2 ** 70), "segments is .*, 0 to 9223372036854775807"),
+    (lambda: sk.Mesh.sphere("a", 5), "radius is 'a'; give a number"),
+    (lambda: sk.Mesh.cuboid(1, 2, "a"), "z is 'a'; give a number"),
+    (lambda: sk.Mesh.star(10, 1, 7.5, 1), "spokes is 7.5; give a whole number"),
+    (lambda: sk.Mesh.gyroid("a", 5), "box has .*; give real numbers"),
+    (lambda: sk.Mesh.load(5), "path is 5; give a text"),
+    (lambda: sk.translate("a", 0, 0), "x is 'a'; give a number"),
+    (lambda: sk.rotate("z", None), "degrees is None; give a number"),
+    (lambda: sk.Beam.mono("a", 1), "kev is 'a'; give a number"),
+    (lambda: sk.Beam.tube(80, {"Al": "a"}), "thickness of a filter is 'a'"),
+    (lambda: sk.Material("Al").attenuation("a"), "kev has .*; give real numbers"),
+    (lambda: sk.Material.mixture({"H": "a"}, 1), "fraction of H is 'a'"),
+    (lambda: sk.Counter("CdTe", 1, 0.1, [20]).spread(60, 1.5), "the number of a window is 1.5"),
+    (lambda: sk.Lag([[0.1, 2]], full="a"), "full is 'a'"),
+    (lambda: sk.distance(sk.Mesh.cube(1), sk.Mesh.cube(1), spacing="a"), "spacing is 'a'"),
+])
+def test_wrong_numbers_are_named(call, words):
+    """None is cut to a whole number, and none is an error of Python's own."""
+    with pytest.raises(sk.ArgumentError, match=words):
+        call()
 
 
 def test_bodies():

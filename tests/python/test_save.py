@@ -77,8 +77,26 @@ def test_files_and_keys_stay(tmp_path, together):
     assert (tmp_path / "more-parts" / "3-new.ply").exists()
     scene["pot"].mesh.vertices = 1.1 * scene["pot"].mesh.vertices
     again(scene, tmp_path / "moved.json", precision="double")  # floats count from another origin
+    with pytest.raises(sk.OutputError, match="there is no folder .*missing; make it first"):
+        scene.save(tmp_path / "missing" / "scene.json")
     with pytest.raises(sk.ArgumentError, match="written as .json"):
         scene.save(tmp_path / "scene.png")
+
+
+def test_a_mesh_that_stays_as_wound_is_refused(view, tmp_path):
+    """A file says it of all its meshes or of none."""
+    box = sk.Mesh.cube(10)
+    mesh = sk.Mesh(box.vertices, np.concatenate((box.faces[:1, ::-1], box.faces[1:])), as_wound=True)
+    for text in ({}, {"Repair": "none"}):
+        scene = sk.Scene(text)
+        scene.view, scene.beam = view, sk.Beam.mono(60, 1000)
+        scene.add("box", mesh, material=sk.Material.mu(1))
+        if text:
+            again(scene, tmp_path / "as.json")
+        else:
+            with pytest.raises(sk.SceneError, match='box: .* as_wound.* "Repair": "none"'):
+                scene.save(tmp_path / "scene.json")
+            assert not (tmp_path / "scene.json").exists()
 
 
 def test_parts_are_removed(tmp_path):
@@ -172,9 +190,56 @@ def test_dicom_reads_back(scene, tmp_path):
     assert float(read.KVP) == pytest.approx(max(scene.beam.energies))
     scene.save(tmp_path / "b.dcm", image, "attenuation")
     assert (tmp_path / "a.dcm").read_bytes() == (tmp_path / "b.dcm").read_bytes()
+    scene.save(tmp_path / "b.dcm", image[None], "attenuation")  # one channel
+    assert (tmp_path / "a.dcm").read_bytes() == (tmp_path / "b.dcm").read_bytes()
     image[0, 0] = np.nan
     with pytest.raises(sk.Error, match="1 of .* pixels are not finite"):
         scene.save(tmp_path / "c.dcm", image, "attenuation")
     with pytest.raises(sk.Error, match="one channel"):
         scene.save(tmp_path / "c.dcm", np.zeros((2, 4, 4), np.float32), "attenuation")
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.dcm", "b.dcm"]
+
+
+@pytest.fixture
+def breathing(tmp_path):
+    """A thorax whose bile ducts fill with contrast medium from 1 s to 2 s."""
+    path = sk.thorax(tmp_path / "thorax", 10000, simple=True)
+    text = json.loads(open(path).read())
+    next(sample for sample in text["Samples"] if sample["Label"] == "bile ducts")["Material"] = ["Mixture", ["H", 0.1, "O", 0.8, "I", 0.1]]
+    next(sample for sample in text["Samples"] if sample["Label"] == "bile ducts")["Density"] = 1.4
+    text.setdefault("Breathing", {})["Events"] = [{"Contrast": "bile ducts", "Share": [[1, 0], [2, 1]]}]
+    open(path, "w").write(json.dumps(text))
+    return sk.Scene(path, settings={"Detector.NumberOfPixels": [64, 64], "Tolerance": 0, "Source.Beam.mAs": 2})
+
+
+@pytest.mark.parametrize("breath", [{"phase": 0}, {"time": 1.4}])
+def test_matter_of_the_breath_is_saved(breathing, tmp_path, breath):
+    """The lungs' mass stays, so that their density changes, and the bile ducts of the second case are filled in part."""
+    rest = {row["label"]: row for row in breathing.parts()["parts"]}
+    ratio = breathing.breathe(**breath)["lung_density_ratio"]
+    assert abs(ratio - 1) > 0.02
+    breathing.save(tmp_path / "posed.json")
+    read = sk.Scene(tmp_path / "posed.json")
+    # floats of vertices that moved, and the coefficients of a mixture whose fractions were rounded
+    np.testing.assert_allclose(read.image(), breathing.image(), rtol=3e-5)
+    found = [{row["label"]: row for row in scene.parts()["parts"]} for scene in (breathing, read)]
+    for label in ("lung left", "lung right", "bile ducts"):
+        for name in ("density_g_cm3", "mass_g"):
+            assert found[1][label][name] == pytest.approx(found[0][label][name], rel=1e-6)
+    lungs = ("lung left", "lung right")
+    assert found[0]["lung left"]["density_g_cm3"] == pytest.approx(ratio * rest["lung left"]["density_g_cm3"], rel=1e-12)
+    # vertices of floats; the bronchi in the lungs change their volumes, too
+    assert sum(found[0][label]["mass_g"] for label in lungs) == pytest.approx(sum(rest[label]["mass_g"] for label in lungs), rel=1e-3)
+    dose, again = ({part["label"]: part["dose_uGy"] for part in scene.dose(histories=20000)["parts"]} for scene in (breathing, read))
+    assert dose["lung left"] == pytest.approx(again["lung left"], rel=1e-3)  # the same photons, but for those at rounded surfaces
+    assert breathing["lung left"].density == pytest.approx(rest["lung left"]["density_g_cm3"])  # the part keeps its own material
+
+
+def test_a_part_is_added_to_a_posed_scene(breathing):
+    """The breath links the parts anew, from their positions at rest, and the image stays."""
+    breathing.breathe(phase=0)
+    before = breathing.image()
+    breathing.add("lead", sk.Mesh.cube(1), material="Pb", pose=sk.translate(0, 700, 0))  # behind the detector
+    np.testing.assert_array_equal(breathing.image(), before)
+    breathing.breathe(phase=0)
+    np.testing.assert_array_equal(breathing.image(), before)

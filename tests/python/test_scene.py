@@ -2,6 +2,7 @@
 import base64
 import json
 import pathlib
+import pickle
 import re
 import shutil
 import warnings
@@ -91,6 +92,43 @@ def test_failures_have_their_sentences(path, tmp_path):
     assert issubclass(sk.FileError, sk.Error)
 
 
+@pytest.mark.parametrize("call, words", [
+    (lambda s: s.image(index=2 ** 65), "index is .*, 0 to 9223372036854775807"),
+    (lambda s: s.add("more", sk.Mesh.cube(1), material="Al", priority=1.5), "priority is 1.5; give a whole number"),
+    (lambda s: s.add("more", sk.Mesh.cube(1), material="Al", priority=2 ** 40), "priority is .* to 2147483647"),
+    (lambda s: s.add_volume("more", np.zeros((2, 2, 2)), np.eye(4), priority=1.5), "priority is 1.5; give a whole number"),
+    (lambda s: s.add_volume("more", np.zeros((2, 2, 2)), np.eye(4), classes=[5]), "give pairs of a value and a material"),
+    (lambda s: s.add(5, sk.Mesh.cube(1), material="Al"), "label is 5; give a text"),
+    (lambda s: s.dose("a"), "at has .*; give real numbers"),
+    (lambda s: s.dose(histories=1.5), "histories is 1.5; give a whole number"),
+    (lambda s: s.dose(seed="a"), "seed is 'a'; give a whole number"),
+    (lambda s: s.scan(subframes=1.5), "subframes is 1.5; give a whole number"),
+    (lambda s: s.images(views=5), "views is a int; give Views"),
+    (lambda s: s.lengths(5), "label is a int"),
+    (lambda s: s.picture(8), r"pixels is 8; give \(columns, rows\)"),
+    (lambda s: s.gradient("a"), "weights has .*; give real numbers"),
+    (lambda s: sk.Scan(s.view, 2.5), "projections is 2.5; give a whole number"),
+    (lambda s: sk.Scan(s.view, 2, step="a"), "step has .*; give real numbers"),
+    (lambda s: sk.Scan(s.view, 2)[0.5], "the number of a projection is 0.5"),
+    (lambda s: sk.View(source=(0, 0, -9), detector=(0, 0, 9), column_step=(1, 0, 0), row_step=(0, 1, 0), pixels=8), "pixels is 8"),
+])
+def test_wrong_arguments_are_named(scene, call, words):
+    """None is cut to a whole number, and none is an error of Python's own."""
+    with pytest.raises(sk.ArgumentError, match=words):
+        call(scene)
+
+
+def test_a_view_that_is_too_large_is_refused_before_memory_is_taken(scene):
+    scene.view.pixels = (10 ** 6, 10 ** 6)
+    for call in (scene.image, lambda: scene.images(views=[scene.view]), lambda: scene.lengths("ball"), lambda: scene.noise(noise=True),
+                 scene.scatter, lambda: scene.derivative({"source": (1, 0, 0)}), scene.parts, scene.dose):
+        with pytest.raises(sk.SceneError, match="1 to 32768"):
+            call()
+    scene.view.pixels = (64, 48)
+    with pytest.raises(sk.ArgumentError, match="does not fit into memory"):
+        scene.picture((10 ** 6, 10 ** 6))
+
+
 def test_no_device_is_a_sentence():
     with pytest.raises(sk.NoDeviceError):
         sk.Device("device=a-device-that-nobody-has")
@@ -139,6 +177,69 @@ def test_vertices_move(scene):
     np.testing.assert_allclose(scene.lengths("block", "surface"), before, atol=3e-5 * 40)  # single precision
     with pytest.raises(sk.ArgumentError, match="the mesh has"):
         mesh.vertices = mesh.vertices[:-1]
+
+
+def mirror_by_vertices(mesh):
+    mesh.vertices = mesh.vertices * (-1, 1, 1)
+
+
+def mirror_by_offsets(mesh):
+    mesh.offsets[:, 0] *= -1  # about the origin of the offsets, which is that of the mesh here
+    mesh.moved()
+
+
+@pytest.mark.parametrize("mirror", [mirror_by_vertices, mirror_by_offsets])
+def test_a_mirrored_mesh_stays_matter(view, tmp_path, mirror):
+    """As with a pose that mirrors it, and twice as not at all. The wedge is no mirror image of itself."""
+    scene = sk.Scene()
+    scene.view, scene.beam = view, sk.Beam.mono(60, 1e6)
+    scene.add("wedge", sk.Mesh.step_wedge(20, 20, 20, 4), material="water")
+    first, mesh = scene.image(), scene["wedge"].mesh
+    scene["wedge"].pose = np.diag([-1.0, 1, 1, 1])
+    posed = scene.image()
+    assert (posed != first).any()
+    scene["wedge"].pose = np.eye(4)
+    mass = scene.parts()["parts"][0]["mass_g"]
+    mirror(mesh)
+    np.testing.assert_allclose(scene.image(), posed, rtol=1e-6)  # the order of float sums is another
+    assert scene.parts()["parts"][0]["mass_g"] == pytest.approx(mass, rel=1e-6) and mass > 0
+    assert scene.dose(histories=2000)["parts"][0]["energy_keV"] > 0
+    scene.save(tmp_path / "scene.json")
+    for other in (sk.Scene(tmp_path / "scene.json"), pickle.loads(pickle.dumps(scene))):
+        np.testing.assert_allclose(other.image(), posed, rtol=1e-6)
+    mirror(mesh)
+    np.testing.assert_array_equal(scene.image(), first)
+
+
+def nested_boxes():
+    """A box inside a box that should be its cavity, but faces outward."""
+    box = sk.Mesh.cube(10)
+    return sk.Mesh(np.concatenate((box.vertices, 0.5 * box.vertices)), np.concatenate((box.faces, box.faces + len(box.vertices))))
+
+
+@pytest.mark.parametrize("repair", ["orientation", ["Exact", "Orientation"]])
+@pytest.mark.parametrize("kind", ["mesh", "arrays", "path"])
+def test_added_meshes_are_repaired_as_those_of_the_file(view, tmp_path, repair, kind):
+    boxes = nested_boxes()
+    boxes.save(tmp_path / "boxes.ply")
+    given = {"mesh": boxes, "arrays": (boxes.vertices, boxes.faces), "path": tmp_path / "boxes.ply"}[kind]
+    scene = sk.Scene({"Repair": repair})
+    scene.view, scene.beam = view, sk.Beam.mono(60, 1000)
+    scene.add("boxes", given, material=sk.Material.mu(1))
+    assert scene["boxes"].mesh.nesting["inverted"] == 0 and boxes.nesting["inverted"] == 1
+    middle = scene.lengths("boxes", precision="double")[24, 32]
+    assert middle == pytest.approx(10 - 5, abs=1e-4)  # the ray is aslant by 1 mm in 1 m
+    scene.save(tmp_path / "scene.json")
+    assert (sk.Scene(tmp_path / "scene.json").image() == scene.image()).all()
+
+
+def test_added_files_stay_as_wound(view, tmp_path):
+    box = sk.Mesh.cube(10)
+    (tmp_path / "box.obj").write_text("".join(f"v {x} {y} {z}\n" for x, y, z in box.vertices) + "".join(
+        f"f {a} {b} {c}\n" for a, b, c in [box.faces[0][::-1] + 1, *(box.faces[1:] + 1)]))
+    scene = sk.Scene({"Repair": "none"})
+    scene.add("box", tmp_path / "box.obj", material=sk.Material.mu(1))
+    assert scene["box"].mesh.health["turned"] == 0 and not scene["box"].mesh.health["closed"]
 
 
 def test_a_plan_explains_itself(scene):
@@ -218,6 +319,8 @@ def test_breath(tmp_path):
         assert (scene["liver"].mesh.vertices == inhaled).all() and (scene.image() == image).all()
         still = {"skin": np.eye(4)[None].repeat(2, 0)}
         assert (scene.images(poses=still) == image).all()  # frames of a batch breathe too
+        with pytest.raises(sk.ArgumentError, match="phase is 'a'; give a number"):
+            scene.breathe(phase="a")
     with pytest.raises(sk.ArgumentError, match="one of them"):
         sk.Scene().breathe()
 
@@ -262,6 +365,27 @@ def test_a_warning_is_said_once(scene):
     with warnings.catch_warnings():
         warnings.simplefilter("error")
         scene.image(supersampling=2)  # another plan of the same scene
+
+
+def test_warnings_of_a_failure_are_not_the_next_scenes():
+    import warnings
+
+    def cylinder(**scan):
+        scene = sk.Scene()
+        scene.add("big", sk.Mesh.cylinder(35, 60, 24), material=sk.Material.mu(0.2))
+        scene.beam = sk.Beam.mono(60, 1000)
+        scene.view = sk.View(source=(0, -400, 0), detector=(0, 200, 0), column_step=(2, 0, 0), row_step=(0, 0, -2), pixels=(64, 48))
+        scene.trajectory = sk.Scan(scene.view, 12, **scan)
+        return scene
+
+    with pytest.warns(sk.SkiagraphWarning, match="nothing falls on the detector"), pytest.raises(sk.SceneError, match="lies on the detector"):
+        cylinder(detector_fixed=True).scan()  # from beside the detector, then from its plane
+    with warnings.catch_warnings():
+        warnings.simplefilter("error")
+        cylinder().image()
+        with pytest.raises(sk.SceneError, match="lies on the detector"):  # the error, not the warning before it
+            cylinder(detector_fixed=True).scan()
+        cylinder().image()
 
 
 def test_removed_meshes_are_let_go():

@@ -211,6 +211,9 @@ def test_simpleitk_images(tmp_path):
     image.SetOrigin((-19, 14, -9))
     image.SetDirection((0.8, 0.6, 0, 0.6, -0.8, 0, 0, 0, 1))
     scene = make_scene()
+    for other, words in ((itk.Image(4, 4, itk.sitkInt16), "2 dimensions"), (itk.Image([4, 4, 4], itk.sitkVectorUInt8, 3), "3 values a pixel")):
+        with pytest.raises(sk.ArgumentError, match=words):
+            scene.add_volume("ct", other)
     scene.add_volume("ct", image)
     expected = scene.image("attenuation")
     for name in ("ct.mha", "ct.mhd", "ct.nrrd"):
@@ -254,3 +257,14 @@ def test_compressed_files_are_whole(tmp_path):
         path.write_bytes(data)
         with pytest.raises(sk.Error, match=says):
             make_scene().add_volume("ct", str(path))
+
+
+@pytest.mark.parametrize("from_file", [False, True])
+def test_added_volumes_are_neither_saved_nor_pickled(tmp_path, from_file):
+    scene = make_scene()
+    itk = pytest.importorskip("SimpleITK")
+    itk.WriteImage(itk.GetImageFromArray(np.zeros((4, 4, 4), np.int16)), str(tmp_path / "hu.nii"))
+    scene.add_volume("ct", tmp_path / "hu.nii" if from_file else np.zeros((4, 4, 4)), None if from_file else np.eye(4))
+    for write in (lambda: scene.save(tmp_path / "scene.json"), lambda: pickle.dumps(scene)):
+        with pytest.raises(sk.SceneError, match=r"ct: a volume that add_volume\(\) added .* key Volume"):
+            write()

@@ -164,7 +164,8 @@ SKG_API skg_status skg_mesh_triangles_get(const skg_mesh *mesh, int32_t *corners
  *                 a closed mesh that had equal positions no longer have: the mesh would open
  *
  * In the health, what depends on topology stays (closed, winding); volume, area, bounds and degenerate
- * triangles follow the positions. */
+ * triangles follow the positions. Where they mirror a closed mesh, so that its triangles face inward, or outward again, it is
+ * turned as skg_mesh_create turns it (skg_mesh_health.flipped). A mesh that is not closed stays as it is wound. */
 SKG_API skg_status skg_mesh_positions_set(skg_mesh *mesh, const double *positions, int64_t position_stride);
 
 /** Gets the memory of the float offsets, to move vertices without a copy. Write there, then call
@@ -176,7 +177,8 @@ SKG_API skg_status skg_mesh_offsets_get(skg_mesh *mesh, float **offsets, const d
 
 /** Says that the float offsets were written. The next frame uploads them. Errors: SKG_ERR_MESH if vertices of
  * a closed mesh that had equal positions no longer have; the version grows all the same. A vertex that is not
- * finite is found by the frame that meets it. */
+ * finite is found by the frame that meets it. Triangles are not measured, for speed: offsets that mirror a closed mesh make its
+ * lengths and its volume negative, until skg_mesh_positions_set is given the positions. */
 SKG_API skg_status skg_mesh_offsets_moved(skg_mesh *mesh);
 
 /** Gets the version: 1 at first, one more with each skg_mesh_positions_set and skg_mesh_offsets_moved. */
