@@ -16,15 +16,22 @@ enum { MARKS = 0xfffe, ITEM = 0xe000, END_OF_ITEM = 0xe00d, END_OF_SEQUENCE = 0x
 
 static const struct {
     uint16_t group, element;
-    int32_t most; /* numbers; 0: binary, of 16 bits */
+    int32_t most;     /* numbers; 0: binary, of 16 bits */
+    const char *name; /* of those that are text */
 } attributes[SKG_DICOM_NUMBERS] = {
-    [SKG_DICOM_PLACE] = {0x0020, 0x0032, 3},   [SKG_DICOM_ORIENTATION] = {0x0020, 0x0037, 6},
-    [SKG_DICOM_SAMPLES] = {0x0028, 0x0002, 0}, [SKG_DICOM_FRAMES] = {0x0028, 0x0008, 1},
-    [SKG_DICOM_ROWS] = {0x0028, 0x0010, 0},    [SKG_DICOM_COLUMNS] = {0x0028, 0x0011, 0},
-    [SKG_DICOM_SPACING] = {0x0028, 0x0030, 2}, [SKG_DICOM_ALLOCATED] = {0x0028, 0x0100, 0},
-    [SKG_DICOM_STORED] = {0x0028, 0x0101, 0},  [SKG_DICOM_HIGH] = {0x0028, 0x0102, 0},
-    [SKG_DICOM_SIGNED] = {0x0028, 0x0103, 0},  [SKG_DICOM_INTERCEPT] = {0x0028, 0x1052, 1},
-    [SKG_DICOM_SLOPE] = {0x0028, 0x1053, 1},
+    [SKG_DICOM_PLACE] = {0x0020, 0x0032, 3, "ImagePositionPatient"},
+    [SKG_DICOM_ORIENTATION] = {0x0020, 0x0037, 6, "ImageOrientationPatient"},
+    [SKG_DICOM_SAMPLES] = {0x0028, 0x0002, 0, NULL},
+    [SKG_DICOM_FRAMES] = {0x0028, 0x0008, 1, "NumberOfFrames"},
+    [SKG_DICOM_ROWS] = {0x0028, 0x0010, 0, NULL},
+    [SKG_DICOM_COLUMNS] = {0x0028, 0x0011, 0, NULL},
+    [SKG_DICOM_SPACING] = {0x0028, 0x0030, 2, "PixelSpacing"},
+    [SKG_DICOM_ALLOCATED] = {0x0028, 0x0100, 0, NULL},
+    [SKG_DICOM_STORED] = {0x0028, 0x0101, 0, NULL},
+    [SKG_DICOM_HIGH] = {0x0028, 0x0102, 0, NULL},
+    [SKG_DICOM_SIGNED] = {0x0028, 0x0103, 0, NULL},
+    [SKG_DICOM_INTERCEPT] = {0x0028, 0x1052, 1, "RescaleIntercept"},
+    [SKG_DICOM_SLOPE] = {0x0028, 0x1053, 1, "RescaleSlope"},
 };
 
 /* An attribute as it begins in the file. */
@@ -131,31 +138,48 @@ static skg_status take_copy(const source *s, uint32_t length, char copy[SKG_DICO
     return SKG_OK;
 }
 
-/* Numbers of a text stand between backslashes. */
-static skg_status take_numbers(const source *s, const head *h, int which, skg_dicom_slice *slice) {
-    char text[LONGEST_VALUE];
-    const char *from = text, *end;
-    const int32_t most = attributes[which].most;
+/* Reads the numbers of a text, which stand between backslashes, with blanks around them. Returns their number; -1: it holds something
+ * else, a number beyond doubles, or more than `most` of them. */
+static int32_t read_numbers(const char *from, int32_t most, double *numbers) {
     int32_t count = 0;
-    if (most == 0) {
-        unsigned char b[2];
-        if (h->length < 2) return pass_over(s, h->length);
-        SKG_TRY(take(s, b, 2));
-        slice->numbers[which][0] = number_of(b, 2), slice->count[which] = 1;
-        return pass_over(s, h->length - 2);
-    }
-    SKG_TRY(take_text(s, h->length, text));
-    while (count < most && *from) {
-        while (*from == ' ') from++;
-        slice->numbers[which][count] = skg_read_number(from, &end);
-        if (end == from) break;
+    while (count < most) {
+        const char *end = from += strspn(from, " ");
+        const size_t length = strspn(from, "+-.0123456789Ee");
+        numbers[count] = skg_read_number(from, &end);
+        if (length == 0 || end != from + length || !isfinite(numbers[count])) return -1;
         count++;
-        while (*end == ' ') end++;
-        from = end + (*end == '\\');
-        if (from == end) break;
+        end += strspn(end, " ");
+        if (*end == '\0') return count;
+        if (*end != '\\') return -1;
+        from = end + 1;
     }
+    return -1;
+}
+
+/* What an attribute of text says. One that is empty is not given, except where the values of the pixels would be others for that. */
+static skg_status take_decimals(const source *s, uint32_t length, int which, skg_dicom_slice *slice) {
+    const int32_t most = attributes[which].most;
+    char text[LONGEST_VALUE];
+    SKG_TRY(take_text(s, length, text));
+    slice->count[which] = 0;
+    if (text[strspn(text, " ")] == '\0' && which != SKG_DICOM_INTERCEPT && which != SKG_DICOM_SLOPE)
+        return SKG_OK;
+    const int32_t count = read_numbers(text, most, slice->numbers[which]);
+    if (count < 0)
+        return skg_fail(SKG_ERR_FORMAT, "%s: its %s says \"%.200s\"; write %d finite number%s%s", s->path,
+                        attributes[which].name, text, (int)most, most == 1 ? ", as -1024" : "s",
+                        most == 1 ? "" : ", a backslash between each two");
     slice->count[which] = count;
     return SKG_OK;
+}
+
+static skg_status take_numbers(const source *s, const head *h, int which, skg_dicom_slice *slice) {
+    unsigned char b[2];
+    if (attributes[which].most > 0) return take_decimals(s, h->length, which, slice);
+    if (h->length < 2) return pass_over(s, h->length);
+    SKG_TRY(take(s, b, 2));
+    slice->numbers[which][0] = number_of(b, 2), slice->count[which] = 1;
+    return pass_over(s, h->length - 2);
 }
 
 /* Takes or passes over the value of an attribute. */

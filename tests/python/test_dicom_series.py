@@ -1,6 +1,7 @@
 """CT images from folders of DICOM slices, written here by pydicom, and read by the library."""
 import json
 import pickle
+import re
 import subprocess
 import sys
 import warnings
@@ -148,6 +149,48 @@ def test_the_library_reads_what_pydicom_reads(tmp_path, more):
 def test_what_is_no_volume_is_refused(tmp_path, reading, only, more, says):
     with pytest.raises(sk.Error, match=says):
         reading(write(tmp_path, only=only, **more))
+
+
+def patch(folder, before, after):
+    """Other bytes of the same number in each slice: what pydicom would not write."""
+    assert len(before) == len(after)
+    for path in folder.glob("*.dcm"):
+        whole = path.read_bytes()
+        assert whole.count(before) == 1
+        path.write_bytes(whole.replace(before, after))
+
+
+@both
+@pytest.mark.parametrize("text", [b"-1O24 ", b"-10,4 ", b"      ", b"nan   ", b"1e9999", b"-1024-", b"0x400 ", b"1\\2   ", b"--1024"])
+def test_a_number_that_is_none_is_refused(tmp_path, reading, text):
+    """Read as far as it goes, -1O24 would be -1, and all Hounsfield numbers 1023 too high."""
+    patch(write(tmp_path, RescaleIntercept="-1024"), b"-1024 ", text)
+    with pytest.raises(sk.Error, match=r"\.dcm: its RescaleIntercept says \"" + re.escape(text.decode().rstrip())):
+        reading(tmp_path)
+
+
+@pytest.mark.parametrize("name, before, after", [("PixelSpacing", b"2.0\\1.5 ", b"2.0\\1.S "), ("PixelSpacing", b"2.0\\1.5 ", b"2\\1.5\\3 "),
+                                                 ("RescaleSlope", b"1.25", b"1,25"), ("NumberOfFrames", b"01", b"O1")])
+def test_each_number_of_text_is_read_whole(tmp_path, name, before, after):
+    value = {"PixelSpacing": [2.0, 1.5]}.get(name, before.decode())
+    write(tmp_path)
+    for path in tmp_path.glob("*.dcm"):
+        data = pydicom.dcmread(path)
+        setattr(data, name, value)
+        data.save_as(path)
+    tag = pydicom.tag.Tag(name)
+    head = tag.group.to_bytes(2, "little") + tag.element.to_bytes(2, "little") + (b"IS" if name == "NumberOfFrames" else b"DS")
+    head += len(before).to_bytes(2, "little")
+    patch(tmp_path, head + before, head + after)
+    with pytest.raises(sk.Error, match=f"dcm: its {name} says"):
+        scene_of_file(tmp_path)
+
+
+@pytest.mark.parametrize("text", [b" -1024", b"-1024\0", b"-1.0e3", b"-1024."])
+def test_blanks_and_a_zero_byte_are_no_part_of_a_number(tmp_path, text):
+    patch(write(tmp_path, RescaleIntercept="-1024"), b"-1024 ", text)
+    volume = scene_of_file(tmp_path)["ct"].volume
+    assert (volume["low"], volume["high"]) == (CELLS.min() + 24 * (b"e" in text), CELLS.max() + 24 * (b"e" in text))
 
 
 @both

@@ -126,6 +126,9 @@ static int read_facts(reading *r) {
         const char *text = value_of(r, facts[f].attribute, value);
         char *end = NULL;
         r->of[f] = text ? strtod(text, &end) : facts[f].otherwise;
+        if (text && end != text && end[strspn(end, " ")] != '\0')
+            return cli_error(CLI_INPUT, "%s: its %s %s says \"%s\"; write one finite number", r->path,
+                             facts[f].name, facts[f].attribute, text);
         if ((text && end == text) || !isfinite(r->of[f]))
             return cli_error(CLI_INPUT, "%s: has no %s %s, and so no picture", r->path, facts[f].name,
                              facts[f].attribute);
