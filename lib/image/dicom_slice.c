@@ -185,6 +185,7 @@ static skg_status take_numbers(const source *s, const head *h, int which, skg_di
 /* Takes or passes over the value of an attribute. */
 static skg_status take_value(const source *s, int implicit, const head *h, skg_dicom_slice *slice) {
     if (h->group == 0x0028 && h->element == 0x3000) slice->has_table = 1;
+    if (h->group == 0x0004) slice->is_directory = 1;
     if (h->length == UNKNOWN_LENGTH || h->is_sequence) return skip(s, implicit, h, 0);
     for (int k = 0; k < SKG_DICOM_NUMBERS; k++)
         if (h->group == attributes[k].group && h->element == attributes[k].element)
@@ -286,8 +287,11 @@ static skg_status find_layout(const skg_dicom_slice *slice, word_layout *word) {
                         slice->path, stored, allocated, high);
     *word = (word_layout){(int)allocated, (int)stored, (int)(high - stored) + 1};
     const int64_t bytes = pixels_of(slice) * word->allocated / 8;
-    if (slice->pixel_bytes >= bytes) return SKG_OK;
-    return skg_fail(SKG_ERR_FORMAT, "%s: has %" PRId64 " bytes of pixels, and its size asks for %" PRId64,
+    /* a byte may fill up an odd number of them */
+    if (slice->pixel_bytes == bytes || slice->pixel_bytes == bytes + bytes % 2) return SKG_OK;
+    return skg_fail(SKG_ERR_FORMAT,
+                    "%s: has %" PRId64 " bytes of pixels, and its size asks for %" PRId64
+                    "; are Rows, Columns and BitsAllocated those of the pixels?",
                     slice->path, slice->pixel_bytes, bytes);
 }
 

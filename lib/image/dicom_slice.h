@@ -33,6 +33,7 @@ typedef struct {
         modality[SKG_DICOM_TEXT],
         scale[SKG_DICOM_TEXT];        /* scale: RescaleType, what its values are; empty: it does not say */
     int has_table;                    /* 1: its values stand in a table (ModalityLUTSequence) */
+    int is_directory;                 /* 1: it lists other files (DICOMDIR), and is of no series */
     int32_t count[SKG_DICOM_NUMBERS]; /* numbers that it has; 0: the file does not have the attribute */
     double numbers[SKG_DICOM_NUMBERS][6];
     /* where they stand in the file, and their bytes, -1: in parts; pixels 0: there are none */
@@ -49,7 +50,7 @@ double skg_dicom_number(const skg_dicom_slice *slice, enum skg_dicom_numbers whi
 skg_status skg_dicom_slice_read(const char *path, int *is_dicom, skg_dicom_slice *slice);
 
 /* Fails unless its pixels can be read: SKG_ERR_UNSUPPORTED: they are compressed, or of a kind that no slice has; SKG_ERR_FORMAT: there are
- * too few. */
+ * too few or too many. */
 skg_status skg_dicom_slice_check(const skg_dicom_slice *slice);
 
 /* Reads the values of its pixels, rescaled: [rows][columns]. Errors as above. */

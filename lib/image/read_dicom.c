@@ -1,6 +1,7 @@
 /* Reads a volume from a folder of DICOM slices of one series, in the order of their places. */
 #include "core/files.h"
 #include "core/maths.h"
+#include "core/text.h"
 #include "image/dicom_slice.h"
 #include "image/image.h"
 
@@ -16,11 +17,14 @@
  * places may. */
 static const double SAME = 1e-4, EVEN = 0.01;
 
+/* By what the lengths of direction cosines may differ from 1, and their product from 0: they have three decimals in some files. */
+static const double UPRIGHT = 1e-3;
+
 /* A folder, and its slices with places: in the order of their names, then of their places. */
 typedef struct {
     const char *folder;
-    int64_t count, name_count;
-    skg_dicom_slice *slices;
+    int64_t count, name_count, other_count;
+    skg_dicom_slice *slices, *others; /* others: files of DICOM without pixels or without a place */
     char **names;
     double normal[3];
 } series;
@@ -55,21 +59,59 @@ static skg_status list_names(series *s) {
     return status;
 }
 
+/* Refuses a file that is not one of DICOM, and whose name says that it is. Those with a point in front are of the system. */
+static skg_status check_name(const char *path) {
+    const char *name = strrchr(path, '/') + 1, *dot = strrchr(name, '.');
+    if (!dot || dot == name || *name == '.' || !skg_same_name(dot, ".dcm")) return SKG_OK;
+    return skg_fail(
+        SKG_ERR_FORMAT,
+        "%s: does not begin as a file of DICOM; is it the whole file? Replace it, or move it away", path);
+}
+
+static skg_status append(const skg_dicom_slice *slice, int64_t *count, skg_dicom_slice **slices) {
+    SKG_TRY(skg_realloc(*count + 1, sizeof **slices, "slices", slices));
+    (*slices)[(*count)++] = *slice;
+    return SKG_OK;
+}
+
 /* Takes a file if it is a slice with a place: others may lie beside them. */
 static skg_status add_slice(series *s, int64_t name) {
     skg_dicom_slice slice;
     int is_dicom = 0;
     SKG_TRY(skg_dicom_slice_read(s->names[name], &is_dicom, &slice));
-    if (!is_dicom || slice.pixels == 0) return SKG_OK;
+    if (!is_dicom) return check_name(s->names[name]);
+    slice.path = s->names[name];
+    if (slice.is_directory) return SKG_OK;
+    if (slice.pixels == 0) return append(&slice, &s->other_count, &s->others);
     const double frames = skg_dicom_number(&slice, SKG_DICOM_FRAMES, 1);
     if (frames > 1)
         return skg_fail(SKG_ERR_UNSUPPORTED,
                         "%s: holds %g frames; convert it to .mha or .nii, or to a file a slice",
                         s->names[name], frames);
-    if (!slice.count[SKG_DICOM_PLACE] || !slice.count[SKG_DICOM_ORIENTATION]) return SKG_OK;
-    SKG_TRY(skg_realloc(s->count + 1, sizeof *s->slices, "slices", &s->slices));
-    slice.path = s->names[name];
-    s->slices[s->count++] = slice;
+    const int has_place = slice.count[SKG_DICOM_PLACE] && slice.count[SKG_DICOM_ORIENTATION];
+    return has_place ? append(&slice, &s->count, &s->slices) : append(&slice, &s->other_count, &s->others);
+}
+
+/* Refuses what the series would lack: a file of the same series that is no slice, and one that ends before it says its series. */
+static skg_status check_others(const series *s) {
+    for (int64_t k = 0; k < s->other_count; k++) {
+        const skg_dicom_slice *other = &s->others[k];
+        if (*other->series && strcmp(other->series, s->slices[0].series) != 0) continue;
+        if (*other->series)
+            return skg_fail(
+                SKG_ERR_FORMAT,
+                "%s: is of the series of the slices, and has no %s; is it the whole file? Replace "
+                "it, or move it away",
+                other->path,
+                other->pixels == 0               ? "PixelData"
+                : !other->count[SKG_DICOM_PLACE] ? "ImagePositionPatient"
+                                                 : "ImageOrientationPatient");
+        return skg_fail(
+            SKG_ERR_FORMAT,
+            "%s: says no series (SeriesInstanceUID); is it the whole file? Replace it, or move it "
+            "away",
+            other->path);
+    }
     return SKG_OK;
 }
 
@@ -121,8 +163,23 @@ static skg_status check_common(const series *s, enum skg_dicom_numbers which, co
     return SKG_OK;
 }
 
+/* The rows and columns of a volume are at right angles. */
+static skg_status check_turns(const skg_dicom_slice *slice) {
+    const double *turns = slice->numbers[SKG_DICOM_ORIENTATION];
+    const double across = skg_length(turns), down = skg_length(turns + 3),
+                 product = skg_dot(turns, turns + 3);
+    char its[160];
+    if (fabs(across - 1) <= UPRIGHT && fabs(down - 1) <= UPRIGHT && fabs(product) <= UPRIGHT) return SKG_OK;
+    skg_picture_numbers(turns, 6, its, sizeof its);
+    return skg_fail(SKG_ERR_FORMAT,
+                    "%s: its ImageOrientationPatient is [%s], vectors of the lengths %.6g and %.6g with the "
+                    "product %.6g; they are of length 1 and at right angles, so that the product is 0",
+                    slice->path, its, across, down, product);
+}
+
 static skg_status check_slices(const series *s) {
     SKG_TRY(check_series(s));
+    SKG_TRY(check_others(s));
     const skg_dicom_slice *first = &s->slices[0];
     const double *spacing = first->numbers[SKG_DICOM_SPACING];
     SKG_TRY(check_common(s, SKG_DICOM_ORIENTATION, "ImageOrientationPatient"));
@@ -133,6 +190,7 @@ static skg_status check_slices(const series *s) {
         !(spacing[0] > 0 && spacing[1] > 0))
         return skg_fail(SKG_ERR_FORMAT, "%s: its slices have no PixelSpacing or ImageOrientationPatient",
                         s->folder);
+    SKG_TRY(check_turns(first));
     for (int64_t k = 0; k < s->count; k++)
         if (s->slices[k].count[SKG_DICOM_PLACE] != 3)
             return skg_fail(SKG_ERR_FORMAT, "%s: its ImagePositionPatient is not three numbers",
@@ -305,5 +363,6 @@ cleanup:
     for (int64_t k = 0; k < s.name_count; k++) skg_free(&s.names[k]);
     skg_free(&s.names);
     skg_free(&s.slices);
+    skg_free(&s.others);
     return status;
 }

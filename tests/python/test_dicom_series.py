@@ -143,6 +143,10 @@ def test_the_library_reads_what_pydicom_reads(tmp_path, more):
     (range(6), {"NumberOfFrames": 3}, "holds 3 frames"),
     (range(6), {"SamplesPerPixel": 3, "PhotometricInterpretation": "RGB", "PlanarConfiguration": 0, "PixelData": b"\0" * 120}, "colours"),
     (range(6), {"PixelData": b"\0" * 30}, "pixels|PixelData"),
+    (range(6), {"PixelData": b"\0" * 42}, "has 42 bytes of pixels, and its size asks for 40"),  # the picture would be askew
+    (range(6), {"Rows": 4}, "has 40 bytes of pixels, and its size asks for 32"),
+    (range(6), {"ImageOrientationPatient": [2, 0, 0, 0, 2, 0]}, "is .2 0 0 0 2 0., vectors of the lengths 2 and 2 with the product 0"),
+    (range(6), {"ImageOrientationPatient": [1, 0, 0, .6, .8, 0]}, "of the lengths 1 and 1 with the product 0.6"),
     (range(6), {"RescaleSlope": 0}, "RescaleSlope is 0"),
     (range(6), {"ModalityLUTSequence": Sequence([])}, "stand in a table"),
 ])
@@ -236,17 +240,46 @@ def test_what_the_library_does_not_expand_pydicom_does(tmp_path, monkeypatch):
         scene_of(tmp_path)
 
 
+@both
+@pytest.mark.parametrize("without, says", [("PixelData", "is of the series of the slices, and has no PixelData"),
+                                           ("ImagePositionPatient", "and has no ImagePositionPatient"),
+                                           ("ImageOrientationPatient", "and has no ImageOrientationPatient"),
+                                           ("SeriesInstanceUID", "holds 2 series|says no series")])
+def test_the_last_slice_is_not_left_out(tmp_path, reading, without, says):
+    """No gap shows that it is missing."""
+    path = max(write(tmp_path).glob("*.dcm"), key=lambda path: pydicom.dcmread(path).ImagePositionPatient @ TURN[:, 2])
+    data = pydicom.dcmread(path)
+    del data[without]
+    data.save_as(path)
+    with pytest.raises(sk.Error, match=says):
+        reading(tmp_path)
+
+
+def test_files_of_other_series_may_lie_beside_the_slices(tmp_path):
+    write(tmp_path)
+    write_slice(tmp_path, 0, at=FIRST, series="1.2.9")
+    data = pydicom.dcmread(tmp_path / "0.dcm")
+    del data.PixelData
+    data.save_as(tmp_path / "report.dcm")
+    write_slice(tmp_path, 0, at=FIRST)
+    (tmp_path / "._1.dcm").write_bytes(b"of the system")
+    assert scene_of_file(tmp_path)["ct"].volume["slices"] == len(CELLS)
+
+
+def test_an_odd_number_of_bytes_is_filled_up(tmp_path):
+    write(tmp_path, Rows=5, Columns=3, BitsAllocated=8, BitsStored=8, HighBit=7, PixelData=bytes(range(16)))
+    assert scene_of_file(tmp_path)["ct"].volume["columns"] == 3
+
+
 def test_files_that_end_early_end_no_process(tmp_path):
     write(tmp_path, IconImageSequence=Sequence([nested(2)]))
     path = tmp_path / "0.dcm"
     whole, failed = path.read_bytes(), 0
-    for size in range(130, len(whole), 7):
+    for size in range(3, len(whole), 7):
         path.write_bytes(whole[:size])
-        try:  # between two attributes the file ends as one without pixels does, and the others are a series
-            assert scene_of_file(tmp_path)["ct"].volume["slices"] == 5
-        except sk.Error as failure:
-            assert "is it the whole file" in str(failure) or "bytes of pixels" in str(failure)
-            failed += 1
+        with pytest.raises(sk.Error, match="is it the whole file|bytes of pixels"):
+            scene_of_file(tmp_path)
+        failed += 1
     assert failed > 50
     path.write_bytes(whole)
     same(tmp_path)
