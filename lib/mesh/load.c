@@ -1,6 +1,6 @@
-/* Mesh files. STL, OBJ, PLY and 3MF have readers of our own; every other format is read by Assimp. Assimp would lose too
- * much of these three: it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's
- * numbering is gone; it keeps only floats; it accepts truncated ascii STL and PLY files as complete ones, and leaks
+/* Mesh files. STL, OBJ, OFF, PLY and 3MF have readers of our own; every other format is read by Assimp. Assimp would lose too
+ * much of these: it makes a vertex of every corner of an OBJ file and groups its faces, so that the file's
+ * numbering is gone; it keeps only floats; it accepts truncated ascii STL, OFF and PLY files as complete ones, and leaks
  * memory when it refuses one. */
 #include "core/context.h"
 #include "core/files.h"
@@ -160,6 +160,7 @@ static int has_extension(const char *path, const char *extension) {
 static reader find_reader(const char *path) {
     if (has_extension(path, ".stl")) return skg_mesh_read_stl;
     if (has_extension(path, ".obj")) return skg_mesh_read_obj;
+    if (has_extension(path, ".off")) return skg_mesh_read_off;
     if (has_extension(path, ".ply")) return skg_mesh_read_ply;
     return NULL;
 }

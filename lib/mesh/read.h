@@ -17,6 +17,7 @@ typedef struct {
  * "C". */
 skg_status skg_mesh_read_stl(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 skg_status skg_mesh_read_obj(const skg_mesh_file *file, skg_mesh_arrays *arrays);
+skg_status skg_mesh_read_off(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 skg_status skg_mesh_read_ply(const skg_mesh_file *file, skg_mesh_arrays *arrays);
 
 /* Reads a 3MF file, which is an archive. */

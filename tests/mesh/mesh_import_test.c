@@ -56,6 +56,52 @@ START_TEST(formats_of_assimp) {
 }
 END_TEST
 
+#define OFF_VERTICES "0 0 0\n1 0 0\n0 1 0\n0 0 1\n"
+
+/* Words in front of OFF, comments, colours, polygons of many corners and a head without the word. */
+START_TEST(off_as_others_write_it) {
+    static const char *const files[] = {
+        "OFF 4 4 6\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2",
+        "# made by hand\r\nOFF\r\n\r\n4 4 0 # a tetrahedron\r\n0 0 0\r\n1 0 0\r\n0 1 0\r\n0 0 1\r\n"
+        "3 0 2 1 255 0 0\r\n3 0 1 3\r\n\r\n3 1 2 3 # a face\r\n3 0 3 2\r\n\r\n",
+        "4 4\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n",
+        "COFF\n4 4 0\n0 0 0 1 1 1 1\n1 0 0 1 1 1 1\n0 1 0 1 1 1 1\n0 0 1 1 1 1 1\n3 0 2 1\n3 0 1 3\n3 1 2 3\n"
+        "3 0 3 2\n",
+        "OFF\n4 5 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2 3\n10 0 3 2 2 2 2 2 2 2 2\n2 0 1\n"};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
+        skg_mesh *mesh = load(file_of("b.off", files[f]));
+        ck_assert_double_eq_tol(health_of(mesh).volume, 1. / 6, 4 * DBL_EPSILON);
+        ck_assert_int_eq(health_of(mesh).left_out, f == 4);
+        skg_mesh_release(&mesh);
+    }
+}
+END_TEST
+
+START_TEST(off_that_is_cut_off) {
+    static const struct {
+        const char *text, *says;
+    } files[] = {
+        {"OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2 3\n", "damaged: face 3 of 4 cannot be read"},
+        {"OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2\n3 0 3 2\n", "face 2 of 4 cannot be read"},
+        {"OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3\n", "face 2 of 4 cannot be read"},
+        {"OFF\n4 4 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2 x\n3 0 3 2\n", "face 2 of 4 cannot be read"},
+        {"OFF\n5 4 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n3 1 2 3\n3 0 3 2\n", "face 3 of 4 cannot be read"},
+        {"OFF\n4 4 0\n0 0 0\n1 0\n", "vertex 1 of 4 cannot be read"},
+        {"OFF\n4 4 0\n0 0 0\n1 0 1,5\n", "vertex 1 of 4 cannot be read"},
+        {"OFF\n4 1 0\n" OFF_VERTICES "3 0 2 1\n3 0 1 3\n", "lines behind its last face, number 0"},
+        {"solid a\nendsolid a\n", "not an OFF file"},
+        {"OFF\n", "not an OFF file"},
+        {"OFF BINARY\n", "is binary OFF"}};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
+        skg_mesh *mesh;
+        ck_assert_int_ne(skg_mesh_load(NULL, file_of("c.off", files[f].text), 1, &mesh), SKG_OK);
+        ck_assert_msg(strstr(skg_last_error(), files[f].says) != NULL, "%zu: %s", f, skg_last_error());
+    }
+    refuse(file_of("c.off", "OFF\n4 1 0\n" OFF_VERTICES "3 0 2 4\n"), SKG_ERR_MESH,
+           "face 0 names vertex 4, but vertices run from 0 to 3");
+}
+END_TEST
+
 /* A node that mirrors turns the winding (glTF 2.0): beside an unmirrored one, volumes would cancel. */
 START_TEST(mirrored_nodes_turn_the_winding) {
     skg_mesh *mesh = load(file_of(
@@ -230,6 +276,8 @@ END_TEST
 static void add_tests(TCase *tests) {
     tcase_add_checked_fixture(tests, make_folder, remove_folder);
     tcase_add_test(tests, formats_of_assimp);
+    tcase_add_test(tests, off_as_others_write_it);
+    tcase_add_test(tests, off_that_is_cut_off);
     tcase_add_test(tests, mirrored_nodes_turn_the_winding);
     tcase_add_test(tests, units_of_collada);
     tcase_add_test(tests, units_of_other_formats);

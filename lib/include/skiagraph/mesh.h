@@ -90,15 +90,15 @@ SKG_API skg_status skg_mesh_load_as(skg_context *context, const char *path, cons
  * Several objects in one file become one mesh. A face with more than three corners is cut into a fan from its
  * first corner, which does not change path lengths if the face is plane. Points and lines are left out with a
  * warning. The order of the file is kept: vertex i is the i-th "v" line of an OBJ file, the i-th vertex of a
- * PLY file (doubles stay doubles), the i-th corner of an STL file. In other formats Assimp decides the order,
+ * PLY or OFF file (doubles stay doubles), the i-th corner of an STL file. In other formats Assimp decides the order,
  * and positions are floats. Numbers in text are read alike in every locale.
  *
  * The file, and every file that it refers to, is a regular file of at most 64 GiB: pipes and devices are refused. A file
  * that is an archive, such as .3mf, unpacks to at most 1 GiB, and no part of it to more than 1032 times its bytes. A file places
  * its parts (objects, nodes) at most 100,000 times, and none in itself; it takes at most 64 times its bytes of memory, or 1 GiB.
  * 3MF, glTF, COLLADA, AMF and X3D are held to that before they are opened, other formats once Assimp has opened them. Assimp, in the build of Debian, ends the process where it meets
- * some kinds of damage; parts and relationships of archives are checked before. Load damaged files of other formats than STL, OBJ
- * and PLY in a process of its own, such as the command's. */
+ * some kinds of damage; parts and relationships of archives are checked before. Load damaged files of other formats than STL, OBJ,
+ * OFF and PLY in a process of its own, such as the command's. */
 SKG_API skg_status skg_mesh_load(skg_context *context, const char *path, double unit_mm, skg_mesh **mesh);
 
 /** Writes a mesh to a file, whole or not at all. Positions are in mm, corners as given.
