@@ -15,6 +15,8 @@
 #include "mesh/read.h"
 
 #include <assimp/cimport.h>
+#include <assimp/commonMetaData.h>
+#include <assimp/importerdesc.h>
 #include <assimp/scene.h>
 #include <errno.h>
 #include <inttypes.h>
@@ -124,6 +126,43 @@ static skg_status check_scene(const char *path, int64_t size, const struct aiSce
     return skg_mesh_check_bytes(path, size, bytes);
 }
 
+/* Whether a list of extensions, between blanks and without points, has that of the path. */
+static int lists_extension(const char *list, const char *path) {
+    const char *dot = strrchr(path, '.');
+    char extension[16];
+    while (dot && *(list += strspn(list, " "))) {
+        const size_t length = strcspn(list, " ");
+        snprintf(extension, sizeof extension, ".%.*s", (int)length, list);
+        if (skg_same_name(dot, extension)) return 1;
+        list += length;
+    }
+    return 0;
+}
+
+/* Assimp reads files by their contents, too. Refuses one whose extension names a unit that is not that of its format, and one of a
+ * format that a reader of our own reads under its own extension, which Assimp would take cut off. */
+static skg_status check_format(const char *path, const struct aiScene *scene, const skg_mesh_arrays *arrays) {
+    static const char *const ours[] = {"a.stl", "a.obj", "a.off", "a.ply", "a.3mf"};
+    const struct aiImporterDesc *found = NULL;
+    const char *format = NULL;
+    for (unsigned i = 0; scene->mMetaData && i < scene->mMetaData->mNumProperties; i++)
+        if (strcmp(scene->mMetaData->mKeys[i].data, AI_METADATA_SOURCE_FORMAT) == 0 &&
+            scene->mMetaData->mValues[i].mType == AI_AISTRING)
+            format = ((const struct aiString *)scene->mMetaData->mValues[i].mData)->data;
+    for (size_t k = 0; format && !found && k < aiGetImportFormatCount(); k++) {
+        const struct aiImporterDesc *one = aiGetImportFormatDescription(k);
+        if (strcmp(one->mName, format) == 0) found = one;
+    }
+    if (!found || lists_extension(found->mFileExtensions, path)) return SKG_OK;
+    int is_ours = 0;
+    for (size_t k = 0; k < sizeof ours / sizeof *ours; k++)
+        is_ours |= lists_extension(found->mFileExtensions, ours[k]);
+    if (!is_ours && arrays->file_unit_mm == 0) return SKG_OK;
+    return skg_fail(SKG_ERR_FORMAT,
+                    "%s: is a file of another format than its extension says; rename it to one of: %s", path,
+                    found->mFileExtensions);
+}
+
 /* Assimp's post-processing is off: it would weld vertices, split polygons and sort faces. Of COLLADA it puts unit and axes into the
  * root node, which has no place of its own: there the numbers of the file are kept, and the unit is used once, here. */
 static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, skg_mesh_arrays *arrays) {
@@ -139,7 +178,8 @@ static skg_status read_by_assimp(FILE *stream, const char *path, int64_t size, s
     if (!scene) return skg_fail(SKG_ERR_FORMAT, "%s: %s", path, aiGetErrorString());
     struct aiMatrix4x4 at;
     aiIdentityMatrix4(&at);
-    skg_status status = check_scene(path, size, scene);
+    skg_status status = check_format(path, scene, arrays);
+    if (status == SKG_OK) status = check_scene(path, size, scene);
     if (status != SKG_OK) {
         aiReleaseImport(scene);
         return status;
@@ -287,7 +327,7 @@ static skg_status load(skg_context *context, const char *call, const char *path,
     SKG_NEEDS_OF(call, path);
     skg_mesh_reading_init(&wanted);
     SKG_TRY(skg_struct_read(reading, "skg_mesh_reading", &wanted, sizeof wanted));
-    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "%s: no path", call);
+    if (!*path) return skg_fail(SKG_ERR_ARGUMENT, "the path of a mesh is empty; name a file");
     if (!isfinite(wanted.unit_mm) || wanted.unit_mm < 0)
         return skg_fail(SKG_ERR_ARGUMENT, "%s: unit %g mm is not usable; give one that is finite and above 0",
                         path, wanted.unit_mm);

@@ -217,6 +217,33 @@ START_TEST(units_of_other_formats) {
 }
 END_TEST
 
+/* What a file is says its contents; a unit by its extension alone would be wrong by 1000. */
+START_TEST(extensions_of_other_formats) {
+    static const char stl[] =
+        "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
+        "endfacet\nendsolid s\n";
+    static const char off[] = "OFF\n3 2 0\n0 0 0\n1 0 0\n0 1 0\n3 0 2 1\n";
+    static const struct {
+        const char *name, *text, *says;
+    } files[] = {{"a.glb", stl, "rename it to one of: stl"},
+                 {"a.gltf", stl, "a.gltf"},
+                 {"a.vrm", stl, "rename it to one of: stl"},
+                 {"a.amf", stl, "a.amf"},
+                 {"a.x3d", stl, "a.x3d"},
+                 {"a.glb", off, "rename it to one of: off"},
+                 {"a.unknown", off, "rename it to one of: off"},
+                 {"a.unknown", stl, "rename it to one of: stl"},
+                 {"a.glb", AMF(" unit=\"inch\""), "a.glb"},
+                 {"a.amf", X3D(""), "a.amf"},
+                 {"a.x3d", AMF(""), "a.x3d"}};
+    for (size_t f = 0; f < sizeof files / sizeof *files; f++) {
+        skg_mesh *mesh; /* some are no triangles to the reader of the extension, which is another status */
+        ck_assert_int_ne(skg_mesh_load(NULL, file_of(files[f].name, files[f].text), 0, &mesh), SKG_OK);
+        ck_assert_msg(strstr(skg_last_error(), files[f].says) != NULL, "%zu: %s", f, skg_last_error());
+    }
+}
+END_TEST
+
 /* Objects and groups of an OBJ file by their names; a group that comes again is one. */
 START_TEST(groups_of_obj) {
     const char *file =
@@ -281,6 +308,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, mirrored_nodes_turn_the_winding);
     tcase_add_test(tests, units_of_collada);
     tcase_add_test(tests, units_of_other_formats);
+    tcase_add_test(tests, extensions_of_other_formats);
     tcase_add_test(tests, groups_of_obj);
     tcase_add_test(tests, own_readers_agree_with_assimp);
 }
