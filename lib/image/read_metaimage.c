@@ -39,12 +39,14 @@ static int is_true(const char *value) {
     return skg_same_name(value, "True") || !strcmp(value, "1");
 }
 
+/* Keeps three, and counts all. */
 static void read_sizes(const char *value, metaimage *image) {
-    for (int k = 0; k < 3; k++) {
+    for (int k = 0;; k++) {
         const char *end = value;
         const double size = skg_read_number(value, &end);
         if (end == value) return;
-        image->size[k] = size, value = end;
+        if (k < 3) image->size[k] = size;
+        value = end;
         image->dimensions = k + 1;
     }
 }
@@ -124,6 +126,10 @@ static skg_status read_header(const char *path, FILE *stream, metaimage *image) 
         return skg_fail(SKG_ERR_UNSUPPORTED, "%s: is of several channels; write it with one", path);
     if (image->told && image->told != image->dimensions)
         return skg_fail(SKG_ERR_FORMAT, "%s: its NDims is %d, but DimSize has %d sizes", path, image->told,
+                        image->dimensions);
+    if (image->dimensions > 3)
+        return skg_fail(SKG_ERR_UNSUPPORTED,
+                        "%s: has %d dimensions (DimSize); write 2, or 3 for a volume or several pages", path,
                         image->dimensions);
     if (image->is_text)
         return skg_fail(SKG_ERR_UNSUPPORTED,

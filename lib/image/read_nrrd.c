@@ -7,7 +7,7 @@
 #include <stdlib.h>
 #include <string.h>
 
-enum { LINE = 4096, LINES = 1000 };
+enum { LINE = 4096, LINES = 1000, MOST_NAMES = 7 };
 
 /* Fields of the header. */
 typedef struct {
@@ -22,7 +22,7 @@ typedef struct {
 } nrrd;
 
 static const struct {
-    const char *names[6];
+    const char *names[MOST_NAMES];
     int bytes;
     char kind;
 } types[] = {{{"signed char", "int8", "int8_t"}, 1, 'i'},
@@ -31,14 +31,17 @@ static const struct {
              {{"ushort", "unsigned short", "unsigned short int", "uint16", "uint16_t"}, 2, 'u'},
              {{"int", "signed int", "int32", "int32_t"}, 4, 'i'},
              {{"uint", "unsigned int", "uint32", "uint32_t"}, 4, 'u'},
-             {{"longlong", "long long", "int64", "int64_t"}, 8, 'i'},
-             {{"ulonglong", "unsigned long long", "uint64", "uint64_t"}, 8, 'u'},
+             {{"longlong", "long long", "long long int", "signed long long", "signed long long int", "int64",
+               "int64_t"},
+              8,
+              'i'},
+             {{"ulonglong", "unsigned long long", "unsigned long long int", "uint64", "uint64_t"}, 8, 'u'},
              {{"float"}, 4, 'f'},
              {{"double"}, 8, 'f'}};
 
 static void read_type(const char *value, nrrd *n) {
     for (size_t t = 0; t < sizeof types / sizeof *types; t++)
-        for (int k = 0; k < 6 && types[t].names[k]; k++)
+        for (int k = 0; k < MOST_NAMES && types[t].names[k]; k++)
             if (!strcmp(value, types[t].names[k]))
                 n->file.bytes = types[t].bytes, n->file.kind = types[t].kind;
 }

@@ -30,6 +30,12 @@ static skg_status load_header(const char *name, const char *header, double unit_
 #define RAW(type, slices, more)                                                                              \
     "NRRD0004\ntype: " type "\ndimension: 3\nsizes: 3 2 " slices "\nencoding: raw\n" more "\n"
 #define CM "space units: \"cm\" \"cm\" \"cm\"\n"
+#define LONG_TYPE(type)                                                                                      \
+    {                                                                                                        \
+        "nrrd", RAW(type, "1", "endian: little\n" DIRECTIONS), NULL, {2, 3, 4}, {                            \
+            5, 6, 7                                                                                          \
+        }                                                                                                    \
+    }
 #define BAD_DIRECTIONS(says)                                                                                 \
     {                                                                                                        \
         "nrrd", NRRD("space directions: " says "\n"),                                                        \
@@ -46,6 +52,8 @@ START_TEST(headers_are_not_passed_over) {
         {"mha", MHA("BinaryData = False\n"), "its values are text", {0}, {0}},
         {"mha", MHA("ElementToIntensityFunctionSlope = 2\n"), "its values mean others", {0}, {0}},
         {"mha", MHA("NDims = 2\n"), "its NDims is 2", {0}, {0}},
+        {"mha", MHA("NDims = 4\nDimSize = 3 2 4 1\n"), "has 4 dimensions (DimSize)", {0}, {0}},
+        {"mha", MHA("DimSize = 3 2 4 1\n"), "its NDims is 3, but DimSize has 4 sizes", {0}, {0}},
         {"mha", MHA("ElementSize = 2 3 4\n"), NULL, {2, 3, 4}, {0}},
         {"mha",
          MHA("BinaryData = True\nElementSpacing = 1 1 2\nElementSize = 2 3 4\n"),
@@ -63,6 +71,11 @@ START_TEST(headers_are_not_passed_over) {
         {"mha", MHA("ElementSpacing = 2 3 4\nOffset = 5 nan 7\n"), "its Offset does not say", {0}, {0}},
         {"mha", MHA("TransformMatrix = 1 0 0 0 1 0\n"), "its TransformMatrix does not say", {0}, {0}},
         {"mha", MHA("DistanceUnits = cubit\n"), "its DistanceUnits are \"cubit\"", {0}, {0}},
+        LONG_TYPE("long long int"),
+        LONG_TYPE("signed long long int"),
+        LONG_TYPE("signed long long"),
+        LONG_TYPE("unsigned long long int"),
+        LONG_TYPE("ulonglong"),
         {"nrrd", NRRD("endian: middle\n"), "its endian is \"middle\"", {0}, {0}},
         {"nrrd", NRRD(DIRECTIONS "space units: \"cm\"\n"), "one of its axes has no unit", {0}, {0}},
         {"nrrd", NRRD(DIRECTIONS), NULL, {2, 3, 4}, {5, 6, 7}},
