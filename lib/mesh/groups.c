@@ -34,16 +34,23 @@ skg_status skg_mesh_drop_unused(skg_mesh_arrays *arrays, const char *path) {
     int32_t *number = NULL; /* of each vertex, and 1 more; 0: not used */
     int64_t count = 0;
     SKG_TRY(skg_alloc(arrays->vertices, sizeof *number, path, &number));
-    for (int64_t i = 0; i < 3 * arrays->triangles; i++)
-        if (arrays->corners[i] >= 0 && arrays->corners[i] < arrays->vertices) number[arrays->corners[i]] = 1;
+    for (int64_t i = 0; i < 3 * arrays->triangles; i++) {
+        const int32_t corner = arrays->corners[i];
+        if (corner < 0 ||
+            corner >=
+                arrays
+                    ->vertices) { /* no mesh is made of it, and the refusal counts the vertices of the file */
+            skg_free(&number);
+            return SKG_OK;
+        }
+        number[corner] = 1;
+    }
     for (int64_t v = 0; v < arrays->vertices; v++) {
         if (!number[v]) continue;
         memmove(arrays->positions + 3 * count, arrays->positions + 3 * v, 3 * sizeof(double));
         number[v] = (int32_t)++count;
     }
-    for (int64_t i = 0; i < 3 * arrays->triangles; i++)
-        if (arrays->corners[i] >= 0 && arrays->corners[i] < arrays->vertices)
-            arrays->corners[i] = number[arrays->corners[i]] - 1;
+    for (int64_t i = 0; i < 3 * arrays->triangles; i++) arrays->corners[i] = number[arrays->corners[i]] - 1;
     arrays->unused = arrays->vertices - count;
     arrays->vertices = count;
     skg_free(&number);

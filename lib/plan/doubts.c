@@ -7,6 +7,7 @@
 
 #include <inttypes.h>
 #include <math.h>
+#include <stdio.h>
 
 /* Photons only lose energy when they scatter. */
 static int gets_scatter(const skg_recipe *recipe, int64_t band) {
@@ -124,6 +125,28 @@ static double field_at(const skg_view *view, const double *centre, double reach)
     return part / whole > 0 && part / whole < 1 ? side * part / whole : side;
 }
 
+/* The unit of a part and where it is from; of a volume the size of its cells, which alone has a unit in its file. Returns 0 if there is
+ * none. */
+static int describe_unit(const skg_scene_part_data *part, char *text, size_t size) {
+    static const char *const from[] = {[SKG_UNIT_ASSUMED] = ", since nobody named one",
+                                       [SKG_UNIT_FILE] = ", from the file",
+                                       [SKG_UNIT_NAMED] = ", as named"};
+    skg_mesh_unit unit;
+    if (part->volume) {
+        double side[3];
+        for (int k = 0; k < 3; k++) {
+            const double *a = part->volume->affine;
+            side[k] = skg_length((const double[3]){a[k], a[4 + k], a[8 + k]});
+        }
+        snprintf(text, size, "the size of its cells is %.3g x %.3g x %.3g mm", side[0], side[1], side[2]);
+        return 1;
+    }
+    skg_mesh_unit_init(&unit);
+    if (skg_mesh_unit_get(part->mesh, &unit) != SKG_OK) return 0;
+    snprintf(text, size, "its unit is %s%s", unit.name, from[unit.from]);
+    return 1;
+}
+
 /* Warns of the part whose size fits the field of view least: a unit may be wrong, and the picture of a wrong size looks alike. */
 static void warn_of_sizes(const skg_recipe *recipe, const skg_context *context) {
     static const double MOST = 500;
@@ -149,18 +172,13 @@ static void warn_of_sizes(const skg_recipe *recipe, const skg_context *context) 
         worst = factor, worst_side = side, worst_field = field, found = p;
     }
     if (found < 0) return;
-    skg_mesh_unit unit;
-    skg_mesh_unit_init(&unit);
-    if (skg_mesh_unit_get(scene->parts[found].mesh, &unit) != SKG_OK) return;
+    char unit[128];
+    if (!describe_unit(&scene->parts[found], unit, sizeof unit)) return;
     skg_log(
         context, SKG_LOG_WARNING,
-        "%s: its box is %.3g mm long, %s of the field of view at its place (%.3g mm); its unit is %s%s: is it the right one?%s",
+        "%s: its box is %.3g mm long, %s of the field of view at its place (%.3g mm); %s: is it the right one?%s",
         scene->parts[found].label, worst_side, worst_side < worst_field ? "under 1/500" : "over 500 times",
-        worst_field, unit.name,
-        unit.from == SKG_UNIT_FILE    ? ", from the file"
-        : unit.from == SKG_UNIT_NAMED ? ", as named"
-                                      : ", since nobody named one",
-        count > 1 ? " Other parts are as far from it" : "");
+        worst_field, unit, count > 1 ? " Other parts are as far from it" : "");
 }
 
 void skg_plan_warn_doubts(const skg_recipe *recipe, const skg_context *context) {

@@ -78,6 +78,24 @@ START_TEST(boxes_of_another_unit) {
 }
 END_TEST
 
+/* A volume has no unit of its own once it is read: its cells have a size. */
+START_TEST(a_small_volume_says_its_cells) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/small.mha", folder);
+    FILE *file = fopen(path, "wb");
+    ck_assert_ptr_nonnull(file);
+    fputs("ObjectType = Image\nNDims = 3\nDimSize = 2 2 2\nElementSpacing = 2 3 4\nDistanceUnits = um\n"
+          "ElementType = MET_UCHAR\nElementDataFile = LOCAL\n12345678",
+          file);
+    fclose(file);
+    ck_run(0, "image scene.json" POINT
+              "--set 'Samples.bone={\"Label\":\"ct\",\"Volume\":\"small.mha\",\"Values\":\"mu\"}' -o a.mha");
+    ck_assert_msg(strstr(complained, "ct: its box is 0.008 mm long") != NULL &&
+                      strstr(complained, "the size of its cells is 0.002 x 0.003 x 0.004 mm") != NULL,
+                  "%s", complained);
+}
+END_TEST
+
 START_TEST(flags_without_effect) {
     ck_run_fails(2, "--band-weight weighs the photons of bands; add --bands",
                  "image scene.json --quantity transmission --band-weight energy -o a.mha");
@@ -183,6 +201,7 @@ static void add_tests(TCase *tests) {
     tcase_add_test(tests, source_inside_a_part);
     tcase_add_test(tests, detector_inside_a_part);
     tcase_add_test(tests, boxes_of_another_unit);
+    tcase_add_test(tests, a_small_volume_says_its_cells);
     tcase_add_test(tests, flags_without_effect);
     tcase_add_test(tests, noise_without_a_load);
     tcase_add_test(tests, phases_end_below_one);

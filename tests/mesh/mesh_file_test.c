@@ -297,7 +297,11 @@ START_TEST(damaged_obj_is_refused) {
     refuse(file_of("c.obj", "v 1 2 3x\n"), SKG_ERR_FORMAT, "line 1: a vertex is");
     refuse(file_of("d.obj", SQUARE "f 1 2 0"), SKG_ERR_FORMAT, "count from 1");
     refuse(file_of("e.obj", SQUARE "f 1 2 -5"), SKG_ERR_MESH, "line 5: vertex -5 of 4");
-    refuse(file_of("f.obj", SQUARE "f 1 2 3\nf 1 2 99"), SKG_ERR_MESH, "triangle 1 names vertex 98");
+    refuse(file_of("f.obj", SQUARE "f 1 2 3\nf 1 2 99"), SKG_ERR_MESH,
+           "triangle 1 names vertex 98, but vertices run from 0 to 3");
+    skg_mesh *none;
+    ck_skg_fails(skg_mesh_load(NULL, "", 1, &none), SKG_ERR_ARGUMENT, "the path of a mesh is empty");
+    refuse(file_of("f.obj", SQUARE "f 1 2 99"), SKG_ERR_MESH, "vertices run from 0 to 3");
     refuse(file_of("g.obj", SQUARE "f 1 2 9999999999"), SKG_ERR_MESH, "line 5: vertex 9999999999");
     refuse(file_of("h.obj", SQUARE "f 1 2 99999999999999999999"), SKG_ERR_FORMAT, "line 5");
     refuse(file_of("i.obj", SQUARE), SKG_ERR_MESH, "no triangles");
