@@ -92,7 +92,32 @@ START_TEST(killed_searches_continue) {
 }
 END_TEST
 
+/* A target of another unit is searched for to the end, and the part is nowhere near it. */
+START_TEST(targets_of_another_unit_are_warned_of) {
+    char path[512];
+    snprintf(path, sizeof path, "%s/far.obj", folder);
+    FILE *far = fopen(path, "w");
+    ck_assert_ptr_nonnull(far);
+    fputs("v 5000 0 0\nv 5150 0 0\nv 5000 150 0\nv 5000 0 150\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 1 4 3\n", far);
+    fclose(far);
+    ck_run(
+        0,
+        "fit thorax.json --method de --target liver=far.obj --phase 0 --parameters tendon --evaluations 12 -o "
+        "fitted.json");
+    ck_assert_ptr_nonnull(strstr(complained, "--target liver=far.obj: it lies"));
+    ck_assert_ptr_null(strstr(complained, "is --unit right?"));
+    ck_run(0, FIT "--evaluations 12 -o fitted.json --unit m");
+    ck_assert_ptr_nonnull(strstr(complained, "is --unit right?"));
+    ck_run(0, FIT "--evaluations 12 -o fitted.json --unit um");
+    ck_assert_ptr_nonnull(strstr(complained, "is --unit right?"));
+    ck_run(0, FIT "--evaluations 12 -o fitted.json");
+    ck_assert_ptr_null(strstr(complained, "--target"));
+}
+END_TEST
+
 START_TEST(mistakes_are_named) {
+    ck_run_fails(2, "the parameter dome-left is not fitted; name it in --parameters",
+                 FIT "--bounds dome-left=1:2 -o fitted.json");
     ck_run_fails(2, "at least one target and its phase", "fit thorax.json -o fitted.json");
     ck_run_fails(2, "add -o fitted.json", "fit thorax.json --target liver=liver.ply --phase 0");
     ck_run_fails(2, "none of .json, .html, .csv and .png",
@@ -170,6 +195,7 @@ static void add_tests(TCase *tests) {
         tcase_add_test(tests, killed_searches_continue); /* a_checkpoint_continues; scan_test kills */
     tcase_add_test(tests, the_scene_chooses);
     tcase_add_test(tests, several_phases);
+    tcase_add_test(tests, targets_of_another_unit_are_warned_of);
     tcase_add_test(tests, mistakes_are_named);
 }
 

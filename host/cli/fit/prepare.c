@@ -5,9 +5,12 @@
 #include "common/progress.h"
 #include "common/say.h"
 #include "common/values.h"
+#include "core/core.h"
+#include "core/maths.h"
 #include "core/text.h"
 
 #include <inttypes.h>
+#include <math.h>
 #include <stdio.h>
 #include <stdlib.h>
 #include <string.h>
@@ -75,6 +78,45 @@ static int find_part(const fit_work *work, const char *word, size_t length, int6
                      nearest ? "; did you mean " : "", nearest ? nearest : "", nearest ? "?" : "");
 }
 
+/* The middle of a mesh's box where its pose puts it, and the box's diagonal, mm. */
+static skg_status find_box(const skg_mesh *mesh, const double *pose, double middle[3], double *diagonal) {
+    skg_mesh_health health;
+    double across[3];
+    skg_mesh_health_init(&health);
+    SKG_TRY(skg_mesh_health_get(mesh, &health));
+    for (int k = 0; k < 3; k++) {
+        middle[k] = 0.5 * (health.bounds[k] + health.bounds[3 + k]);
+        across[k] = health.bounds[3 + k] - health.bounds[k];
+    }
+    skg_pose_point(pose, middle, middle);
+    *diagonal = skg_length(across) * cbrt(fabs(skg_pose_determinant(pose)));
+    return SKG_OK;
+}
+
+/* Warns of a target that the breathing of its part hardly makes: of another unit, or of another place. The search would end somewhere. */
+static skg_status warn_of_target(const fit_work *work, const char *word, int64_t number,
+                                 const skg_mesh *mesh) {
+    static const double MOST = 5; /* organs of people differ by less */
+    static const double as_is[16] = {[0] = 1, [5] = 1, [10] = 1, [15] = 1};
+    double from[3], to[3], ours = 0, theirs = 0;
+    skg_part part;
+    skg_part_init(&part);
+    SKG_TRY(skg_scene_part_get(work->scene, number, &part));
+    SKG_TRY(find_box(part.mesh, part.pose, from, &ours));
+    SKG_TRY(find_box(mesh, as_is, to, &theirs));
+    if (theirs > MOST * ours || ours > MOST * theirs)
+        cli_warn(
+            "--target %s: its box has a diagonal of %.4g mm, that of the part one of %.4g mm; is --unit right?",
+            word, theirs, ours);
+    skg_add_scaled(to, -1, from, to);
+    if (skg_length(to) > fmax(ours, theirs))
+        cli_warn(
+            "--target %s: it lies %.4g mm from the part, whose box has a diagonal of %.4g mm; are both of one unit "
+            "and in one system of coordinates?",
+            word, skg_length(to), ours);
+    return SKG_OK;
+}
+
 static int add_target(fit_work *work, const char *word, double phase, double unit_mm) {
     const char *equals = strchr(word, '=');
     skg_mesh *mesh = NULL;
@@ -85,6 +127,7 @@ static int add_target(fit_work *work, const char *word, double phase, double uni
     if (exit_status != CLI_DONE) return exit_status;
     skg_status status = skg_mesh_load(NULL, equals + 1, unit_mm, &mesh);
     if (status == SKG_OK) status = skg_fit_target_add(work->fit, part, phase, mesh);
+    if (status == SKG_OK) status = warn_of_target(work, word, part, mesh);
     skg_mesh_release(&mesh);
     return status == SKG_OK ? CLI_DONE : cli_fail(status);
 }
@@ -109,6 +152,24 @@ static int add_targets(fit_work *work) {
     return exit_status;
 }
 
+/* A range of what is not fitted would have no effect. */
+static int check_chosen(const fit_work *work, const char *value, const char *name) {
+    int64_t count = 0;
+    skg_status status = skg_fit_parameter_count(work->fit, &count);
+    for (int64_t p = 0; p < count && status == SKG_OK; p++) {
+        skg_fit_parameter one;
+        skg_fit_parameter_init(&one);
+        status = skg_fit_parameter_get(work->fit, p, &one);
+        if (status == SKG_OK && !one.chosen && skg_same_name(one.name, name))
+            return cli_error(
+                CLI_USAGE,
+                "--bounds %s: the parameter %s is not fitted; name it in --parameters, or leave its "
+                "range out",
+                value, one.name);
+    }
+    return status == SKG_OK ? CLI_DONE : cli_fail(status);
+}
+
 static int set_bounds(fit_work *work) {
     const char *value;
     for (int i = 0; (value = cli_nth_value(work->arguments, "--bounds", i)); i++) {
@@ -118,6 +179,8 @@ static int set_bounds(fit_work *work) {
             return cli_error(CLI_USAGE, "--bounds %s: give NAME=LOW:HIGH, such as tendon-z=-30:0", value);
         const skg_status status = skg_fit_bounds_set(work->fit, name, low, high);
         if (status != SKG_OK) return cli_fail(status);
+        const int exit_status = check_chosen(work, value, name);
+        if (exit_status != CLI_DONE) return exit_status;
     }
     return CLI_DONE;
 }
