@@ -156,7 +156,7 @@ static int32_t read_numbers(const char *from, int32_t most, double *numbers) {
     return -1;
 }
 
-/* What an attribute of text says. One that is empty is not given, except where the values of the pixels would be others for that. */
+/* Takes the numbers of an attribute of text. One that is empty is not given, except where the values of the pixels would be others for that. */
 static skg_status take_decimals(const source *s, uint32_t length, int which, skg_dicom_slice *slice) {
     const int32_t most = attributes[which].most;
     char text[LONGEST_VALUE];

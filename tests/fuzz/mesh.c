@@ -11,8 +11,8 @@ int LLVMFuzzerTestOneInput(const uint8_t *data, size_t size) {
     skg_mesh *mesh = NULL, *again = NULL;
     skg_mesh_health health;
     if (size < 1) return 0;
-    const skg_status status =
-        skg_mesh_load(NULL, fuzz_write(names[data[0] % 3], data + 1, size - 1), 1, &mesh);
+    const char *name = data[0] & 128 ? "m.off" : names[data[0] % 3];
+    const skg_status status = skg_mesh_load(NULL, fuzz_write(name, data + 1, size - 1), 1, &mesh);
     fuzz_expect_sentence(status);
     if (status != SKG_OK) return 0;
     skg_mesh_health_init(&health);

@@ -217,7 +217,7 @@ START_TEST(units_of_other_formats) {
 }
 END_TEST
 
-/* What a file is says its contents; a unit by its extension alone would be wrong by 1000. */
+/* Contents say the format of a file; a unit by its extension alone would be wrong by 1000. */
 START_TEST(extensions_of_other_formats) {
     static const char stl[] =
         "solid s\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\nendloop\n"
