@@ -97,8 +97,8 @@ skg_status skg_dose_windows_find(const skg_rules *rules, const skg_forest *tree,
 
 /* --- what the rules make of the volumes there */
 
-/* Lines along each side of a box: all boxes together have about LINES^2. */
-enum { LINES = 384, LEAST = 48 };
+/* Lines along each side of a box: all boxes together have about LINES^2, but each LEAST^2 at least. */
+enum { LINES = 384, LEAST = 32 };
 
 /* The rows of lines of one box. */
 typedef struct {
