@@ -164,7 +164,7 @@ static double density_of(const skg_scene_part_data *part) {
 /* Warns of parts whose volume lines have not found to a hundredth. */
 static void doubt_masses(const skg_scene *scene, const double *volumes, const double *errors) {
     for (int64_t i = 0; i < scene->count; i++)
-        if (errors[i] > 0.01 * volumes[i])
+        if (volumes[i] > 0 && errors[i] > 0.01 * volumes[i])
             skg_log(
                 scene->context, SKG_LOG_WARNING,
                 "dose: the mass of %s, and with it its dose, is known to %.2g %% only, because other parts "

@@ -24,12 +24,13 @@ static skg_status by_surfaces(const skg_scene *scene, double *solid, double *vol
     return SKG_OK;
 }
 
-/* A part of which everything is displaced has no volume: the rest is the error of the lines. */
+/* A part of which everything is displaced has no volume: the rest, which may be below 0, is the error of the lines. */
 static void drop_rests(int64_t count, const double *solid, double *volumes, double *errors) {
     static const double ROUNDING = 1e-9;
     for (int64_t i = 0; i < count; i++) {
         errors[i] = sqrt(errors[i]);
-        if (fabs(volumes[i]) < fmax(ROUNDING * fabs(solid[i]), 3 * errors[i])) volumes[i] = errors[i] = 0;
+        const int is_rest = fabs(volumes[i]) < fmax(ROUNDING * fabs(solid[i]), 3 * errors[i]);
+        if (is_rest || (errors[i] > 0 && volumes[i] < 0)) volumes[i] = errors[i] = 0;
     }
 }
 

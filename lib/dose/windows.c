@@ -1,4 +1,5 @@
-/* Volumes that priorities, clip and unite leave parts, and cells that others displace: by lines through the boxes where that can be. Outside of them volumes are exact, and a box of its own resolves a thin part. */
+/* Volumes that priorities, clip and unite leave parts, and cells that others displace: by lines through the boxes where that can be.
+ * Outside of them volumes are exact, and a box of its own resolves a thin part. */
 #include "dose/figures.h"
 
 #include "core/maths.h"
@@ -156,7 +157,7 @@ static double counted_between(const stretches *s, double from, double to) {
     return sum;
 }
 
-/* Adds the shares that the rules give. sign: 1 or -1; only: the part that counts, or -1: all. */
+/* Adds the shares that the rules give. area: mm2 of a line, or less than 0 to take them off; only: the part that counts, or -1: all. */
 static void add_shares(const skg_way *way, const stretches *s, double area, int64_t only, double *sums) {
     for (int64_t i = 0; i < way->piece_count; i++) {
         const skg_piece *piece = &way->pieces[i];

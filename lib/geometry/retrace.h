@@ -6,8 +6,9 @@
 #include "mesh/mesh.h"
 
 /* --- Caps that close a leaky mesh: a fan over each loop of open edges, about the mean of the loop. *
- * Cracks come first: vertices at rims that nearly touch stand for each other (rims.c), each open edge moves to them, and a strip closes
- * the way that it went. Plane patches of a surface that nobody welded would else be closed by their own reverse, and vanish. Mesh and caps together are closed as a sum of signed triangles, whatever is wrong with the mesh, so that the
+ * Cracks come first: vertices at rims that nearly touch stand for each other (rims.c), each open edge moves to them, and a strip
+ * closes the way that it went. Plane patches of a surface that nobody welded would else be closed by their own reverse, and vanish.
+ * Mesh and caps together are closed as a sum of signed triangles, whatever is wrong with the mesh, so that the
  * signed hits of every ray cancel. A plane loop is capped by exactly the area that it bounds. A missing triangle
  * and any plane hole are therefore closed exactly, and the gap at a T-junction gets the sliver that is missing.
  * A flipped triangle bounds its loop twice, and the two triangles of its caps outweigh it. Over a loop that is

@@ -9,6 +9,9 @@
  * do not shrink to points. */
 static const double OF_BOX = 2e-3, OF_EDGE = 0.25;
 
+/* A narrower one is not looked for, so that cubes of this share of the diagonal have numbers of 32 bits. */
+static const double LEAST_OF_BOX = 1e-9;
+
 /* A vertex at a rim, in a grid of cubes whose edge is the width. */
 typedef struct {
     int32_t vertex;
@@ -77,7 +80,8 @@ static void list_rims(const skg_mesh *mesh, int64_t count, const int32_t *edges,
         grid->count += grid->count == 0 || v[-1].vertex != v->vertex; /* edges are sorted by their start */
     }
     skg_add_scaled(high, -1, low, high);
-    grid->width = fmin(OF_BOX * skg_length(high), OF_EDGE * sum / (double)count);
+    const double diagonal = skg_length(high);
+    grid->width = fmax(fmin(OF_BOX * diagonal, OF_EDGE * sum / (double)count), LEAST_OF_BOX * diagonal);
     for (int64_t i = 0; i < grid->count; i++)
         for (int k = 0; k < 3; k++)
             grid->vertices[i].cube[k] = (int32_t)floor((grid->vertices[i].at[k] - low[k]) / grid->width);

@@ -1,6 +1,8 @@
 /* Masses of parts of which others displace something: thin ones are right, too. */
 #include "dose/exposed.h"
 
+#include <string.h>
+
 #define WATER "Water, Liquid"
 
 enum { NONE = -1 };
@@ -88,6 +90,28 @@ START_TEST(clip_and_displacement_leave_the_rest) {
 }
 END_TEST
 
+static int doubts; /* warnings of masses */
+static void count_doubts(int32_t level, const char *message, void *user) {
+    (void)user;
+    doubts += level == SKG_LOG_WARNING && strstr(message, "is known to") != NULL;
+}
+
+/* A part that leaves its parent on all sides takes away more than there is, which the plan warns of, not the search for masses. */
+START_TEST(exact_masses_are_not_doubted) {
+    const double larger[3] = {20, 20, 20}, bead[3] = {5, 5, 5};
+    double grams[3];
+    subject s = open_box(10, 10, 10, WATER);
+    add_box(&s, larger, 0, 0, 0, "Al", 0, 0);
+    add_box(&s, bead, 0, 0, 90, "Ti", 0, NONE);
+    doubts = 0;
+    ck_skg(skg_context_log_set(run_context, count_doubts, NULL));
+    weigh(&s, grams);
+    ck_skg(skg_context_log_set(run_context, NULL, NULL));
+    ck_assert_int_eq(doubts, 0);
+    ck_assert_double_lt(grams[0], 0);
+}
+END_TEST
+
 /* A needle with a priority, turned or not. */
 START_TEST(needles_displace_what_they_weigh) {
     const double radius[] = {0.1, 0.5, 2};
@@ -117,5 +141,6 @@ END_TEST
 void add_masses(TCase *tests) {
     tcase_add_loop_test(tests, thin_parts_keep_their_mass, 0, 9);
     tcase_add_test(tests, clip_and_displacement_leave_the_rest);
+    tcase_add_test(tests, exact_masses_are_not_doubted);
     tcase_add_loop_test(tests, needles_displace_what_they_weigh, 0, 6);
 }

@@ -42,10 +42,10 @@ enum skg_repair {
     SKG_REPAIR_NEIGHBOURS = 1,
     /** The ray is traced again on the host, in double precision, through the mesh with every loop of open
      * edges closed by a fan about the loop's mean; so is every ray that passes such a cap. Cracks are bridged
-     * first, up to .002 of the diagonal and a quarter of the mean open edge: plane patches that nobody welded
-     * are one surface. Exact if the loops
-     * are plane: missing triangles, plane holes, cracks at T-junctions, single inverted triangles. Otherwise
-     * it is one of many possible surfaces; a warning tells of pieces that then enclose nothing. Submitting waits until the leaky parts are rastered. */
+     * first, up to .002 of the diagonal of the box of all open edges and a quarter of their mean length: plane
+     * patches that nobody welded are one surface. Exact if the loops are plane: missing triangles, plane holes,
+     * cracks at T-junctions, single inverted triangles. Otherwise it is one of many possible surfaces; a warning
+     * tells of pieces that then enclose nothing. Submitting waits until the leaky parts are rastered. */
     SKG_REPAIR_EXACT = 2
 };
 
